@@ -1,0 +1,253 @@
+//! Where rule files and components are found: the user's folders, then the embedded library.
+//!
+//! A library folder holds `rules`, `initiators`, `generators` and `base_elements`, each with YAML
+//! files; rules may also lie in the folder itself.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use include_dir::{Dir, include_dir};
+
+use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+
+static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
+
+/// What a library file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Shelf {
+    /// A production rule.
+    Rules,
+    /// An initiator.
+    Initiators,
+    /// A generator.
+    Generators,
+    /// A base element.
+    BaseElements,
+}
+
+impl Shelf {
+    /// All shelves, in the order in which they are listed.
+    pub const ALL: [Self; 4] = [
+        Self::Rules,
+        Self::Initiators,
+        Self::Generators,
+        Self::BaseElements,
+    ];
+
+    /// The folder's name.
+    #[must_use]
+    pub fn folder(self) -> &'static str {
+        match self {
+            Self::Rules => "rules",
+            Self::Initiators => "initiators",
+            Self::Generators => "generators",
+            Self::BaseElements => "base_elements",
+        }
+    }
+
+    /// What one of its files is called: `rule`, `initiator`, `generator` or `base_element`.
+    #[must_use]
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Rules => "rule",
+            Self::Initiators => "initiator",
+            Self::Generators => "generator",
+            Self::BaseElements => "base_element",
+        }
+    }
+
+    /// The same, to be read in a sentence.
+    #[must_use]
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::BaseElements => "base element",
+            other => other.kind(),
+        }
+    }
+}
+
+/// A file of the library.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its name, without extension.
+    pub name: String,
+    /// What it holds.
+    pub shelf: Shelf,
+    /// Where it lies; `None` if it is embedded.
+    pub path: Option<PathBuf>,
+}
+
+/// The places in which rules and components are looked for, the first one first.
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    folders: Vec<PathBuf>,
+}
+
+impl Catalogue {
+    /// The embedded library alone.
+    #[must_use]
+    pub fn embedded() -> Self {
+        Self::default()
+    }
+
+    /// Folders, in this order, before the embedded library.
+    #[must_use]
+    pub fn with_folders(folders: Vec<PathBuf>) -> Self {
+        Self { folders }
+    }
+
+    /// A rule by path or by name: a file that exists wins.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such rule, or it cannot be read.
+    pub fn rule(&self, argument: &str) -> Result<Arc<Source>, Diagnostic> {
+        let path = Path::new(argument);
+        match fs::metadata(path) {
+            Ok(metadata) if metadata.is_file() => return read_file(path, argument),
+            Ok(metadata) if metadata.is_dir() && self.find(Shelf::Rules, argument).is_none() => {
+                return Err(Diagnostic::error(format!(
+                    "'{argument}' is a folder, not a rule file"
+                )));
+            }
+            // A named pipe or device is read like a file.
+            Ok(metadata) if !metadata.is_dir() => return read_file(path, argument),
+            _ => {}
+        }
+        let looks_like_path = argument.contains(['/', '\\']);
+        if looks_like_path {
+            return Err(Diagnostic::error(format!("there is no file '{argument}'")));
+        }
+        self.component(Shelf::Rules, argument)
+    }
+
+    /// A rule or component by name.
+    ///
+    /// # Errors
+    ///
+    /// If there is none of this name, or it cannot be read.
+    pub fn component(&self, shelf: Shelf, name: &str) -> Result<Arc<Source>, Diagnostic> {
+        let Some(entry) = self.find(shelf, name) else {
+            let noun = shelf.noun();
+            let mut error =
+                Diagnostic::error(format!("there is no {noun} '{name}' in the library"));
+            let names: Vec<_> = self
+                .entries()
+                .into_iter()
+                .filter(|entry| entry.shelf == shelf)
+                .collect();
+            let names = names.iter().map(|entry| entry.name.as_str());
+            error = error.hint(
+                did_you_mean(without_extension(name), names)
+                    .unwrap_or_else(|| "`kfrac list` shows what there is".into()),
+            );
+            return Err(error);
+        };
+        self.open(&entry)
+    }
+
+    /// The text of an entry.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read.
+    pub fn open(&self, entry: &Entry) -> Result<Arc<Source>, Diagnostic> {
+        if let Some(path) = &entry.path {
+            return read_file(path, &path.display().to_string());
+        }
+        let name = format!("{}/{}.yaml", entry.shelf.folder(), entry.name);
+        let bytes = EMBEDDED
+            .get_file(&name)
+            .map_or(&[][..], |file| file.contents());
+        Source::read(format!("library/{name}"), bytes.to_vec())
+    }
+
+    fn find(&self, shelf: Shelf, name: &str) -> Option<Entry> {
+        let name = without_extension(name);
+        let is_name = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
+        if name.is_empty() || name.starts_with('.') || !name.chars().all(is_name) {
+            return None;
+        }
+        let file = format!("{name}.yaml");
+        let in_folders = self.folders.iter().flat_map(|folder| {
+            let own = (shelf == Shelf::Rules).then(|| folder.join(&file));
+            [folder.join(shelf.folder()).join(&file)]
+                .into_iter()
+                .chain(own)
+        });
+        let path = in_folders.into_iter().find(|path| path.is_file());
+        let embedded = || {
+            EMBEDDED
+                .get_file(format!("{}/{file}", shelf.folder()))
+                .is_some()
+        };
+        (path.is_some() || embedded()).then(|| Entry {
+            name: name.into(),
+            shelf,
+            path,
+        })
+    }
+
+    /// Everything in the library, by shelf and name; what comes first hides what comes later.
+    #[must_use]
+    pub fn entries(&self) -> Vec<Entry> {
+        let mut entries = BTreeMap::new();
+        for shelf in Shelf::ALL {
+            let embedded = EMBEDDED
+                .get_dir(shelf.folder())
+                .into_iter()
+                .flat_map(Dir::files);
+            for file in embedded {
+                add(&mut entries, shelf, file.path(), None);
+            }
+            for folder in self.folders.iter().rev() {
+                let own = (shelf == Shelf::Rules).then(|| folder.clone());
+                for folder in own.into_iter().chain([folder.join(shelf.folder())]) {
+                    let files = fs::read_dir(folder).into_iter().flatten().flatten();
+                    for path in files.map(|file| file.path()).filter(|path| path.is_file()) {
+                        add(&mut entries, shelf, &path, Some(&path));
+                    }
+                }
+            }
+        }
+        entries.into_values().collect()
+    }
+}
+
+fn add(
+    entries: &mut BTreeMap<(Shelf, String), Entry>,
+    shelf: Shelf,
+    file: &Path,
+    path: Option<&PathBuf>,
+) {
+    let stem = file.file_stem().and_then(|stem| stem.to_str());
+    if let (Some(name), true) = (
+        stem,
+        file.extension()
+            .is_some_and(|extension| extension == "yaml"),
+    ) {
+        let entry = Entry {
+            name: name.into(),
+            shelf,
+            path: path.cloned(),
+        };
+        entries.insert((shelf, name.into()), entry);
+    }
+}
+
+fn without_extension(name: &str) -> &str {
+    name.strip_suffix(".yaml").unwrap_or(name)
+}
+
+fn read_file(path: &Path, name: &str) -> Result<Arc<Source>, Diagnostic> {
+    use std::io::Read;
+    // One byte more than is allowed tells a file that is too large without reading all of it.
+    let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+    let mut bytes = Vec::new();
+    fs::File::open(path)
+        .and_then(|file| file.take(most).read_to_end(&mut bytes))
+        .map_err(|error| Diagnostic::error(format!("'{name}' cannot be read: {error}")))?;
+    Source::read(name, bytes)
+}

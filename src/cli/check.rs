@@ -1,0 +1,94 @@
+//! `kfrac check`: everything that is wrong with rule files.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::catalogue::Catalogue;
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::document::Document;
+use crate::graph::Graph;
+
+use super::{Failure, output, rule, text};
+
+/// Says everything that is wrong with rule files
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Rule files, names of rules in the library, or - for standard input
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    file: &'a str,
+    line: Option<usize>,
+    column: Option<usize>,
+    severity: &'static str,
+    message: &'a str,
+    hint: Option<&'a str>,
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let mut all = Vec::new();
+    for file in &arguments.files {
+        let diagnostics = check(file, catalogue).unwrap_or_else(|failure| match failure {
+            Failure::File(diagnostics) => diagnostics,
+            Failure::Input(error) => Diagnostic::error(format!("{error:#}")).into(),
+            _ => Diagnostics::default(),
+        });
+        all.push((file, diagnostics));
+    }
+    let wrong = all.iter().any(|(_, diagnostics)| diagnostics.has_errors());
+    if arguments.json {
+        let rows: Vec<_> = all
+            .iter()
+            .flat_map(|(file, diagnostics)| {
+                diagnostics.iter().map(|diagnostic| row(file, diagnostic))
+            })
+            .collect();
+        output::print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&rows).map_err(anyhow::Error::from)?
+        ))?;
+    } else {
+        for (file, diagnostics) in &all {
+            if diagnostics.is_empty() {
+                output::print(&format!("{file}: ok\n"))?;
+            } else {
+                text::complain(diagnostics);
+            }
+        }
+    }
+    if wrong { Err(Failure::Said) } else { Ok(()) }
+}
+
+fn check(file: &str, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
+    let source = rule::open(file, catalogue)?;
+    let document = Document::read(&source, catalogue)?;
+    let (rule, mut diagnostics) = document.resolve(&[])?;
+    let steps = rule.steps().unwrap_or(1).min(16);
+    // Some mistakes show only where elements are replaced.
+    if let Err(error) = Graph::compile(&Arc::new(rule), steps) {
+        diagnostics.push(Diagnostic::error(error.to_string()));
+    }
+    Ok(diagnostics)
+}
+
+fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> Row<'a> {
+    let place = diagnostic.place();
+    Row {
+        file: place.map_or(file, |place| place.source().name()),
+        line: place.map(crate::diagnostic::Place::line),
+        column: place.map(crate::diagnostic::Place::column),
+        severity: match diagnostic.severity() {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        },
+        message: diagnostic.message(),
+        hint: diagnostic.hint_text(),
+    }
+}

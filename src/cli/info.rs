@@ -1,0 +1,280 @@
+//! `kfrac info`: what a rule is, and how large its steps are.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::catalogue::Catalogue;
+use crate::geometry::Bounds;
+use crate::graph::{Graph, Level};
+use crate::measure::similarity_dimension;
+use crate::rule::Parameter;
+
+use super::rule::{Loaded, RuleArguments};
+use super::{Failure, output, text};
+
+/// Says what a rule is: parameters, sizes of its steps, bounds, dimension
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    rule: RuleArguments,
+    /// The last step of the forecast [default: what the rule says]
+    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000))]
+    steps: Option<u32>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Info<'a> {
+    name: &'a str,
+    kind: &'static str,
+    space: u32,
+    title: Option<&'a str>,
+    params: serde_json::Map<String, serde_json::Value>,
+    random: bool,
+    regular: bool,
+    steps: u32,
+    elements: Option<Vec<String>>,
+    fertile: Option<Vec<String>>,
+    fractals: Option<Vec<String>>,
+    length: Option<Vec<Option<f64>>>,
+    area: Option<Vec<Option<f64>>>,
+    bounds: Option<Corners>,
+    limit_bounds: Option<Corners>,
+    dimension: Dimension,
+}
+
+#[derive(Serialize)]
+struct Corners {
+    #[serde(serialize_with = "coordinates")]
+    min: [f64; 2],
+    #[serde(serialize_with = "coordinates")]
+    max: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct Dimension {
+    similarity: Option<f64>,
+    note: Option<String>,
+}
+
+/// Whole numbers without a fraction, as in the tables.
+fn coordinates<S: serde::Serializer>(point: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    point.map(|value| number(value + 0.0)).serialize(serializer)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the value is checked")]
+fn number(value: f64) -> serde_json::Value {
+    if value.fract() == 0.0 && value.abs() < 9e15 {
+        (value as i64).into()
+    } else {
+        value.into()
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let loaded = arguments.rule.load(catalogue, arguments.json)?;
+    let steps = arguments.steps.or(loaded.rule.steps()).unwrap_or(6);
+    let graph = Graph::compile(&loaded.rule, steps).map_err(anyhow::Error::from)?;
+    let info = info(&loaded, &graph, steps)?;
+    let text = if arguments.json {
+        format!(
+            "{}\n",
+            serde_json::to_string_pretty(&info).map_err(anyhow::Error::from)?
+        )
+    } else {
+        described(&loaded, &info)
+    };
+    Ok(output::print(&text)?)
+}
+
+fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Result<Info<'a>, Failure> {
+    let levels = levels(graph, steps);
+    let counts = |count: fn(&Level) -> String| {
+        levels
+            .as_ref()
+            .map(|levels| levels.iter().map(count).collect())
+    };
+    // A measure that one step does not have, none has; a step beyond a double's range has none.
+    let measures = |measure: fn(&Level) -> Option<f64>| {
+        let levels = levels.as_ref()?;
+        levels
+            .iter()
+            .all(|level| measure(level).is_some())
+            .then(|| {
+                levels
+                    .iter()
+                    .map(|level| measure(level).filter(|value| value.is_finite()))
+                    .collect()
+            })
+    };
+    // The graph of the limit is resolved as far as it goes.
+    let limit = Graph::compile(&loaded.rule, steps.max(64)).map_err(anyhow::Error::from)?;
+    let similarity = similarity_dimension(&limit);
+    let params = loaded.rule.parameters().iter();
+    Ok(Info {
+        name: &loaded.name,
+        kind: "rule",
+        space: 2,
+        title: loaded.rule.description().title.as_deref(),
+        params: params
+            .map(|parameter| (parameter.name.clone(), number(parameter.value)))
+            .collect(),
+        random: graph.draws(),
+        regular: graph.is_regular(),
+        steps,
+        elements: counts(|level| level.elements.to_string()),
+        fertile: counts(|level| level.fertile.to_string()),
+        fractals: counts(|level| level.fractals.to_string()),
+        length: measures(|level| level.length),
+        area: measures(|level| level.area),
+        bounds: graph.bounds(steps).as_ref().map(corners),
+        limit_bounds: limit.limit_bounds().as_ref().map(corners),
+        dimension: Dimension {
+            similarity: similarity.value,
+            note: similarity.note,
+        },
+    })
+}
+
+fn levels(graph: &Graph, steps: u32) -> Option<Vec<Level>> {
+    let mut forecast = graph.forecast()?;
+    let mut levels = vec![forecast.level()];
+    for _ in 0..steps {
+        if !forecast.advance() {
+            return None;
+        }
+        levels.push(forecast.level());
+    }
+    Some(levels)
+}
+
+fn corners(bounds: &Bounds) -> Corners {
+    Corners {
+        min: bounds.min().to_array(),
+        max: bounds.max().to_array(),
+    }
+}
+
+/// For people.
+fn described(loaded: &Loaded, info: &Info<'_>) -> String {
+    let mut text = String::new();
+    let rule = &loaded.rule;
+    let description = rule.description();
+    let mut line = |label: &str, value: &str| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{label:<12}{value}");
+    };
+    line("name", info.name);
+    if let Some(title) = &description.title {
+        line("title", title);
+    }
+    if let Some(about) = &description.about {
+        line("about", about.trim());
+    }
+    if let Some(source) = &description.source {
+        line("source", source.trim());
+    }
+    if !description.tags.is_empty() {
+        line("tags", &description.tags.join(", "));
+    }
+    for parameter in rule.parameters() {
+        line("parameter", &parameter_line(parameter));
+    }
+    let names: Vec<_> = rule
+        .generators()
+        .iter()
+        .map(crate::rule::Generator::name)
+        .collect();
+    if names.len() > 1 {
+        line("generators", &names.join(", "));
+    }
+    line("random", if info.random { "yes" } else { "no" });
+    line(
+        "regular",
+        if info.regular {
+            "yes"
+        } else {
+            "no: the walk counts indices"
+        },
+    );
+    let dimension = match (info.dimension.similarity, &info.dimension.note) {
+        (Some(value), Some(note)) => format!("{value} ({note})"),
+        (Some(value), None) => value.to_string(),
+        (None, note) => note.clone().unwrap_or_else(|| "unknown".into()),
+    };
+    line("dimension", &dimension);
+    let corners = |corners: &Corners| {
+        let [[a, b], [c, d]] = [corners.min, corners.max];
+        format!("[{a}, {b}] to [{c}, {d}]")
+    };
+    if let Some(bounds) = &info.bounds {
+        line(
+            "bounds",
+            &format!("{} at step {}", corners(bounds), info.steps),
+        );
+    }
+    if let Some(bounds) = &info.limit_bounds {
+        line("", &format!("{} in the limit", corners(bounds)));
+    }
+    text.push('\n');
+    match &info.elements {
+        Some(elements) => text.push_str(&table(info, elements)),
+        None => text.push_str("How large its steps are is not known before they are grown.\n"),
+    }
+    text
+}
+
+fn parameter_line(parameter: &Parameter) -> String {
+    let mut line = format!("{} = {}", parameter.name, parameter.value);
+    match (parameter.min, parameter.max) {
+        (Some(min), Some(max)) => line.push_str(&format!(", from {min} to {max}")),
+        (Some(min), None) => line.push_str(&format!(", at least {min}")),
+        (None, Some(max)) => line.push_str(&format!(", at most {max}")),
+        (None, None) => {}
+    }
+    if let Some(about) = &parameter.about {
+        line.push_str(&format!(": {}", about.trim()));
+    }
+    line
+}
+
+/// The forecast, a row a step; long numbers are given by their size.
+fn table(info: &Info<'_>, elements: &[String]) -> String {
+    let short = |digits: &str| match digits.parse() {
+        Ok(number) if digits.len() <= 18 => text::grouped(&number),
+        _ => format!("{}.{}e{}", &digits[..1], &digits[1..4], digits.len() - 1),
+    };
+    let mut rows = vec![["step", "elements", "fertile", "fractals", "length"].map(String::from)];
+    for step in 0..elements.len() {
+        let at = |column: &Option<Vec<String>>| {
+            column
+                .as_ref()
+                .map_or("-".into(), |column| short(&column[step]))
+        };
+        let length = info.length.as_ref().and_then(|lengths| lengths[step]);
+        rows.push([
+            step.to_string(),
+            short(&elements[step]),
+            at(&info.fertile),
+            at(&info.fractals),
+            length.map_or("-".into(), |length| format!("{length:.6}")),
+        ]);
+    }
+    let widths: Vec<_> = (0..5)
+        .map(|column| rows.iter().map(|row| row[column].len()).max().unwrap_or(0))
+        .collect();
+    let mut table = String::new();
+    for row in &rows {
+        let cells: Vec<_> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("{cell:>width$}"))
+            .collect();
+        table.push_str(&cells.join("  "));
+        table.push('\n');
+    }
+    table
+}

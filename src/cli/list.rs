@@ -1,0 +1,115 @@
+//! `kfrac list`: what is in the library.
+
+use serde::Serialize;
+
+use crate::catalogue::{Catalogue, Entry, Shelf};
+use crate::document::node::{Node, Value};
+
+use super::{Failure, output};
+
+/// Lists the library: rules and components
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Only what has this in its name, title or tags
+    #[arg(value_name = "PATTERN")]
+    pattern: Option<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    kind: &'static str,
+    title: Option<String>,
+    tags: Vec<String>,
+    source: Option<String>,
+    path: String,
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let pattern = arguments
+        .pattern
+        .as_deref()
+        .unwrap_or_default()
+        .to_lowercase();
+    let rows: Vec<_> = catalogue
+        .entries()
+        .iter()
+        .map(|entry| (entry.shelf, row(entry, catalogue)))
+        .filter(|(_, row)| row.matches(&pattern))
+        .collect();
+    if arguments.json {
+        let rows: Vec<_> = rows.iter().map(|(_, row)| row).collect();
+        let json = serde_json::to_string_pretty(&rows).map_err(anyhow::Error::from)?;
+        return Ok(output::print(&format!("{json}\n"))?);
+    }
+    let wide = rows
+        .iter()
+        .map(|(_, row)| row.name.chars().count())
+        .max()
+        .unwrap_or(0);
+    let mut text = String::new();
+    for shelf in Shelf::ALL {
+        let mut heading = Some(shelf.folder().replace('_', " "));
+        for (_, row) in rows.iter().filter(|(of, _)| *of == shelf) {
+            if let Some(heading) = heading.take() {
+                if !text.is_empty() {
+                    text.push('\n');
+                }
+                text.push_str(&heading);
+                text.push('\n');
+            }
+            let title = row.title.as_deref().unwrap_or_default();
+            let line = format!("  {:wide$}  {title}", row.name);
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+    }
+    Ok(output::print(&text)?)
+}
+
+/// A file that cannot be read is listed by its name alone; `kfrac check` says what is wrong.
+fn row(entry: &Entry, catalogue: &Catalogue) -> Row {
+    let node = catalogue
+        .open(entry)
+        .ok()
+        .and_then(|source| Node::parse(&source).ok());
+    let get = |key| node.as_ref().and_then(|node| node.get(key));
+    let text = |key| match get(key).map(|node| &node.value) {
+        Some(Value::Text(text)) => Some(text.trim_end().to_owned()),
+        _ => None,
+    };
+    let tags = match get("tags").map(|node| &node.value) {
+        Some(Value::Sequence(tags)) => tags
+            .iter()
+            .filter_map(Node::written)
+            .map(str::to_owned)
+            .collect(),
+        _ => Vec::new(),
+    };
+    Row {
+        name: entry.name.clone(),
+        kind: entry.shelf.kind(),
+        title: text("title"),
+        tags,
+        source: text("source"),
+        path: entry
+            .path
+            .as_ref()
+            .map_or("embedded".into(), |path| path.display().to_string()),
+    }
+}
+
+impl Row {
+    fn matches(&self, pattern: &str) -> bool {
+        let texts = [Some(&self.name), self.title.as_ref()]
+            .into_iter()
+            .flatten()
+            .chain(&self.tags);
+        texts
+            .into_iter()
+            .any(|text| text.to_lowercase().contains(pattern))
+    }
+}

@@ -1,0 +1,143 @@
+//! Files that appear whole or not at all.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use tempfile::NamedTempFile;
+
+/// Where a command writes.
+pub(super) enum Output {
+    /// Standard output, which cannot promise to be whole.
+    Standard(BufWriter<io::StdoutLock<'static>>),
+    /// A file under another name until it is finished.
+    File {
+        file: BufWriter<NamedTempFile>,
+        path: PathBuf,
+    },
+    /// A pipe or device, written as it is.
+    Device(BufWriter<File>),
+}
+
+/// Bytes that are handed to the system at once.
+const BUFFER: usize = 1 << 18;
+
+impl Output {
+    /// Opens `-`, a device or a file that is to be made or replaced.
+    pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
+        if path == Path::new("-") {
+            return Ok(Self::Standard(BufWriter::with_capacity(
+                BUFFER,
+                io::stdout().lock(),
+            )));
+        }
+        let failed = || format!("'{}' cannot be written", path.display());
+        let metadata = path.metadata().ok();
+        if metadata.as_ref().is_some_and(std::fs::Metadata::is_dir) {
+            anyhow::bail!("'{}' is a folder", path.display());
+        }
+        if metadata
+            .as_ref()
+            .is_some_and(|metadata| !metadata.is_file())
+        {
+            let device = File::options()
+                .write(true)
+                .open(path)
+                .with_context(failed)?;
+            return Ok(Self::Device(BufWriter::with_capacity(BUFFER, device)));
+        }
+        // A link stays one: what it points to is replaced.
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let folder = match path.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".kfrac-").suffix(".part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // What the user's mask leaves of these, as for any new file.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let file = builder.tempfile_in(folder).with_context(failed)?;
+        Ok(Self::File {
+            file: BufWriter::with_capacity(BUFFER, file),
+            path,
+        })
+    }
+
+    /// Finishes: the file appears under its name. Without this it is removed.
+    pub(super) fn finish(self) -> anyhow::Result<()> {
+        match self {
+            Self::Standard(mut out) => out.flush()?,
+            Self::Device(mut out) => out.flush()?,
+            Self::File { file, path } => {
+                let failed = || format!("'{}' cannot be written", path.display());
+                let file = file
+                    .into_inner()
+                    .map_err(io::IntoInnerError::into_error)
+                    .with_context(failed)?;
+                file.persist(&path)
+                    .map_err(|error| error.error)
+                    .with_context(failed)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Standard(out) => out.write(bytes),
+            Self::File { file, .. } => file.write(bytes),
+            Self::Device(out) => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Standard(out) => out.flush(),
+            Self::File { file, .. } => file.flush(),
+            Self::Device(out) => out.flush(),
+        }
+    }
+}
+
+/// Writes a text to standard output.
+pub(super) fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Counts the bytes that pass.
+pub(super) struct Counted<W> {
+    inner: W,
+    bytes: u64,
+}
+
+impl<W> Counted<W> {
+    pub(super) fn new(inner: W) -> Self {
+        Self { inner, bytes: 0 }
+    }
+
+    pub(super) fn into_parts(self) -> (W, u64) {
+        (self.inner, self.bytes)
+    }
+}
+
+impl<W: Write> Write for Counted<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.inner.write(bytes)?;
+        self.bytes += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}

@@ -1,0 +1,153 @@
+//! The rule that a command works on, found and resolved.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use etcetera::BaseStrategy;
+
+use crate::catalogue::Catalogue;
+use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+use crate::document::{Document, Setting};
+use crate::expression::{Expression, Scope};
+use crate::rule::Rule;
+
+use super::{Failure, text};
+
+/// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
+/// and of the embedded library, in this order.
+pub(super) fn catalogue(given: &[PathBuf]) -> Catalogue {
+    let mut folders = given.to_vec();
+    if let Some(path) = std::env::var_os("KFRAC_LIBRARY") {
+        folders.extend(std::env::split_paths(&path).filter(|path| path != Path::new("")));
+    }
+    if let Ok(strategy) = etcetera::choose_base_strategy() {
+        folders.push(strategy.data_dir().join("kfrac"));
+    }
+    Catalogue::with_folders(folders)
+}
+
+/// A rule, and how its parameters are set.
+#[derive(clap::Args)]
+pub(super) struct RuleArguments {
+    /// A rule file, the name of a rule in the library, or - for standard input
+    #[arg(value_name = "RULE")]
+    pub(super) rule: String,
+    /// Sets a parameter of the rule
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub(super) set: Vec<Setting>,
+}
+
+fn setting(text: &str) -> Result<Setting, String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    let program = Expression::parse(value)
+        .and_then(|expression| expression.compile(&Scope::new()))
+        .map_err(|error| match error.hint {
+            Some(hint) => format!("{} ({hint})", error.message),
+            None => error.message,
+        })?;
+    match program.as_constant() {
+        Some(value) if value.is_finite() => Ok(Setting {
+            name: name.trim().into(),
+            value,
+        }),
+        _ => Err("the value is not finite".into()),
+    }
+}
+
+/// A rule that has been read.
+pub(super) struct Loaded {
+    /// What files made from it are called.
+    pub(super) name: String,
+    pub(super) document: Document,
+    pub(super) rule: Arc<Rule>,
+}
+
+/// Standard input, to the most that a rule file may have.
+fn standard_input() -> Result<Arc<Source>, Failure> {
+    let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().take(most).read_to_end(&mut bytes)?;
+    Ok(Source::read("<stdin>", bytes)?)
+}
+
+/// The text that `argument` names.
+pub(super) fn open(argument: &str, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
+    if argument == "-" {
+        return standard_input();
+    }
+    Ok(catalogue.rule(argument)?)
+}
+
+/// The name of a rule, without folder and extension.
+pub(super) fn name_of(argument: &str) -> String {
+    let stem = Path::new(argument)
+        .file_stem()
+        .and_then(|stem| stem.to_str());
+    match stem {
+        Some("-") | None => "stdin".into(),
+        Some(stem) => stem.into(),
+    }
+}
+
+impl RuleArguments {
+    /// Finds, reads and resolves the rule; warnings are said.
+    pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
+        let source = open(&self.rule, catalogue)?;
+        let document = Document::read(&source, catalogue)?;
+        let name = name_of(&self.rule);
+        for setting in &self.set {
+            self.check_setting(setting, &document, &name)?;
+        }
+        let (rule, warnings) = document.resolve(&self.set)?;
+        if !quiet && !warnings.is_empty() {
+            text::complain(&warnings);
+        }
+        Ok(Loaded {
+            name,
+            document,
+            rule: Arc::new(rule),
+        })
+    }
+
+    /// What is wrong with a setting is wrong with the command line, not with the file.
+    fn check_setting(
+        &self,
+        setting: &Setting,
+        document: &Document,
+        rule: &str,
+    ) -> Result<(), Failure> {
+        let params = &document.rule().params;
+        if !params.iter().any(|param| param.name.value == setting.name) {
+            let names = params.iter().map(|param| param.name.value.as_str());
+            let hint = match did_you_mean(&setting.name, names.clone()) {
+                Some(hint) => hint,
+                None if params.is_empty() => "it has none".into(),
+                None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
+            };
+            let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
+            return Err(Failure::Usage(message));
+        }
+        let others: Vec<_> = self
+            .set
+            .iter()
+            .filter(|other| other.name == setting.name)
+            .cloned()
+            .collect();
+        let unset = document.resolve(&[]);
+        match document.resolve(&others) {
+            // The file is right with its own values, so it is this one that is not.
+            Err(diagnostics) if unset.is_ok() => {
+                let said: Vec<_> = diagnostics.iter().map(Diagnostic::message).collect();
+                let message = format!(
+                    "--set {}={}: {}",
+                    setting.name,
+                    setting.value,
+                    said.join("; ")
+                );
+                Err(Failure::Usage(message))
+            }
+            _ => Ok(()),
+        }
+    }
+}

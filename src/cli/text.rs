@@ -1,0 +1,62 @@
+//! What people read.
+
+use std::io::{IsTerminal, Write};
+
+use num_bigint::BigUint;
+
+use crate::diagnostic::Diagnostics;
+
+/// Writes diagnostics to standard error, coloured on a terminal.
+pub(super) fn complain(diagnostics: &Diagnostics) {
+    let stderr = anstream::stderr();
+    let color = std::io::stderr().is_terminal();
+    // Nobody is left to be told that standard error is closed.
+    let _ = write!(stderr.lock(), "{}", diagnostics.render(color));
+}
+
+/// Writes a line to standard error.
+pub(super) fn say(line: &str) {
+    let _ = writeln!(anstream::stderr().lock(), "{line}");
+}
+
+/// A whole number with commas between thousands.
+pub(super) fn grouped(number: &BigUint) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number of bytes in powers of a thousand.
+pub(super) fn bytes(count: u64) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
+    let mut value = count as f64;
+    let mut unit = "B";
+    for larger in ["kB", "MB", "GB", "TB"] {
+        if value < 1000.0 {
+            break;
+        }
+        value /= 1000.0;
+        unit = larger;
+    }
+    if unit == "B" || value >= 100.0 {
+        format!("{value:.0} {unit}")
+    } else {
+        format!("{value:.1} {unit}")
+    }
+}
+
+/// "1 element", "2 elements".
+pub(super) fn counted(number: &BigUint, noun: &str) -> String {
+    let s = if *number == BigUint::from(1u8) {
+        ""
+    } else {
+        "s"
+    };
+    format!("{} {noun}{s}", grouped(number))
+}

@@ -1,0 +1,269 @@
+//! Texts and stretches of them.
+
+use super::{Arc, Diagnostic, Range, fmt};
+
+/// A text that was read and the name that messages call it by.
+pub struct Source {
+    name: String,
+    text: String,
+    /// The byte offset at which each line starts.
+    line_starts: Vec<usize>,
+}
+
+impl Source {
+    /// The longest file that is read, in bytes: 4 MiB.
+    pub const MOST_BYTES: usize = 4 << 20;
+
+    /// A text and its name. A byte order mark at its start is not part of the text.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
+        let mut text = text.into();
+        if text.starts_with('\u{feff}') {
+            text.drain(..'\u{feff}'.len_utf8());
+        }
+        let bytes = text.as_bytes();
+        // As in YAML, a line ends with "\n", "\r\n" or "\r".
+        let ends_line = |i: usize| match bytes[i] {
+            b'\n' => true,
+            b'\r' => bytes.get(i + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        let line_starts =
+            std::iter::once(0).chain((0..bytes.len()).filter(|&i| ends_line(i)).map(|i| i + 1));
+        let line_starts = line_starts.collect();
+        Arc::new(Self {
+            name: name.into(),
+            text,
+            line_starts,
+        })
+    }
+
+    /// The text that the bytes of a file are.
+    ///
+    /// # Errors
+    ///
+    /// If they are more than 4 MiB, or not text in UTF-8.
+    pub fn read(name: impl Into<String>, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
+        let name = name.into();
+        if bytes.len() > Self::MOST_BYTES {
+            return Err(Self::too_large(&name));
+        }
+        let not_text = Diagnostic::error(format!("'{name}' is not a text file"));
+        if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+            return Err(not_text.hint("it seems to be UTF-16: save it as UTF-8"));
+        }
+        if bytes.contains(&0) {
+            return Err(not_text);
+        }
+        String::from_utf8(bytes)
+            .map(|text| Self::new(name, text))
+            .map_err(|error| {
+                let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+                let line = valid.split(|&byte| byte == b'\n').count();
+                not_text.hint(format!("line {line} is not UTF-8: save the file as UTF-8"))
+            })
+    }
+
+    fn too_large(name: &str) -> Diagnostic {
+        Diagnostic::error(format!("'{name}' is larger than 4 MiB"))
+    }
+
+    /// The mistake of being too long to be read, if it is.
+    pub(crate) fn check_size(&self) -> Result<(), Diagnostic> {
+        if self.text.len() > Self::MOST_BYTES {
+            Err(Self::too_large(&self.name))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The name that messages call the text by, such as the path of its file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The line and the column of a byte offset, both counted from 1, columns in characters.
+    #[must_use]
+    pub fn line_column(&self, offset: usize) -> (usize, usize) {
+        let offset = char_boundary(&self.text, offset);
+        let line = self.line_of(offset);
+        (
+            line + 1,
+            self.text[self.line_starts[line]..offset].chars().count() + 1,
+        )
+    }
+
+    /// The line that holds the byte offset, counted from 0.
+    pub(super) fn line_of(&self, offset: usize) -> usize {
+        self.line_starts.partition_point(|&start| start <= offset) - 1
+    }
+
+    /// The bytes of a line counted from 0, without its end.
+    pub(super) fn line_range(&self, line: usize) -> Range<usize> {
+        let start = self.line_starts[line];
+        let end = self
+            .line_starts
+            .get(line + 1)
+            .copied()
+            .unwrap_or(self.text.len());
+        let text = self.text[start..end].trim_end_matches(['\r', '\n']);
+        start..start + text.len()
+    }
+}
+
+impl fmt::Debug for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Source({}, {} bytes)", self.name, self.text.len())
+    }
+}
+
+/// The nearest start of a character at or before the byte offset.
+fn char_boundary(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+/// A stretch of a source. It always lies inside the text and never splits a character.
+#[derive(Clone)]
+pub struct Place {
+    source: Arc<Source>,
+    start: usize,
+    end: usize,
+}
+
+impl Place {
+    /// The bytes `range` of the source, moved inwards where they leave the text or split a
+    /// character.
+    #[must_use]
+    pub fn new(source: &Arc<Source>, range: Range<usize>) -> Self {
+        let start = char_boundary(&source.text, range.start);
+        let end = char_boundary(&source.text, range.end).max(start);
+        Self {
+            source: Arc::clone(source),
+            start,
+            end,
+        }
+    }
+
+    /// The source that this is a stretch of.
+    #[must_use]
+    pub fn source(&self) -> &Arc<Source> {
+        &self.source
+    }
+
+    /// The bytes of the source's text that it covers.
+    #[must_use]
+    pub fn range(&self) -> Range<usize> {
+        self.start..self.end
+    }
+
+    /// The line it starts in, counted from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.source.line_of(self.start) + 1
+    }
+
+    /// The column it starts at, counted from 1 in characters.
+    #[must_use]
+    pub fn column(&self) -> usize {
+        self.source.line_column(self.start).1
+    }
+
+    /// The text it covers.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.source.text[self.range()]
+    }
+
+    /// The stretch `range` of this place's own text, cut to it: the place of a mistake inside a
+    /// scalar.
+    #[must_use]
+    pub fn within(&self, range: Range<usize>) -> Self {
+        let offset = |byte: usize| self.start.saturating_add(byte).min(self.end);
+        Self::new(&self.source, offset(range.start)..offset(range.end))
+    }
+}
+
+impl PartialEq for Place {
+    fn eq(&self, other: &Self) -> bool {
+        let same_source = Arc::ptr_eq(&self.source, &other.source)
+            || (self.source.name == other.source.name && self.source.text == other.source.text);
+        self.range() == other.range() && same_source
+    }
+}
+
+impl fmt::Debug for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (line, column) = self.source.line_column(self.start);
+        write!(
+            f,
+            "{}:{line}:{column}+{}",
+            self.source.name,
+            self.end - self.start
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Place, Source};
+
+    #[test]
+    fn columns_are_characters_and_a_byte_order_mark_is_none() {
+        let source = Source::new("a", "\u{feff}äß: x\r\ny: z\rw\n");
+        assert_eq!(source.text(), "äß: x\r\ny: z\rw\n");
+        assert_eq!(source.line_column(0), (1, 1));
+        assert_eq!(source.line_column(6), (1, 5));
+        assert_eq!(source.line_column(9), (2, 1));
+        assert_eq!(source.line_column(14), (3, 1));
+        assert_eq!(source.line_column(16), (4, 1));
+        assert_eq!(source.line_column(usize::MAX), (4, 1));
+        assert_eq!(source.line_column(1), (1, 1));
+        assert_eq!(Source::new("a", "").line_column(0), (1, 1));
+    }
+
+    #[test]
+    fn places_stay_inside_the_text_and_between_characters() {
+        let source = Source::new("a", "äö: cos(ü)");
+        let place = Place::new(&source, 6..99);
+        assert_eq!(place.text(), "cos(ü)");
+        assert_eq!((place.line(), place.column()), (1, 5));
+        assert_eq!(place.within(4..5).text(), "");
+        assert_eq!(place.within(4..6).text(), "ü");
+        assert_eq!(place.within(6..usize::MAX).text(), ")");
+        assert_eq!(place.within(50..60).range(), 13..13);
+        let (start, end) = (5, 2);
+        assert_eq!(Place::new(&source, start..end).text(), "");
+        assert_eq!(format!("{place:?}"), "a:1:5+7");
+        assert_eq!(place, Place::new(&Source::new("a", "äö: cos(ü)"), 6..13));
+    }
+
+    #[test]
+    fn what_is_no_text_is_refused() {
+        let message = |bytes: &[u8]| {
+            let error = Source::read("a.yaml", bytes.to_vec()).expect_err("no text");
+            (
+                error.message().to_owned(),
+                error.hint_text().map(str::to_owned),
+            )
+        };
+        let not_text = "'a.yaml' is not a text file".to_owned();
+        assert_eq!(message(b"\x89PNG\0"), (not_text.clone(), None));
+        let hint = "line 2 is not UTF-8: save the file as UTF-8".to_owned();
+        assert_eq!(message(b"a: b\nc: \xe4\n"), (not_text.clone(), Some(hint)));
+        let hint = "it seems to be UTF-16: save it as UTF-8".to_owned();
+        assert_eq!(message(b"\xff\xfea\0"), (not_text, Some(hint)));
+        let large = vec![b'a'; (4 << 20) + 1];
+        assert_eq!(message(&large).0, "'a.yaml' is larger than 4 MiB");
+        assert!(Source::read("a.yaml", large[1..].to_vec()).is_ok());
+    }
+}

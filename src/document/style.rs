@@ -1,0 +1,159 @@
+//! `style` and `view`.
+
+use crate::expression::Scope;
+use crate::style::{Colour, Palette, Style, View, Width};
+
+use super::node::{Node, Value};
+use super::reader::Reader;
+
+pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
+    let mut style = Style::default();
+    let Some(node) = node else { return style };
+    let hint = "style: {stroke: black, width: 1.5}";
+    let Some(mut fields) = reader.fields(node, "a mapping of styles", hint) else {
+        return style;
+    };
+    style.stroke = fields
+        .take("stroke")
+        .and_then(|node| read_colour(reader, node));
+    style.fill = fields
+        .take("fill")
+        .and_then(|node| read_colour(reader, node));
+    style.background = fields
+        .take("background")
+        .and_then(|node| read_colour(reader, node));
+    if let Some(width) = fields.take("width") {
+        style.width = read_width(reader, width).unwrap_or(style.width);
+    }
+    if let Some(cap) = fields.take("cap") {
+        style.cap = reader.variant(cap, "cap").unwrap_or_default();
+    }
+    if let Some(join) = fields.take("join") {
+        style.join = reader.variant(join, "join").unwrap_or_default();
+    }
+    if let Some(color_by) = fields.take("color_by") {
+        style.color_by = reader
+            .variant(color_by, "way to colour")
+            .unwrap_or_default();
+    }
+    if let Some(palette) = fields.take("palette") {
+        style.palette = read_palette(reader, palette).unwrap_or_default();
+    }
+    reader.finish(fields, "a style");
+    style
+}
+
+/// A colour; `none` is none.
+fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
+    let Value::Text(text) = &node.value else {
+        if !matches!(node.value, Value::Null) {
+            reader.mismatch(
+                node,
+                "a colour",
+                "quote a colour that begins with #: \"#3b7ea1\"",
+            );
+        }
+        return None;
+    };
+    if text == "none" {
+        return None;
+    }
+    let colour = Colour::parse(text);
+    if colour.is_none() {
+        let hint = "a colour as CSS writes it: teal, \"#3b7ea1\", \"rgb(59, 126, 161)\"";
+        reader.error_with_hint(&node.place, format!("'{text}' is no colour"), hint);
+    }
+    colour
+}
+
+fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
+    if let Value::Mapping(_) = node.value {
+        let mut fields = reader.fields(node, "a width", "width: {relative: 0.1}")?;
+        let width = fields
+            .take("relative")
+            .and_then(|node| positive(reader, node));
+        reader.finish(fields, "a width");
+        return width.map(Width::Relative);
+    }
+    positive(reader, node).map(Width::Pixels)
+}
+
+/// A constant, not negative.
+fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
+    let value = constant(reader, node)?;
+    if value < 0.0 {
+        reader.error(&node.place, "this cannot be negative");
+        return None;
+    }
+    Some(value)
+}
+
+fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
+    let number = reader.number(node);
+    match number.value.compile(&Scope::new()) {
+        Ok(program) => program.as_constant(),
+        Err(error) => {
+            reader.error_with_hint(&number.place, error.message, "a number without parameters");
+            None
+        }
+    }
+}
+
+fn read_palette(reader: &mut Reader, node: &Node) -> Option<Palette> {
+    match &node.value {
+        Value::Text(name) => {
+            let palette = Palette::named(name);
+            if palette.is_err() {
+                let known = crate::diagnostic::did_you_mean(name, Palette::names());
+                let hint = known.unwrap_or_else(|| {
+                    format!(
+                        "one of: {}",
+                        Palette::names().collect::<Vec<_>>().join(", ")
+                    )
+                });
+                reader.error_with_hint(&node.place, format!("there is no palette '{name}'"), hint);
+            }
+            palette.ok()
+        }
+        Value::Sequence(entries) if !entries.is_empty() => {
+            let colours: Vec<_> = entries
+                .iter()
+                .filter_map(|entry| read_colour(reader, entry))
+                .collect();
+            Some(Palette::of_colours("", &colours))
+        }
+        _ => {
+            reader.mismatch(node, "a palette", "palette: viridis, or a list of colours");
+            None
+        }
+    }
+}
+
+pub(super) fn read_view(reader: &mut Reader, node: Option<&Node>) -> View {
+    let mut view = View::default();
+    let Some(node) = node else { return view };
+    let hint = "view: {window: [x, y, width, height], margin: 10}";
+    let Some(mut fields) = reader.fields(node, "a view", hint) else {
+        return view;
+    };
+    if let Some(window) = fields.take("window") {
+        let entries = reader.list(window, "a window", hint);
+        let numbers: Vec<_> = entries
+            .iter()
+            .filter_map(|entry| constant(reader, entry))
+            .collect();
+        match <[f64; 4]>::try_from(numbers) {
+            Ok(numbers) if numbers[2] > 0.0 && numbers[3] > 0.0 => view.window = Some(numbers),
+            _ => reader.error_with_hint(
+                &window.place,
+                "a window has a lower left corner, a width and a height above 0",
+                hint,
+            ),
+        }
+    }
+    if let Some(margin) = fields.take("margin") {
+        view.margin = positive(reader, margin).unwrap_or_default();
+    }
+    reader.finish(fields, "a view");
+    view
+}

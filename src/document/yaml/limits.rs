@@ -1,0 +1,106 @@
+//! How much a file may hold once its aliases are expanded.
+
+use crate::diagnostic::{Diagnostic, Place};
+use crate::document::node::{Node, Value};
+
+/// The deepest nesting of lists and mappings. Nodes are walked by recursion.
+pub(super) const MAX_DEPTH: usize = 64;
+/// Values, copies for aliases counted.
+const MAX_VALUES: usize = 250_000;
+/// Bytes of text in the copies for aliases.
+const MAX_COPIED: usize = 16 << 20;
+
+/// How large a node is.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Size {
+    values: usize,
+    bytes: usize,
+    depth: usize,
+}
+
+impl Size {
+    /// The size of a node and all it holds.
+    pub(super) fn of(node: &Node) -> Self {
+        let mut size = Self {
+            values: 1,
+            bytes: 0,
+            depth: 0,
+        };
+        match &node.value {
+            Value::Text(text) => size.bytes = text.len(),
+            Value::Sequence(items) => items.iter().for_each(|item| size.add_child(Self::of(item))),
+            Value::Mapping(entries) => entries.iter().for_each(|(key, value)| {
+                size.bytes += key.name.len();
+                size.add_child(Self::of(value));
+            }),
+            Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        }
+        size
+    }
+
+    fn add_child(&mut self, child: Self) {
+        self.values += child.values;
+        self.bytes += child.bytes;
+        self.depth = self.depth.max(child.depth + 1);
+    }
+}
+
+/// What has been read so far.
+#[derive(Default)]
+pub(super) struct Budget {
+    values: usize,
+    copied: usize,
+}
+
+impl Budget {
+    /// Counts a value that is read.
+    pub(super) fn value(&mut self, place: &Place) -> Result<(), Diagnostic> {
+        self.spend(1, place)
+    }
+
+    /// Counts a copy of a node, put inside `depth` collections.
+    pub(super) fn copy(
+        &mut self,
+        size: Size,
+        depth: usize,
+        place: &Place,
+    ) -> Result<(), Diagnostic> {
+        self.copied += size.bytes;
+        if self.copied > MAX_COPIED {
+            return Err(
+                Diagnostic::error("the aliases expand to more than 16 MiB of text")
+                    .at(place)
+                    .hint("write out less through '*' aliases"),
+            );
+        }
+        check_depth(depth + size.depth, place)?;
+        self.spend(size.values, place)
+    }
+
+    fn spend(&mut self, values: usize, place: &Place) -> Result<(), Diagnostic> {
+        self.values += values;
+        if self.values <= MAX_VALUES {
+            return Ok(());
+        }
+        Err(Diagnostic::error("the file holds more than 250,000 values")
+            .at(place)
+            .hint("each '*' alias counts as what it stands for"))
+    }
+}
+
+/// Refuses what is nested too deep.
+pub(super) fn check_depth(depth: usize, place: &Place) -> Result<(), Diagnostic> {
+    if depth <= MAX_DEPTH {
+        Ok(())
+    } else {
+        Err(too_deep(place))
+    }
+}
+
+/// The mistake of nesting too deep.
+pub(super) fn too_deep(place: &Place) -> Diagnostic {
+    Diagnostic::error(format!(
+        "lists and mappings are nested more than {MAX_DEPTH} deep"
+    ))
+    .at(place)
+}

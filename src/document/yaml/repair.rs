@@ -1,0 +1,183 @@
+//! Mistakes behind which the likely meaning can be read on: commas inside expressions, colours that
+//! are comments, keys that are there twice, merge keys that merge nothing.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
+use crate::document::node::{Key, Node, Value};
+
+/// An item of a list or an entry of a mapping as it was read.
+pub(super) struct Item {
+    /// The key of an entry, and whether it is written without quotes.
+    pub(super) key: Option<(Key, bool)>,
+    pub(super) value: Node,
+    /// Whether the value is written without quotes.
+    pub(super) plain: bool,
+}
+
+impl Item {
+    /// The piece of text that this is if it is the rest of a value that a comma cut: a plain item of
+    /// a list, or a plain key without a value.
+    fn rest(&self) -> Option<&Place> {
+        match &self.key {
+            None => self.plain.then_some(&self.value.place),
+            Some((key, true)) if self.value.place.text().is_empty() => Some(&key.place),
+            Some(_) => None,
+        }
+    }
+}
+
+/// Pieces that a value cut at commas is looked for in.
+const MAX_PIECES: usize = 16;
+
+/// Joins the pieces of expressions such as `uniform(-20, 20)` that stand in flow style without
+/// quotes, where YAML ends the value at the comma, and reports each.
+pub(super) fn join_at_commas(items: &mut Vec<Item>, source: &Arc<Source>, found: &mut Diagnostics) {
+    let mut joined = Vec::with_capacity(items.len());
+    let mut rest = std::mem::take(items).into_iter();
+    while let Some(mut item) = rest.next() {
+        if let Some((pieces, end)) = cut_at_commas(&item, rest.as_slice()) {
+            let place = Place::new(source, item.value.place.range().start..end);
+            found.push(
+                Diagnostic::error(format!("the comma splits '{}'", short(place.text())))
+                    .at(&place)
+                    .hint(
+                        "in YAML's flow style a comma ends the value: put the expression in \
+                         quotes, or on a line of its own",
+                    ),
+            );
+            item.value = Node {
+                value: Value::Text(place.text().to_owned()),
+                place,
+            };
+            rest.by_ref().take(pieces).for_each(drop);
+        }
+        joined.push(item);
+    }
+    *items = joined;
+}
+
+/// How many of the items that follow belong to the value of this one, whose brackets they close,
+/// and the byte where they end.
+fn cut_at_commas(item: &Item, following: &[Item]) -> Option<(usize, usize)> {
+    let Value::Text(text) = &item.value.value else {
+        return None;
+    };
+    let mut open = open_brackets(text);
+    if !item.plain || open <= 0 {
+        return None;
+    }
+    for (index, piece) in following.iter().take(MAX_PIECES).enumerate() {
+        let place = piece.rest()?;
+        open += open_brackets(place.text());
+        if open <= 0 {
+            return (open == 0).then_some((index + 1, place.range().end));
+        }
+    }
+    None
+}
+
+fn open_brackets(text: &str) -> isize {
+    text.bytes().fold(0, |open, byte| match byte {
+        b'(' => open + 1,
+        b')' => open - 1,
+        _ => open,
+    })
+}
+
+/// The text, or its beginning, for a message of one line.
+pub(super) fn short(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// A value that is missing because it is a colour such as `#ff0000`, which YAML takes for a comment.
+pub(super) fn color_read_as_comment(nothing: &Place) -> Option<(Diagnostic, Node)> {
+    let source = nothing.source();
+    let text = source.text();
+    let at = nothing.range().start;
+    let start = text[..at].rfind(['\n', '\r']).map_or(0, |end| end + 1);
+    let line = text[start..].lines().next()?;
+    // The parser puts what is missing before or behind the comment.
+    let (before, comment) = line.split_once(" #")?;
+    let digits = comment.split_whitespace().next()?;
+    if !matches!(digits.len(), 3 | 4 | 6 | 8)
+        || !digits.bytes().all(|byte| byte.is_ascii_hexdigit())
+        || !before.trim_end().ends_with([':', '-'])
+    {
+        return None;
+    }
+    let start = start + before.len() + 1;
+    let place = Place::new(source, start..start + 1 + digits.len());
+    let color = place.text();
+    let diagnostic = Diagnostic::error(format!("'{color}' is read as a comment"))
+        .at(&place)
+        .hint(format!("put it in quotes: \"{color}\""));
+    Some((
+        diagnostic,
+        Node {
+            value: Value::Text(color.to_owned()),
+            place,
+        },
+    ))
+}
+
+/// The entries of a mapping, each key once and merge keys merged where they stand: the mapping's
+/// own keys come before merged ones, and of merged ones the first.
+pub(super) fn entries(items: Vec<Item>, found: &mut Diagnostics) -> Vec<(Key, Node)> {
+    let mut lines: HashMap<String, usize> = HashMap::with_capacity(items.len());
+    let mut own = Vec::with_capacity(items.len());
+    for Item { key, value, .. } in items {
+        let Some((key, plain)) = key else { continue };
+        if let Some(line) = lines.get(&key.name) {
+            let message = format!("the key '{}' is already in line {line}", short(&key.name));
+            found.push(
+                Diagnostic::error(message)
+                    .at(&key.place)
+                    .hint("keep one of the two"),
+            );
+        } else {
+            lines.insert(key.name.clone(), key.place.line());
+            own.push((key, plain, value));
+        }
+    }
+    let mut entries = Vec::with_capacity(own.len());
+    for (key, plain, value) in own {
+        if plain && key.name == "<<" {
+            for (key, value) in merged(value, found) {
+                if !lines.contains_key(&key.name) {
+                    lines.insert(key.name.clone(), key.place.line());
+                    entries.push((key, value));
+                }
+            }
+        } else {
+            entries.push((key, value));
+        }
+    }
+    entries
+}
+
+fn merged(value: Node, found: &mut Diagnostics) -> Vec<(Key, Node)> {
+    let mut refuse = |node: &Node| {
+        found.push(
+            Diagnostic::error(format!("'<<' merges mappings, and this is {}", node.kind()))
+                .at(&node.place)
+                .hint("write '<<: *name' for a mapping that is marked with '&name'"),
+        );
+        Vec::new()
+    };
+    match value.value {
+        Value::Mapping(entries) => entries,
+        Value::Sequence(nodes) => nodes
+            .into_iter()
+            .flat_map(|node| match node.value {
+                Value::Mapping(entries) => entries,
+                _ => refuse(&node),
+            })
+            .collect(),
+        _ => refuse(&value),
+    }
+}

@@ -1,0 +1,282 @@
+//! The parser's errors in plain words, with what would mend them.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use serde_yaml::granit_parser::{ErrorKind, ScanError};
+
+use super::limits::too_deep;
+use crate::diagnostic::{Diagnostic, Place, Source};
+use crate::document::node::{Node, Value};
+
+/// Refuses the control characters that YAML does, and with them most files that are no text.
+pub(super) fn check_characters(source: &Arc<Source>) -> Result<(), Diagnostic> {
+    let refused = |c: &(usize, char)| c.1.is_control() && !"\t\n\r\u{85}".contains(c.1);
+    let Some((start, character)) = source.text().char_indices().find(refused) else {
+        return Ok(());
+    };
+    let message = match character {
+        '\0' => format!(
+            "'{}' is not a text file: it holds a zero byte",
+            source.name()
+        ),
+        _ => format!(
+            "the control character U+{:04X} is not allowed",
+            u32::from(character)
+        ),
+    };
+    Err(Diagnostic::error(message).at(&Place::new(source, start..start + character.len_utf8())))
+}
+
+/// A file without a document.
+pub(super) fn empty(source: &Arc<Source>) -> Diagnostic {
+    let text = source.text();
+    let message = if text.contains('#') {
+        "the file holds only comments"
+    } else {
+        "the file is empty"
+    };
+    Diagnostic::error(message)
+        .at(&Place::new(source, 0..0))
+        .hint("a file holds 'key: value' lines, such as 'title: Koch curve'")
+}
+
+/// A second document.
+pub(super) fn second_document(place: &Place) -> Diagnostic {
+    Diagnostic::error("a second document starts here")
+        .at(place)
+        .hint("a file holds one document: remove the '---', or put the rest in a file of its own")
+}
+
+/// A tag.
+pub(super) fn tag(tag: &str, place: &Place) -> Diagnostic {
+    Diagnostic::error(format!(
+        "tags such as '{}' are not used here",
+        super::repair::short(tag)
+    ))
+    .at(place)
+    .hint("leave it out, or put text that starts with '!' in quotes")
+}
+
+/// An alias in what it stands for.
+pub(super) fn alias_inside_itself(place: &Place) -> Diagnostic {
+    Diagnostic::error(format!(
+        "'{}' stands inside of what it refers to",
+        place.text()
+    ))
+    .at(place)
+}
+
+/// An entry whose key is no text.
+pub(super) fn no_key(key: &Node) -> Diagnostic {
+    let message = match key.value {
+        Value::Sequence(_) | Value::Mapping(_) => format!("{} cannot be a key", key.kind()),
+        _ => "this entry has no key".to_owned(),
+    };
+    Diagnostic::error(message)
+        .at(&key.place)
+        .hint("a key is text, as in 'key: value'")
+}
+
+/// A mistake of syntax; `last` is the scalar read before it.
+pub(super) fn translate(
+    error: &ScanError,
+    source: &Arc<Source>,
+    last: &Range<usize>,
+) -> Diagnostic {
+    let text = source.text();
+    let at = error
+        .marker()
+        .byte_offset()
+        .unwrap_or(text.len())
+        .min(text.len());
+    let rest = text.get(at..).unwrap_or_default();
+    let char_len = rest
+        .chars()
+        .next()
+        .filter(|c| !"\r\n".contains(*c))
+        .map_or(0, char::len_utf8);
+    let place = Place::new(source, at..at + char_len);
+    let (message, hint) = match error.kind() {
+        ErrorKind::RecursionLimitExceeded => return too_deep(&place),
+        ErrorKind::UnknownAnchor | ErrorKind::MissingAnchorOrAliasName => {
+            let word = rest
+                .split([' ', ',', ']', '}', '\r', '\n'])
+                .next()
+                .unwrap_or_default();
+            return Diagnostic::error(format!("nothing is marked for '{word}' to refer to"))
+                .at(&Place::new(source, at..at + word.len()))
+                .hint("put text that starts with '*' or '&' in quotes");
+        }
+        ErrorKind::UndeclaredTagHandle => {
+            let word = rest.split_whitespace().next().unwrap_or_default();
+            return tag(word, &Place::new(source, at..at + word.len()));
+        }
+        ErrorKind::UnclosedFlowCollection { open } => {
+            let hint = match open {
+                _ if comment_in_line(rest) => COMMENT_HINT,
+                '[' => "close it with ']'",
+                _ => "close it with '}'",
+            };
+            (format!("this '{open}' is never closed"), hint)
+        }
+        ErrorKind::MismatchedFlowCollectionEnd { open, close } => (
+            format!("this '{open}' is closed by a '{close}'"),
+            "'[' goes with ']' and '{' with '}'",
+        ),
+        ErrorKind::MisplacedFlowCollectionEnd => (
+            format!("this '{}' closes nothing", place.text()),
+            "remove it, or put the text that holds it in quotes",
+        ),
+        ErrorKind::ExpectedFlowMappingSeparator => separator('}', last, source),
+        ErrorKind::ExpectedFlowSequenceSeparator => separator(']', last, source),
+        ErrorKind::UnclosedQuotedScalar
+        | ErrorKind::InvalidQuotedScalarIndent
+        | ErrorKind::DocumentIndicatorInQuotedScalar => return open_quote(&place, last),
+        ErrorKind::InvalidTrailingSingleQuotedScalar
+        | ErrorKind::InvalidTrailingDoubleQuotedScalar => (
+            "something follows the closing quote".into(),
+            "put all of the text inside the quotes",
+        ),
+        ErrorKind::TabInBlockIndentation
+        | ErrorKind::TabInIndentation
+        | ErrorKind::TabNotAllowed
+        | ErrorKind::TabAtBlockScalarStart
+        | ErrorKind::InvalidBlockEntryWhitespace
+        | ErrorKind::TabInPlainScalar => return tab(source, at),
+        ErrorKind::MappingValueNotAllowed => return colon(source, at, last),
+        ErrorKind::ExpectedBlockSequenceEntry => (
+            "an entry of the list is expected here".into(),
+            "the entries of a list start with '- ' in the same column",
+        ),
+        ErrorKind::ExpectedBlockMappingKey => (
+            "a key is expected here".into(),
+            "the keys of a mapping start in the same column; text with brackets or quotes in it \
+             needs quotes around it",
+        ),
+        ErrorKind::InvalidIndentation | ErrorKind::InvalidFlowScalarIndent => (
+            "the indentation is wrong here".into(),
+            "indent with two spaces for each level",
+        ),
+        ErrorKind::BlockSequenceEntryNotAllowed => (
+            "a list cannot start here".into(),
+            "start it on the next line, or write it as [a, b]; text that starts with '- ' needs \
+             quotes",
+        ),
+        ErrorKind::UnexpectedCharacter { character } => (
+            format!("text cannot start with '{character}'"),
+            "put the text in quotes",
+        ),
+        ErrorKind::SimpleKeyExpected | ErrorKind::InvalidSimpleKey => (
+            "this line has no ':'".into(),
+            "a key ends with ': ' on its own line",
+        ),
+        ErrorKind::InvalidColonPlacement => (
+            format!("a '{}' is not expected here", place.text()),
+            "is a bracket before it open?",
+        ),
+        ErrorKind::UnknownQuotedScalarEscape
+        | ErrorKind::InvalidQuotedScalarHexEscape
+        | ErrorKind::InvalidUnicodeEscape => (
+            "the text in quotes holds a '\\' that means nothing".into(),
+            "write '\\\\' for a backslash, or use single quotes",
+        ),
+        ErrorKind::CommentNotSeparated => (
+            "a comment starts right behind a value".into(),
+            "put a space before the '#'",
+        ),
+        ErrorKind::CommentInterceptedScalar => {
+            ("a comment stands inside of a text".into(), COMMENT_HINT)
+        }
+        kind => (
+            format!("this is not YAML: {kind}"),
+            "is a quote or bracket missing?",
+        ),
+    };
+    Diagnostic::error(message).at(&place).hint(hint)
+}
+
+const COMMENT_HINT: &str =
+    "a '#' behind a space starts a comment: put text that holds one in quotes";
+
+fn comment_in_line(rest: &str) -> bool {
+    rest.lines().next().is_some_and(|line| line.contains(" #"))
+}
+
+fn separator(close: char, last: &Range<usize>, source: &Arc<Source>) -> (String, &'static str) {
+    let message = format!("a ',' or '{close}' is expected here");
+    if spans_lines(source, last) {
+        return (
+            message,
+            "a bracket before it may be open: close it where the list or mapping ends",
+        );
+    }
+    (
+        message,
+        "commas stand between the entries; text that holds ': ' or brackets needs quotes",
+    )
+}
+
+/// A quote that is never closed. The parser says where it gave up; the quote itself is the first
+/// one behind the last scalar, unless other text comes between.
+fn open_quote(gave_up: &Place, last: &Range<usize>) -> Diagnostic {
+    let source = gave_up.source();
+    let behind = source
+        .text()
+        .get(last.end..gave_up.range().start)
+        .unwrap_or_default();
+    let quote = behind.find(['"', '\'']).filter(|&quote| {
+        behind[..quote]
+            .chars()
+            .all(|c| c.is_whitespace() || ":,-[]{}".contains(c))
+    });
+    let hint = "close it where the text ends";
+    match quote.map(|quote| last.end + quote) {
+        Some(start) => Diagnostic::error("this quote is never closed")
+            .at(&Place::new(source, start..start + 1))
+            .hint(hint),
+        None => Diagnostic::error("a quote that is opened above is still open here")
+            .at(gave_up)
+            .hint(hint),
+    }
+}
+
+fn tab(source: &Arc<Source>, at: usize) -> Diagnostic {
+    let bytes = source.text().as_bytes();
+    let is_tab = |offset: usize| bytes.get(offset) == Some(&b'\t');
+    let start = if !is_tab(at) && at > 0 && is_tab(at - 1) {
+        at - 1
+    } else {
+        at
+    };
+    Diagnostic::error("a tab is used as indentation")
+        .at(&Place::new(source, start..start + 1))
+        .hint("YAML is indented with spaces: use two for each level")
+}
+
+/// A ':' where no key can be: two in a line, or a line that was read as part of the one before.
+fn colon(source: &Arc<Source>, at: usize, last: &Range<usize>) -> Diagnostic {
+    if spans_lines(source, last) && last.end == at {
+        let (line, _) = source.line_column(last.start);
+        return Diagnostic::error(format!("this line continues the text of line {line}"))
+            .at(&Place::new(source, line_start(source, at)..at))
+            .hint("check its indentation, and that the line before has a ': ' with the space");
+    }
+    Diagnostic::error("a second ':' in a line")
+        .at(&Place::new(source, at..at + 1))
+        .hint("put text that holds ': ' in quotes")
+}
+
+fn spans_lines(source: &Arc<Source>, range: &Range<usize>) -> bool {
+    source
+        .text()
+        .get(range.clone())
+        .is_some_and(|text| text.contains(['\n', '\r']))
+}
+
+/// The first character of a line that is not indentation.
+fn line_start(source: &Arc<Source>, at: usize) -> usize {
+    let before = source.text().get(..at).unwrap_or_default();
+    let line = before.rsplit(['\n', '\r']).next().unwrap_or_default();
+    at - line.trim_start().len()
+}

@@ -1,0 +1,5 @@
+//! Elements as tables, for other programs.
+
+mod table;
+
+pub use table::{Format, write};

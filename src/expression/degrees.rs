@@ -1,0 +1,99 @@
+//! Trigonometry in degrees, exact where the value is, and the same on every machine.
+//!
+//! Angles are reduced without error modulo 360 and then to an octant before they become radians.
+//! Hence multiples of 90 degrees give exactly 0 and ±1, `sin(30)` is 0.5, `sin(45) == cos(45)`,
+//! `tan(45)` is 1, and `sin(x) == cos(90 - x)` to the bit wherever `90 - x` is exact. Elsewhere the
+//! error is below two units in the last place. The inverse functions undo every whole degree that
+//! they can reach: `asin(sin(17))` is 17.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// Sine of `x` degrees.
+pub(crate) fn sin(x: f64) -> f64 {
+    let turn = x % 360.0;
+    let (angle, sign) = half_turn(turn.abs());
+    let sign = if turn < 0.0 { -sign } else { sign };
+    let angle = if angle > 90.0 { 180.0 - angle } else { angle };
+    sign * quarter(angle).0 + 0.0
+}
+
+/// Cosine of `x` degrees.
+pub(crate) fn cos(x: f64) -> f64 {
+    let (angle, sign) = half_turn((x % 360.0).abs());
+    if angle > 90.0 {
+        -sign * quarter(180.0 - angle).1 + 0.0
+    } else {
+        sign * quarter(angle).1 + 0.0
+    }
+}
+
+/// Tangent of `x` degrees; infinite at odd multiples of 90.
+pub(crate) fn tan(x: f64) -> f64 {
+    sin(x) / cos(x) + 0.0
+}
+
+/// Arc sine in degrees, from -90 to 90; NaN outside -1 to 1.
+pub(crate) fn asin(x: f64) -> f64 {
+    whole(libm::asin(x).to_degrees(), x, sin)
+}
+
+/// Arc cosine in degrees, from 0 to 180; NaN outside -1 to 1.
+pub(crate) fn acos(x: f64) -> f64 {
+    whole(libm::acos(x).to_degrees(), x, cos)
+}
+
+/// Arc tangent in degrees, from -90 to 90.
+pub(crate) fn atan(x: f64) -> f64 {
+    whole(libm::atan(x).to_degrees(), x, tan)
+}
+
+/// The direction of the point (`x`, `y`) in degrees counterclockwise from the x axis, above -180
+/// and up to 180; 0 for the origin.
+pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+    if x.is_nan() || y.is_nan() {
+        return f64::NAN;
+    }
+    let angle = if y == 0.0 { 0.0 } else { atan((y / x).abs()) };
+    let upper = if x < 0.0 { 180.0 - angle } else { angle };
+    if y < 0.0 { -upper } else { upper }
+}
+
+/// An angle from 0 up to 360 as one below 180 and the sign that sine and cosine take from it.
+fn half_turn(angle: f64) -> (f64, f64) {
+    if angle >= 180.0 {
+        (angle - 180.0, -1.0)
+    } else {
+        (angle, 1.0)
+    }
+}
+
+/// Sine and cosine of an angle from 0 to 90.
+fn quarter(angle: f64) -> (f64, f64) {
+    if angle > 45.0 {
+        let (sin, cos) = octant(90.0 - angle);
+        (cos, sin)
+    } else {
+        octant(angle)
+    }
+}
+
+/// Sine and cosine of an angle from 0 to 45.
+fn octant(angle: f64) -> (f64, f64) {
+    if angle == 45.0 {
+        (FRAC_1_SQRT_2, FRAC_1_SQRT_2)
+    } else if angle == 30.0 {
+        (0.5, 3.0_f64.sqrt() / 2.0)
+    } else {
+        libm::sincos(angle.to_radians())
+    }
+}
+
+/// The whole degree next to `angle` if `function` takes it to `value` exactly, else `angle`.
+fn whole(angle: f64, value: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let nearest = angle.round();
+    if function(nearest) == value {
+        nearest
+    } else {
+        angle
+    }
+}

@@ -1,0 +1,108 @@
+//! The table of functions.
+
+use super::operator::{One, Two};
+
+/// A function of the language.
+#[derive(Debug)]
+pub(super) struct Function {
+    pub(super) name: &'static str,
+    /// The arguments, as they are named in hints.
+    pub(super) arguments: &'static str,
+    pub(super) meaning: Meaning,
+}
+
+/// What a call becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    One(One),
+    Two(Two),
+    /// One or more arguments, put together from the left.
+    Fold(Two),
+    If,
+    Distribution,
+}
+
+const fn function(name: &'static str, arguments: &'static str, meaning: Meaning) -> Function {
+    Function {
+        name,
+        arguments,
+        meaning,
+    }
+}
+
+const fn one(name: &'static str, operation: One) -> Function {
+    function(name, "x", Meaning::One(operation))
+}
+
+pub(super) static FUNCTIONS: [Function; 28] = [
+    one("sqrt", One::Sqrt),
+    one("cbrt", One::Cbrt),
+    one("abs", One::Abs),
+    one("sign", One::Sign),
+    one("floor", One::Floor),
+    one("ceil", One::Ceil),
+    one("round", One::Round),
+    function("min", "a, b, ...", Meaning::Fold(Two::Min)),
+    function("max", "a, b, ...", Meaning::Fold(Two::Max)),
+    function("hypot", "x, y", Meaning::Two(Two::Hypot)),
+    one("exp", One::Exp),
+    one("log", One::Ln),
+    one("ln", One::Ln),
+    one("log2", One::Log2),
+    one("log10", One::Log10),
+    one("sin", One::Sin),
+    one("cos", One::Cos),
+    one("tan", One::Tan),
+    one("asin", One::Asin),
+    one("acos", One::Acos),
+    one("atan", One::Atan),
+    function("atan2", "y, x", Meaning::Two(Two::Atan2)),
+    one("odd", One::Odd),
+    one("even", One::Even),
+    function("if", "condition, then, otherwise", Meaning::If),
+    function("uniform", "a, b", Meaning::Distribution),
+    function("normal", "mean, deviation", Meaning::Distribution),
+    function("choice", "a, b, ...", Meaning::Distribution),
+];
+
+impl Function {
+    pub(super) fn find(name: &str) -> Option<&'static Self> {
+        FUNCTIONS.iter().find(|function| function.name == name)
+    }
+
+    /// How a call of it looks.
+    pub(super) fn signature(&self) -> String {
+        format!("{}({})", self.name, self.arguments)
+    }
+
+    /// Whether it can have this many arguments.
+    pub(super) fn accepts(&self, count: usize) -> bool {
+        if self.is_variadic() {
+            count >= 1
+        } else {
+            count == self.arity()
+        }
+    }
+
+    /// What is wrong with this many arguments.
+    pub(super) fn arity_message(&self, count: usize) -> String {
+        let (least, arity) = if self.is_variadic() {
+            ("at least ", 1)
+        } else {
+            ("", self.arity())
+        };
+        let plural = if arity == 1 { "" } else { "s" };
+        format!(
+            "{} takes {least}{arity} argument{plural}, not {count}",
+            self.name
+        )
+    }
+
+    fn is_variadic(&self) -> bool {
+        self.arguments.ends_with("...")
+    }
+
+    fn arity(&self) -> usize {
+        self.arguments.split(',').count()
+    }
+}

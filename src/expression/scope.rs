@@ -1,0 +1,109 @@
+//! Names: which may be used, which are reserved, and what to say about the rest.
+
+use std::collections::BTreeMap;
+
+use super::functions::{FUNCTIONS, Function};
+use super::{ExpressionError, Range};
+
+const CONSTANTS: [(&str, f64); 3] = [
+    ("pi", std::f64::consts::PI),
+    ("phi", 1.618_033_988_749_895),
+    ("e", std::f64::consts::E),
+];
+
+const KEYWORDS: [&str; 5] = ["and", "or", "not", "true", "false"];
+
+/// Whether a name belongs to the language, so that nothing else may be called that: a constant, a
+/// function, a distribution or a keyword.
+#[must_use]
+pub fn is_reserved(name: &str) -> bool {
+    KEYWORDS.contains(&name) || constant(name).is_some() || Function::find(name).is_some()
+}
+
+/// The value of `pi`, `phi` (the golden ratio, 1.618…) or `e`.
+pub(super) fn constant(name: &str) -> Option<f64> {
+    let found = CONSTANTS.iter().find(|(constant, _)| *constant == name);
+    found.map(|(_, value)| *value)
+}
+
+/// The names that an expression may use beside the language's own.
+///
+/// A [reserved](is_reserved) name keeps its meaning even if it is added here.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scope {
+    names: BTreeMap<String, Named>,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Named {
+    Constant(f64),
+    Slot(usize),
+}
+
+impl Scope {
+    /// A scope without names.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a name for a value, in place of what had this name before.
+    pub fn constant(&mut self, name: &str, value: f64) {
+        self.names.insert(name.to_owned(), Named::Constant(value));
+    }
+
+    /// Adds a name for the value that [`Program::eval`](super::Program::eval) finds at index
+    /// `slot`, in place of what had this name before.
+    pub fn variable(&mut self, name: &str, slot: usize) {
+        self.names.insert(name.to_owned(), Named::Slot(slot));
+    }
+
+    /// Whether this name has been added.
+    #[must_use]
+    pub fn contains(&self, name: &str) -> bool {
+        self.names.contains_key(name)
+    }
+
+    pub(super) fn get(&self, name: &str) -> Option<Named> {
+        constant(name)
+            .map(Named::Constant)
+            .or_else(|| self.names.get(name).copied())
+    }
+
+    pub(super) fn unknown(&self, name: &str, range: Range<usize>) -> ExpressionError {
+        let own = self.names.keys().map(String::as_str);
+        let constants = CONSTANTS.iter().map(|(name, _)| *name);
+        let known: Vec<&str> = own.chain(constants).collect();
+        let words = KEYWORDS.iter().copied();
+        let functions = FUNCTIONS.iter().map(|function| function.name);
+        let candidates = known.iter().copied().chain(words).chain(functions);
+        let hint = nearest(name, candidates).map_or_else(
+            || format!("what can be used here: {}", known.join(", ")),
+            |nearest| format!("did you mean '{nearest}'?"),
+        );
+        ExpressionError::new(range, format!("unknown name '{name}'")).hint(hint)
+    }
+}
+
+/// The candidate that `name` is most likely a misspelling of.
+pub(super) fn nearest<'a>(
+    name: &str,
+    candidates: impl Iterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    // A third of the letters wrong is no longer the same word.
+    let allowed = match name.len() {
+        0..=1 => 0,
+        2..=5 => 1,
+        _ => 2,
+    };
+    candidates
+        .map(|word| {
+            let distance = strsim::damerau_levenshtein(&lower, &word.to_lowercase());
+            (distance, word)
+        })
+        .filter(|&(distance, word)| distance == 0 || distance <= allowed && word.len() > 1)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, word)| word)
+}

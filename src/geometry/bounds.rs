@@ -1,0 +1,81 @@
+use glam::DVec2;
+
+/// A box with sides along the axes; empty until a point is added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    min: DVec2,
+    max: DVec2,
+}
+
+impl Bounds {
+    /// The box of no points.
+    pub const EMPTY: Self = Self {
+        min: DVec2::INFINITY,
+        max: DVec2::NEG_INFINITY,
+    };
+
+    /// The box between two corners.
+    #[must_use]
+    pub fn new(a: DVec2, b: DVec2) -> Self {
+        Self {
+            min: a.min(b),
+            max: a.max(b),
+        }
+    }
+
+    /// The lower left corner.
+    #[must_use]
+    pub fn min(&self) -> DVec2 {
+        self.min
+    }
+
+    /// The upper right corner.
+    #[must_use]
+    pub fn max(&self) -> DVec2 {
+        self.max
+    }
+
+    /// Width and height; zero in both if the box is empty.
+    #[must_use]
+    pub fn size(&self) -> DVec2 {
+        if self.is_empty() {
+            DVec2::ZERO
+        } else {
+            self.max - self.min
+        }
+    }
+
+    /// Whether no point has been added.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.min.x > self.max.x || self.min.y > self.max.y
+    }
+
+    /// Whether all four coordinates are finite numbers and the box holds a point.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// Makes room for a point.
+    #[inline]
+    pub fn add(&mut self, point: DVec2) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    /// The box with `by` more on every side.
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        Self {
+            min: self.min - DVec2::splat(by),
+            max: self.max + DVec2::splat(by),
+        }
+    }
+}
+
+impl Extend<DVec2> for Bounds {
+    fn extend<I: IntoIterator<Item = DVec2>>(&mut self, points: I) {
+        points.into_iter().for_each(|point| self.add(point));
+    }
+}

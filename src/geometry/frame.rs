@@ -1,0 +1,76 @@
+use glam::{DAffine2, DMat2, DVec2};
+
+use super::Direction;
+
+/// Where an element stands: the map from the unit frame, and the direction along the element's path.
+///
+/// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of
+/// traversal p0 and p1 and the direction d, the map is M(z) = p0 + (p1 − p0)·τ_d(z).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The map from the unit frame to the plane.
+    pub map: DAffine2,
+    /// The product of the directions along the path.
+    pub direction: Direction,
+}
+
+impl Frame {
+    /// The unit frame itself.
+    pub const UNIT: Self = Self {
+        map: DAffine2::IDENTITY,
+        direction: Direction::Normal,
+    };
+
+    /// The frame of an element that runs from `from` to `to`, as listed, with a direction.
+    #[must_use]
+    pub fn between(from: DVec2, to: DVec2, direction: Direction) -> Self {
+        Self {
+            map: placement(from, to, direction),
+            direction,
+        }
+    }
+
+    /// The frame of an element that stands at `inner` in this frame's unit frame.
+    #[inline]
+    #[must_use]
+    pub fn compose(&self, inner: &Self) -> Self {
+        Self {
+            map: self.map * inner.map,
+            direction: self.direction * inner.direction,
+        }
+    }
+
+    /// The first and the last point of traversal, p0 and p1.
+    #[inline]
+    #[must_use]
+    pub fn ends(&self) -> [DVec2; 2] {
+        let origin = self.map.translation;
+        let unit = origin + self.map.matrix2.x_axis;
+        if self.direction.is_reversed() {
+            [unit, origin]
+        } else {
+            [origin, unit]
+        }
+    }
+
+    /// |p1 − p0|.
+    #[inline]
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.map.matrix2.x_axis.length()
+    }
+}
+
+/// The similarity z → from + (to − from)·τ_d(z) that puts an element of a generator into place.
+#[must_use]
+pub fn placement(from: DVec2, to: DVec2, direction: Direction) -> DAffine2 {
+    let along = to - from;
+    let across = along.perp();
+    let (x_axis, y_axis, origin) = match direction {
+        Direction::Normal => (along, across, from),
+        Direction::YReflected => (along, -across, from),
+        Direction::XReflected => (-along, across, to),
+        Direction::BothReflected => (-along, -across, to),
+    };
+    DAffine2::from_mat2_translation(DMat2::from_cols(x_axis, y_axis), origin)
+}

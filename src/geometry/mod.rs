@@ -1,0 +1,14 @@
+//! Points, directions, frames and boxes of the plane.
+//!
+//! The plane has x to the right and y up; positive angles turn counter-clockwise. Points are
+//! [`glam::DVec2`], affine maps [`glam::DAffine2`] (they act on column vectors, so `f * g` applies
+//! `g` first).
+
+mod bounds;
+mod direction;
+mod frame;
+
+pub use bounds::Bounds;
+pub use direction::Direction;
+pub use frame::{Frame, placement};
+pub use glam::{DAffine2, DMat2, DVec2};

@@ -1,0 +1,450 @@
+//! From a rule to its graph: the dependence on the moment becomes more objects.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+use crate::geometry::DVec2;
+use crate::rule::draw::Path;
+use crate::rule::{Moment, Part, Placement, Rule, Selection};
+
+use super::state::{Class, Dependences, State};
+use super::{Alternative, Chain, Graph, Object, Production, Replacement};
+
+/// A graph with more objects than this is not resolved further: its indices are counted instead.
+const MOST_OBJECTS: usize = 200_000;
+
+/// A rule that cannot be grown.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompileError {
+    /// A generator has a point that is not finite.
+    #[error(
+        "generator '{generator}' has a point that is not finite where i = {index}, age = {age}, \
+         step = {step}, length = {length}"
+    )]
+    NotFinite {
+        /// The generator's name.
+        generator: String,
+        /// The element's rank in its fractal (modulo m, where only that matters).
+        index: f64,
+        /// The age of its fractal.
+        age: f64,
+        /// The number of the approximant that was being replaced.
+        step: f64,
+        /// Its length relative to the initiator's.
+        length: f64,
+    },
+}
+
+impl CompileError {
+    pub(crate) fn not_finite(generator: &str, moment: &Moment) -> Self {
+        Self::NotFinite {
+            generator: generator.into(),
+            index: moment.index,
+            age: moment.age,
+            step: moment.step,
+            length: moment.length,
+        }
+    }
+}
+
+impl Graph {
+    /// Compiles a rule to its graph, resolved for at least `steps` steps.
+    ///
+    /// # Errors
+    ///
+    /// If a generator yields points that are not finite within these steps.
+    pub fn compile(rule: &Arc<Rule>, steps: u32) -> Result<Self, CompileError> {
+        let dependences = Dependences::of(rule);
+        if !dependences.index_is_free {
+            match Compiler::new(rule, dependences, steps).run() {
+                Err(Stop::Irregular) => {}
+                Err(Stop::Error(error)) => return Err(error),
+                Ok(graph) => return Ok(graph),
+            }
+        }
+        let counted = Dependences {
+            age: false,
+            step: false,
+            length: false,
+            modulus: 1,
+            index_is_free: true,
+        };
+        match Compiler::new(rule, counted, steps).run() {
+            Ok(graph) => Ok(graph),
+            Err(Stop::Error(error)) => Err(error),
+            Err(Stop::Irregular) => unreachable!("counted rules have one object a class"),
+        }
+    }
+}
+
+/// Why a compilation stops.
+enum Stop {
+    /// The index cannot be resolved, or the objects are too many.
+    Irregular,
+    Error(CompileError),
+}
+
+struct Compiler<'r> {
+    rule: &'r Arc<Rule>,
+    depends: Dependences,
+    steps: u32,
+    kinds: BTreeMap<Option<usize>, usize>,
+    numbers: HashMap<(Class, State), usize>,
+    /// The class and state of every object, in the order of their numbers.
+    keys: Vec<(Class, State)>,
+    objects: Vec<Object>,
+    /// The replacement matrix modulo m for an age and step: a column a kind.
+    columns: HashMap<(u32, u32), Vec<Vec<u32>>>,
+}
+
+impl<'r> Compiler<'r> {
+    fn new(rule: &'r Arc<Rule>, depends: Dependences, steps: u32) -> Self {
+        // Kind 0 are the infertile elements; the others differ in what selects their generator.
+        let mut kinds = BTreeMap::new();
+        let listed = rule
+            .initiator()
+            .elements
+            .iter()
+            .chain(rule.generators().iter().flat_map(|g| g.elements()));
+        for element in listed.filter(|element| element.fertile) {
+            let next = kinds.len() + 1;
+            kinds.entry(element.generator).or_insert(next);
+        }
+        Self {
+            rule,
+            depends,
+            steps,
+            kinds,
+            numbers: HashMap::new(),
+            keys: Vec::new(),
+            objects: Vec::new(),
+            columns: HashMap::new(),
+        }
+    }
+
+    fn run(mut self) -> Result<Graph, Stop> {
+        let rule = self.rule;
+        let state = State {
+            length: if self.depends.length {
+                1f64.to_bits()
+            } else {
+                0
+            },
+            preceding: self.no_elements(),
+            ..State::default()
+        };
+        let lengths = |_: usize| 1.0;
+        let objects = self.place(rule.initiator(), None, &state, lengths)?;
+        let mut whole = Production::default();
+        let part = Part {
+            placement: Placement::Stays,
+            ..rule.initiator().clone()
+        };
+        whole.set(&[part], rule.initiator_points(), &objects);
+
+        // Objects are reached breadth first, so that those of one number of steps follow each other.
+        let mut resolved = 0;
+        let mut depth = 0;
+        while resolved < self.objects.len() && depth < self.steps {
+            let reached = self.objects.len();
+            while resolved < reached {
+                let replacement = self.replacement(resolved)?;
+                self.objects[resolved].replacement = replacement;
+                resolved += 1;
+            }
+            depth += 1;
+        }
+        let beyond = self
+            .objects
+            .iter()
+            .any(|object| matches!(object.replacement, Replacement::Beyond));
+        let seeds = rule
+            .generators()
+            .iter()
+            .flat_map(|generator| generator.parts())
+            .any(|part| part.placement.seeds());
+        Ok(Graph {
+            rule: Arc::clone(rule),
+            objects: self.objects,
+            initiator: whole.body,
+            depth: beyond.then_some(self.steps),
+            counts_index: self.depends.index_is_free,
+            draws: rule.is_random(),
+            seeds,
+        })
+    }
+
+    fn no_elements(&self) -> Vec<u32> {
+        if self.depends.modulus > 1 {
+            vec![0; self.kinds.len() + 1]
+        } else {
+            Vec::new()
+        }
+    }
+
+    fn kind(&self, fertile: bool, generator: Option<usize>) -> usize {
+        if fertile { self.kinds[&generator] } else { 0 }
+    }
+
+    /// The number of an object, which is made if it is new.
+    fn object(&mut self, class: Class, state: State) -> Result<usize, Stop> {
+        let state = if class.fertile {
+            state
+        } else {
+            State::default()
+        };
+        if let Some(&number) = self.numbers.get(&(class, state.clone())) {
+            return Ok(number);
+        }
+        let number = self.objects.len();
+        if number >= MOST_OBJECTS {
+            return Err(Stop::Irregular);
+        }
+        self.objects.push(Object {
+            base_element: class.base_element,
+            visible: class.visible,
+            origin: class.origin,
+            replacement: if class.fertile {
+                Replacement::Beyond
+            } else {
+                Replacement::Kept
+            },
+        });
+        self.keys.push((class, state.clone()));
+        self.numbers.insert((class, state), number);
+        Ok(number)
+    }
+
+    /// The objects of a part's elements, by their place in the listing; `first` is the state of
+    /// the one that is traversed first.
+    fn place(
+        &mut self,
+        part: &Part,
+        origin: Option<usize>,
+        first: &State,
+        length: impl Fn(usize) -> f64,
+    ) -> Result<Vec<usize>, Stop> {
+        let count = part.elements.len();
+        let mut objects = vec![0; count];
+        let mut preceding = first.preceding.clone();
+        for turn in 0..count {
+            let listed = if first.reversed {
+                count - 1 - turn
+            } else {
+                turn
+            };
+            let element = &part.elements[listed];
+            let mut state = State {
+                preceding: preceding.clone(),
+                ..first.clone()
+            };
+            if self.depends.modulus > 1 {
+                state.reversed ^= element.direction.is_reversed();
+                let kind = self.kind(element.fertile, element.generator);
+                preceding[kind] = (preceding[kind] + 1) % self.depends.modulus;
+            }
+            if self.depends.length {
+                state.length = (f64::from_bits(first.length) * length(listed)).to_bits();
+            }
+            objects[listed] = self.object(Class::of(element, origin), state)?;
+        }
+        Ok(objects)
+    }
+
+    /// What the expressions see of an element in a state; `index` stands for all that are equal to
+    /// it modulo m.
+    fn moment(state: &State, index: u32) -> Moment {
+        Moment {
+            index: f64::from(index),
+            age: f64::from(state.age),
+            step: f64::from(state.step),
+            length: f64::from_bits(state.length),
+        }
+    }
+
+    /// The generators that may replace an element.
+    fn candidates(&self, generator: Option<usize>, moment: &Moment) -> Vec<usize> {
+        let selection = self.rule.selection_of(generator);
+        let undecided = match &selection {
+            Selection::AtRandom(_) => true,
+            Selection::ByCondition { .. } => {
+                self.depends.index_is_free
+                    || !self.depends.length
+                        && selection.programs().any(|condition| {
+                            use crate::expression::Dependence::None;
+                            condition.dependence(Moment::LENGTH) != None
+                        })
+            }
+            Selection::ByIndex(_) => self.depends.index_is_free,
+            Selection::Always(_) => false,
+        };
+        if undecided {
+            selection.candidates()
+        } else {
+            vec![selection.select(moment, Path::of_seed(0))]
+        }
+    }
+
+    fn replacement(&mut self, number: usize) -> Result<Replacement, Stop> {
+        let (class, state) = self.keys[number].clone();
+        if !class.fertile {
+            return Ok(Replacement::Kept);
+        }
+        let modulus = self.depends.modulus;
+        let index = state.preceding.iter().sum::<u32>() % modulus + 1;
+        let moment = Self::moment(&state, index);
+        let candidates = self.candidates(class.generator, &moment);
+        let body = State {
+            age: if self.depends.age { state.age + 1 } else { 0 },
+            step: if self.depends.step { state.step + 1 } else { 0 },
+            preceding: self.advanced(&state)?,
+            ..state.clone()
+        };
+        let seed = State {
+            age: 0,
+            preceding: self.no_elements(),
+            ..body.clone()
+        };
+        let decided = candidates.len() == 1;
+        let mut alternatives = Vec::new();
+        for generator in candidates {
+            let rule = self.rule;
+            let listed = &rule.generators()[generator];
+            let points = self.fixed_points(generator, &moment)?;
+            let length = |part: &Part, index: usize| {
+                let element = &part.elements[index];
+                let [from, to] = [element.from, element.to].map(|number| points[number]);
+                (to - from).length()
+            };
+            let mut objects = Vec::new();
+            let mut next = body.clone();
+            // Parts that stay follow each other in the order of traversal.
+            let mut order: Vec<usize> = (0..listed.parts().len()).collect();
+            if state.reversed {
+                order.reverse();
+            }
+            let mut of_parts = vec![Vec::new(); order.len()];
+            for part_number in order {
+                let part = &listed.parts()[part_number];
+                let mut first = if part.placement.seeds() {
+                    seed.clone()
+                } else {
+                    next.clone()
+                };
+                if part.placement == Placement::SeedsAsInitiator {
+                    first.reversed = false;
+                    if self.depends.length {
+                        first.length = 1f64.to_bits();
+                    }
+                }
+                of_parts[part_number] =
+                    self.place(part, Some(generator), &first, |index| length(part, index))?;
+                if !part.placement.seeds() && modulus > 1 {
+                    for element in &part.elements {
+                        let kind = self.kind(element.fertile, element.generator);
+                        next.preceding[kind] = (next.preceding[kind] + 1) % modulus;
+                    }
+                }
+            }
+            objects.extend(of_parts.into_iter().flatten());
+            if decided && self.is_fixed(generator) {
+                let mut production = Production::default();
+                production.set(listed.parts(), &points, &objects);
+                return Ok(Replacement::Fixed(production));
+            }
+            alternatives.push(Alternative { generator, objects });
+        }
+        Ok(Replacement::Evaluated(alternatives))
+    }
+
+    /// Whether a generator's points are the same wherever an object in this state stands.
+    fn is_fixed(&self, generator: usize) -> bool {
+        use crate::expression::Dependence;
+        let listed = &self.rule.generators()[generator];
+        !listed.is_random()
+            && listed.programs().all(|program| {
+                let none = |slot| program.dependence(slot) == Dependence::None;
+                (self.depends.age || none(Moment::AGE))
+                    && (self.depends.step || none(Moment::STEP))
+                    && (self.depends.length || none(Moment::LENGTH))
+                    && (!self.depends.index_is_free || none(Moment::INDEX))
+            })
+    }
+
+    /// The points of a generator that does not draw; zeros for one that does or that is evaluated
+    /// where the element stands.
+    fn fixed_points(&self, generator: usize, moment: &Moment) -> Result<Vec<DVec2>, Stop> {
+        let listed = &self.rule.generators()[generator];
+        let mut points = vec![DVec2::ZERO; listed.points.len()];
+        if self.is_fixed(generator) {
+            listed.evaluate(moment, Path::of_seed(0), &mut Vec::new(), &mut points);
+            if !points.iter().all(|point| point.is_finite()) {
+                return Err(Stop::Error(CompileError::not_finite(listed.name(), moment)));
+            }
+        }
+        Ok(points)
+    }
+
+    /// The numbers of elements before the first child of an element in a state: the replacement
+    /// matrix applied to the numbers before the element.
+    fn advanced(&mut self, state: &State) -> Result<Vec<u32>, Stop> {
+        let modulus = self.depends.modulus;
+        if modulus == 1 {
+            return Ok(Vec::new());
+        }
+        let when = (state.age, state.step);
+        if !self.columns.contains_key(&when) {
+            let columns = self.replacement_matrix(state)?;
+            self.columns.insert(when, columns);
+        }
+        let columns = &self.columns[&when];
+        let mut advanced = vec![0; state.preceding.len()];
+        for (column, &count) in columns.iter().zip(&state.preceding) {
+            for (sum, entry) in advanced.iter_mut().zip(column) {
+                *sum = (*sum + entry * count) % modulus;
+            }
+        }
+        Ok(advanced)
+    }
+
+    /// The replacement matrix modulo m: a column a kind, the numbers of children that stay by kind.
+    ///
+    /// Irregular where the generators that an element may get differ in these numbers.
+    fn replacement_matrix(&self, state: &State) -> Result<Vec<Vec<u32>>, Stop> {
+        let modulus = self.depends.modulus;
+        let size = self.kinds.len() + 1;
+        let mut columns = vec![vec![0; size]; size];
+        columns[0][0] = 1;
+        for (&names, &kind) in &self.kinds {
+            let mut known: Option<Vec<u32>> = None;
+            for index in 1..=modulus {
+                for generator in self.candidates(names, &Self::moment(state, index)) {
+                    let mut column = vec![0; size];
+                    let parts = self.rule.generators()[generator].parts();
+                    for part in parts.iter().filter(|part| !part.placement.seeds()) {
+                        for element in &part.elements {
+                            let kind = self.kind(element.fertile, element.generator);
+                            column[kind] = (column[kind] + 1) % modulus;
+                        }
+                    }
+                    if known.as_ref().is_some_and(|known| *known != column) {
+                        return Err(Stop::Irregular);
+                    }
+                    known = Some(column);
+                }
+            }
+            columns[kind] = known.unwrap_or_else(|| vec![0; size]);
+        }
+        Ok(columns)
+    }
+}
+
+impl Chain {
+    /// Whether the last instance joins the first one.
+    #[must_use]
+    pub fn is_ring(&self) -> bool {
+        self.instances
+            .first()
+            .is_some_and(|instance| instance.joined)
+    }
+}

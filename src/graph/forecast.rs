@@ -1,0 +1,375 @@
+//! How large the approximants will be, from the graph alone.
+//!
+//! The numbers of elements of step n are the graph's matrix to the power n applied to the
+//! initiator; they are worked out step by step in whole numbers of any size.
+
+use std::collections::BTreeMap;
+
+use num_bigint::BigUint;
+
+use crate::geometry::Direction;
+use crate::rule::Placement;
+
+use super::{Alternative, Chain, Graph, Instance, Replacement};
+
+/// The size of one approximant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// The number of elements, infertile and invisible ones included.
+    pub elements: BigUint,
+    /// The number of fertile elements.
+    pub fertile: BigUint,
+    /// The number of fractals that have been started: 1, and one for every seed.
+    pub fractals: BigUint,
+    /// Σ |p1 − p0| over all elements, in the rule's units; `None` if it depends on draws.
+    pub length: Option<f64>,
+    /// The enclosed area, in square units, where all outlines are closed: the sum over the outlines,
+    /// so that what overlaps counts as often as it occurs.
+    pub area: Option<f64>,
+}
+
+/// The sizes of successive approximants, from approximant 0 on.
+pub struct Forecast<'g> {
+    graph: &'g Graph,
+    /// By object.
+    standing: BTreeMap<usize, Tally>,
+    fractals: BigUint,
+    outlines: Outlines,
+    /// The area that the closed paths through the elements' end points enclose.
+    path_area: f64,
+}
+
+/// Sums over elements.
+#[derive(Clone, Default)]
+struct Tally {
+    count: BigUint,
+    length: f64,
+    /// Of squares of lengths.
+    square: f64,
+    /// Of squares of lengths, negative where the element's left side is outside its outline.
+    signed: f64,
+    /// Of the lengths, and of their squares, of the initiator elements that the elements descend from.
+    root_length: f64,
+    root_square: f64,
+    /// Of the areas of the closed base elements.
+    area: f64,
+}
+
+/// What kinds of outline a graph draws.
+#[derive(Clone, Copy, PartialEq)]
+enum Outlines {
+    /// All base elements are closed.
+    ClosedElements,
+    /// Every fractal is one closed path.
+    ClosedPaths,
+    Other,
+}
+
+/// An approximant that has more elements than are allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TooLarge {
+    /// The number of elements, unless it has more than some thousand digits.
+    pub elements: Option<BigUint>,
+    /// The deepest step within the limit; `None` if there is none.
+    pub deepest: Option<u32>,
+}
+
+/// Numbers of more bits than this are not worked out only to be refused.
+const MOST_BITS: u64 = 1 << 14;
+
+impl Graph {
+    /// Whether all approximants up to a step are within a number of elements; where the graph does
+    /// not tell, they are.
+    ///
+    /// # Errors
+    ///
+    /// If they are not: how many elements there are, and how deep one can go.
+    pub fn check_size(&self, steps: u32, most_elements: u64) -> Result<(), TooLarge> {
+        let Some(mut forecast) = self.forecast() else {
+            return Ok(());
+        };
+        let most = BigUint::from(most_elements);
+        let mut deepest = None;
+        let mut refused = false;
+        for step in 0..=steps {
+            let elements = forecast.elements();
+            refused |= elements > most;
+            if !refused {
+                deepest = Some(step);
+            } else if step == steps {
+                return Err(TooLarge {
+                    elements: Some(elements),
+                    deepest,
+                });
+            } else if elements.bits() > MOST_BITS {
+                return Err(TooLarge {
+                    elements: None,
+                    deepest,
+                });
+            }
+            if step < steps && !forecast.advance() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The sizes of the approximants, as far as the graph is resolved; `None` if they cannot be
+    /// told without growing: for irregular rules, and for those whose numbers depend on draws.
+    #[must_use]
+    pub fn forecast(&self) -> Option<Forecast<'_>> {
+        let known = self.is_regular()
+            && self.objects.iter().all(|object| match &object.replacement {
+                Replacement::Evaluated(alternatives) => self.are_equal(alternatives),
+                _ => true,
+            });
+        known.then(|| Forecast::new(self))
+    }
+
+    /// Whether alternatives have the same numbers of children of every object.
+    fn are_equal(&self, alternatives: &[Alternative]) -> bool {
+        let census = |alternative: &Alternative| {
+            let mut body = Vec::new();
+            let mut seeds = Vec::new();
+            let mut objects = alternative.objects.iter();
+            for part in self.rule.generators()[alternative.generator].parts() {
+                let objects = objects.by_ref().take(part.elements.len()).copied();
+                if part.placement.seeds() {
+                    let mut seed: Vec<usize> = objects.collect();
+                    seed.sort_unstable();
+                    seeds.push(seed);
+                } else {
+                    body.extend(objects);
+                }
+            }
+            body.sort_unstable();
+            seeds.sort_unstable();
+            (body, seeds)
+        };
+        alternatives
+            .windows(2)
+            .all(|pair| census(&pair[0]) == census(&pair[1]))
+    }
+
+    fn outlines(&self) -> Outlines {
+        let mut visible = self.objects.iter().filter(|object| object.visible);
+        if visible.all(|object| self.base_elements()[object.base_element].is_closed()) {
+            return Outlines::ClosedElements;
+        }
+        let joined = |chain: &Chain| {
+            chain
+                .instances
+                .iter()
+                .skip(1)
+                .all(|instance| instance.joined)
+        };
+        let closed = |chain: &Chain| joined(chain) && chain.is_ring();
+        let drawn = self.objects.iter().all(|object| {
+            object.visible
+                && self.base_elements()[object.base_element].ends_meet_frame() == [true; 2]
+                && match &object.replacement {
+                    Replacement::Fixed(production) => {
+                        let body = &production.body;
+                        !body.instances.is_empty()
+                            && body.meets_frame == [true; 2]
+                            && joined(body)
+                            && production.seeds.iter().all(|seed| closed(&seed.chain))
+                    }
+                    Replacement::Kept | Replacement::Beyond => true,
+                    Replacement::Evaluated(_) => false,
+                }
+        });
+        if drawn && closed(&self.initiator) {
+            Outlines::ClosedPaths
+        } else {
+            Outlines::Other
+        }
+    }
+}
+
+/// +1 for directions whose left side is the replaced element's left side, −1 for the others.
+fn side(direction: Direction) -> f64 {
+    if direction.is_mirrored() == direction.is_reversed() {
+        1.0
+    } else {
+        -1.0
+    }
+}
+
+/// The signed area between a chain of elements, as straight lines, and the line back to its start.
+fn area_under(chain: &Chain) -> f64 {
+    let ends = chain.instances.iter().map(|instance| instance.frame.ends());
+    ends.map(|[from, to]| from.perp_dot(to)).sum::<f64>() / 2.0
+}
+
+impl<'g> Forecast<'g> {
+    fn new(graph: &'g Graph) -> Self {
+        let mut forecast = Self {
+            graph,
+            standing: BTreeMap::new(),
+            fractals: BigUint::from(1u8),
+            outlines: graph.outlines(),
+            path_area: area_under(&graph.initiator).abs(),
+        };
+        let orientation = area_under(&graph.initiator).signum();
+        for instance in &graph.initiator.instances {
+            let square = instance.length * instance.length;
+            forecast.add(
+                instance.object,
+                Tally {
+                    count: BigUint::from(1u8),
+                    length: instance.length,
+                    square,
+                    signed: square * orientation * side(instance.frame.direction),
+                    root_length: instance.length,
+                    root_square: square,
+                    area: 0.0,
+                },
+            );
+        }
+        forecast
+    }
+
+    fn add(&mut self, object: usize, tally: Tally) {
+        let tally = Tally {
+            area: tally.square * self.own_area(object),
+            ..tally
+        };
+        let sum = self.standing.entry(object).or_default();
+        sum.count += tally.count;
+        sum.length += tally.length;
+        sum.square += tally.square;
+        sum.signed += tally.signed;
+        sum.root_length += tally.root_length;
+        sum.root_square += tally.root_square;
+        sum.area += tally.area;
+    }
+
+    /// The area of an object's base element where it is closed and drawn.
+    fn own_area(&self, object: usize) -> f64 {
+        let object = &self.graph.objects[object];
+        let base_element = &self.graph.base_elements()[object.base_element];
+        if object.visible && base_element.is_closed() {
+            base_element.signed_area().abs()
+        } else {
+            0.0
+        }
+    }
+
+    /// The number of elements of the approximant that stands now.
+    #[must_use]
+    pub fn elements(&self) -> BigUint {
+        self.standing.values().map(|tally| &tally.count).sum()
+    }
+
+    /// The size of the approximant that stands now.
+    #[must_use]
+    pub fn level(&self) -> Level {
+        let plain = self.graph.is_plain();
+        let all = || self.standing.iter();
+        let fertile = all().filter(|(object, _)| self.is_fertile(**object));
+        let bulge = |(&object, tally): (&usize, &Tally)| {
+            let number = self.graph.objects[object].base_element;
+            tally.signed * self.graph.base_elements()[number].signed_area()
+        };
+        Level {
+            elements: self.elements(),
+            fertile: fertile.map(|(_, tally)| &tally.count).sum(),
+            fractals: self.fractals.clone(),
+            length: plain.then(|| all().map(|(_, tally)| tally.length).sum()),
+            area: match self.outlines {
+                Outlines::ClosedElements if plain => Some(all().map(|(_, tally)| tally.area).sum()),
+                Outlines::ClosedPaths if plain => {
+                    Some((self.path_area + all().map(bulge).sum::<f64>()).abs())
+                }
+                _ => None,
+            },
+        }
+    }
+
+    fn is_fertile(&self, object: usize) -> bool {
+        !matches!(self.graph.objects[object].replacement, Replacement::Kept)
+    }
+
+    /// Whether every object that stands now is resolved, so that [`Forecast::advance`] may be called.
+    fn is_resolved(&self) -> bool {
+        let beyond =
+            |number: &usize| matches!(self.graph.objects[*number].replacement, Replacement::Beyond);
+        !self.standing.keys().any(beyond)
+    }
+
+    /// Goes on to the next approximant. `false`, and nothing happens, where the graph ends.
+    pub fn advance(&mut self) -> bool {
+        if !self.is_resolved() {
+            return false;
+        }
+        let graph = self.graph;
+        for (number, tally) in std::mem::take(&mut self.standing) {
+            match &graph.objects[number].replacement {
+                Replacement::Fixed(production) => {
+                    self.path_area += tally.signed * area_under(&production.body);
+                    for instance in &production.body.instances {
+                        self.add_instance(
+                            &tally,
+                            instance,
+                            side(instance.frame.direction) * tally.signed,
+                        );
+                    }
+                    for seed in &production.seeds {
+                        self.fractals += &tally.count;
+                        let area = area_under(&seed.chain);
+                        let orientation = if area < 0.0 { -1.0 } else { 1.0 };
+                        let parent = if seed.placement == Placement::SeedsAsInitiator {
+                            Tally {
+                                length: tally.root_length,
+                                square: tally.root_square,
+                                ..tally.clone()
+                            }
+                        } else {
+                            tally.clone()
+                        };
+                        self.path_area += parent.square * area.abs();
+                        for instance in &seed.chain.instances {
+                            let signed =
+                                orientation * side(instance.frame.direction) * parent.square;
+                            self.add_instance(&parent, instance, signed);
+                        }
+                    }
+                }
+                Replacement::Evaluated(alternatives) => {
+                    let alternative = &alternatives[0];
+                    let parts = graph.rule.generators()[alternative.generator].parts();
+                    let seeds = parts.iter().filter(|part| part.placement.seeds()).count();
+                    self.fractals += &tally.count * seeds;
+                    for &object in &alternative.objects {
+                        self.add(
+                            object,
+                            Tally {
+                                count: tally.count.clone(),
+                                ..Tally::default()
+                            },
+                        );
+                    }
+                }
+                Replacement::Kept | Replacement::Beyond => self.add(number, tally),
+            }
+        }
+        true
+    }
+
+    fn add_instance(&mut self, parent: &Tally, instance: &Instance, signed: f64) {
+        let square = instance.length * instance.length;
+        self.add(
+            instance.object,
+            Tally {
+                count: parent.count.clone(),
+                length: parent.length * instance.length,
+                square: parent.square * square,
+                signed: signed * square,
+                root_length: parent.root_length,
+                root_square: parent.root_square,
+                area: 0.0,
+            },
+        );
+    }
+}

@@ -1,0 +1,219 @@
+//! The instancing graph (Hart 1992): objects, and the instances that replace them.
+//!
+//! Every way of writing a linear fractal is compiled to a [`Graph`]: objects with a base element
+//! of their own and a [`Production`], the instances that stand in an object's place one step
+//! later. What depends on the moment (on age, step, length or, modulo m, on the index) has become
+//! more objects, so that the productions of a deterministic rule are lists of fixed maps. Only
+//! where numbers are drawn, or where an index cannot be resolved (an *irregular* rule), an object
+//! says [`Replacement::Evaluated`], and its instances are worked out where it stands.
+//!
+//! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
+//! ([`Placement::SeedsAsInitiator`]) keeps the position only.
+
+mod bounds;
+mod compile;
+mod forecast;
+mod state;
+
+pub use compile::CompileError;
+pub use forecast::{Forecast, Level, TooLarge};
+
+use std::sync::Arc;
+
+use crate::geometry::{DVec2, Frame};
+use crate::rule::{BaseElement, Placement, Rule};
+
+/// An object: a kind of element in a state that decides what it becomes.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its base element, by number.
+    pub base_element: usize,
+    /// Whether it is drawn.
+    pub visible: bool,
+    /// The generator that listed it, by number; `None` for the initiator.
+    pub origin: Option<usize>,
+    /// What takes its place in the next step.
+    pub replacement: Replacement,
+}
+
+/// What takes an object's place in the next step.
+#[derive(Clone, Debug)]
+pub enum Replacement {
+    /// Infertile: the element is kept.
+    Kept,
+    /// Fixed instances.
+    Fixed(Production),
+    /// Instances that are worked out where the element stands, by one of these alternatives.
+    Evaluated(Vec<Alternative>),
+    /// Not resolved: the object is first reached at the depth that the graph was compiled for.
+    Beyond,
+}
+
+/// A generator that may replace an object, and what its elements are.
+#[derive(Clone, Debug)]
+pub struct Alternative {
+    /// The generator, by number.
+    pub generator: usize,
+    /// The objects of its elements, by position.
+    pub objects: Vec<usize>,
+}
+
+/// An instance: a frame inside its parent's, and the object that stands there.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Map and direction relative to the parent.
+    pub frame: Frame,
+    /// |to − from|: its length as a multiple of its parent's.
+    pub length: f64,
+    /// Whether it joins the instance listed before it (the first one: the last, in a closed chain).
+    pub joined: bool,
+    /// Its position in the initiator or generator as listed, from 0, counted across parts.
+    pub position: u32,
+    /// The object, by number.
+    pub object: usize,
+}
+
+/// Instances that stand in a row.
+#[derive(Clone, Debug, Default)]
+pub struct Chain {
+    /// In the order of listing.
+    pub instances: Vec<Instance>,
+    /// Whether the first instance starts, and the last one ends, where the replaced element does.
+    pub meets_frame: [bool; 2],
+}
+
+/// A chain that starts a new fractal.
+#[derive(Clone, Debug)]
+pub struct Seed {
+    /// How the new fractal is placed.
+    pub placement: Placement,
+    /// Its elements.
+    pub chain: Chain,
+}
+
+/// What takes an element's place, and the new fractals that it seeds.
+#[derive(Clone, Debug, Default)]
+pub struct Production {
+    /// The instances that take the element's place; none if it vanishes.
+    pub body: Chain,
+    /// New fractals, in the order of their parts.
+    pub seeds: Vec<Seed>,
+}
+
+/// The instancing graph of a rule.
+///
+/// Guarantees: all numbers of objects and base elements are in range; every object that is reached
+/// within the depth that the graph was compiled for has its replacement.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    pub(crate) rule: Arc<Rule>,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) initiator: Chain,
+    pub(crate) depth: Option<u32>,
+    pub(crate) counts_index: bool,
+    pub(crate) draws: bool,
+    pub(crate) seeds: bool,
+}
+
+impl Graph {
+    /// The rule that the graph was compiled from.
+    #[must_use]
+    pub fn rule(&self) -> &Rule {
+        &self.rule
+    }
+
+    /// The objects.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// Approximant 0.
+    #[must_use]
+    pub fn initiator(&self) -> &Chain {
+        &self.initiator
+    }
+
+    /// The base elements that objects refer to.
+    #[must_use]
+    pub fn base_elements(&self) -> &[BaseElement] {
+        &self.rule.base_elements
+    }
+
+    /// The number of steps for which every object is resolved; `None` if for any number.
+    #[must_use]
+    pub fn depth(&self) -> Option<u32> {
+        self.depth
+    }
+
+    /// Whether the structure is known without a walk: no index is left to be counted.
+    #[must_use]
+    pub fn is_regular(&self) -> bool {
+        !self.counts_index
+    }
+
+    /// Whether numbers are drawn.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.draws
+    }
+
+    /// Whether every production is a list of fixed maps.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        !self
+            .objects
+            .iter()
+            .any(|object| matches!(object.replacement, Replacement::Evaluated(_)))
+    }
+}
+
+impl Production {
+    /// The production of a generator whose points have been evaluated.
+    ///
+    /// `objects` are the objects of the generator's elements by position; `self` is overwritten,
+    /// its memory used again.
+    pub(crate) fn set(&mut self, parts: &[crate::rule::Part], points: &[DVec2], objects: &[usize]) {
+        let mut seeds = std::mem::take(&mut self.seeds).into_iter();
+        self.body.instances.clear();
+        self.body.meets_frame = [false; 2];
+        let mut position = 0;
+        for part in parts {
+            let from = self.body.instances.len();
+            let mut seed = part.placement.seeds().then(|| {
+                let mut seed = seeds.next().unwrap_or_else(|| Seed {
+                    placement: part.placement,
+                    chain: Chain::default(),
+                });
+                seed.placement = part.placement;
+                seed.chain.instances.clear();
+                seed.chain.meets_frame = [false; 2];
+                seed
+            });
+            let instances = seed
+                .as_mut()
+                .map_or(&mut self.body.instances, |seed| &mut seed.chain.instances);
+            for element in &part.elements {
+                let (from, to) = (points[element.from], points[element.to]);
+                instances.push(Instance {
+                    frame: Frame::between(from, to, element.direction),
+                    length: (to - from).length(),
+                    joined: element.joined,
+                    position,
+                    object: objects[position as usize],
+                });
+                position += 1;
+            }
+            match seed {
+                Some(seed) => self.seeds.push(seed),
+                None if !part.elements.is_empty() => {
+                    if from == 0 {
+                        self.body.meets_frame[0] = part.meets_frame[0];
+                    }
+                    self.body.meets_frame[1] = part.meets_frame[1];
+                }
+                None => {}
+            }
+        }
+    }
+}

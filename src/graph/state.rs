@@ -1,0 +1,113 @@
+//! The state of an element that decides what it becomes, beside its kind.
+
+use crate::expression::Dependence;
+use crate::rule::{ListedElement, Moment, Placement, Rule, Selection};
+
+/// What an element is, apart from where and when: elements of one class behave alike in one state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Class {
+    pub(super) base_element: usize,
+    pub(super) visible: bool,
+    pub(super) fertile: bool,
+    /// The generator that the element names.
+    pub(super) generator: Option<usize>,
+    /// The generator that lists it; `None` for the initiator.
+    pub(super) origin: Option<usize>,
+}
+
+impl Class {
+    pub(super) fn of(element: &ListedElement, origin: Option<usize>) -> Self {
+        Self {
+            base_element: element.base_element,
+            visible: element.visible,
+            fertile: element.fertile,
+            generator: element.generator.filter(|_| element.fertile),
+            origin,
+        }
+    }
+}
+
+/// The state of an element. Fields that the rule does not look at stay at their default.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct State {
+    pub(super) age: u32,
+    pub(super) step: u32,
+    /// The bits of the relative length.
+    pub(super) length: u64,
+    /// Whether it is traversed backwards: matters only where the order does.
+    pub(super) reversed: bool,
+    /// The numbers of elements of each kind before it in its fractal, modulo m.
+    pub(super) preceding: Vec<u32>,
+}
+
+/// What the growth of a rule depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Dependences {
+    pub(super) age: bool,
+    pub(super) step: bool,
+    pub(super) length: bool,
+    /// The index counts modulo this; 1 if it does not matter.
+    pub(super) modulus: u32,
+    /// The index has to be counted while walking.
+    pub(super) index_is_free: bool,
+}
+
+/// Indices are resolved modulo m up to this m.
+const LARGEST_MODULUS: u32 = 64;
+
+impl Dependences {
+    pub(super) fn of(rule: &Rule) -> Self {
+        let mut all = Self {
+            age: false,
+            step: false,
+            length: false,
+            modulus: 1,
+            index_is_free: false,
+        };
+        if let Selection::ByIndex(entries) = rule.selection() {
+            all.count_modulo(u32::try_from(entries.len()).unwrap_or(u32::MAX));
+        }
+        for program in rule.programs() {
+            let depends = |slot| program.dependence(slot) != Dependence::None;
+            all.age |= depends(Moment::AGE);
+            all.step |= depends(Moment::STEP);
+            all.length |= depends(Moment::LENGTH);
+            match program.dependence(Moment::INDEX) {
+                Dependence::None => {}
+                Dependence::Modulo(modulus) => all.count_modulo(modulus),
+                Dependence::Free => all.index_is_free = true,
+            }
+        }
+        // A drawn length is known only where the element stands.
+        all.length &= !rule.is_random();
+        // A seed that stands as the initiator may run backwards or not, depending on its root.
+        let resets = rule
+            .generators()
+            .iter()
+            .flat_map(|generator| generator.parts())
+            .any(|part| part.placement == Placement::SeedsAsInitiator);
+        let reversed = rule
+            .initiator()
+            .elements
+            .iter()
+            .any(|element| element.direction.is_reversed());
+        if all.modulus > 1 && (all.length || resets && reversed) {
+            all.index_is_free = true;
+        }
+        all
+    }
+
+    fn count_modulo(&mut self, modulus: u32) {
+        let common = greatest_common_divisor(self.modulus, modulus);
+        self.modulus = (self.modulus / common).saturating_mul(modulus);
+        self.index_is_free |= self.modulus > LARGEST_MODULUS;
+    }
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
+}

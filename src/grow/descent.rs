@@ -1,0 +1,401 @@
+//! One fractal at one step: its elements in order of traversal, depth-first.
+
+use crate::geometry::{DAffine2, DVec2, Frame};
+use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
+use crate::rule::draw::Path;
+use crate::rule::{Moment, Placement};
+
+/// Where an element stands, and what its descendants need to know of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    pub(super) frame: Frame,
+    /// Relative to the initiator element's that it descends from.
+    pub(super) length: f64,
+    /// That initiator element, by position.
+    pub(super) root: u32,
+    pub(super) path: Path,
+}
+
+/// The elements that start a fractal, and where.
+#[derive(Clone, Debug)]
+pub(super) struct Start<'g> {
+    pub(super) chain: StartChain<'g>,
+    pub(super) standing: Standing,
+    /// The step in which the fractal is born.
+    pub(super) born: u32,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum StartChain<'g> {
+    /// The initiator: its instances are the roots.
+    Initiator,
+    Fixed(&'g Chain),
+    Evaluated(Chain),
+}
+
+impl<'g> Start<'g> {
+    pub(super) fn initiator(seed: u64) -> Self {
+        Self {
+            chain: StartChain::Initiator,
+            standing: Standing {
+                frame: Frame::UNIT,
+                length: 1.0,
+                root: 0,
+                path: Path::of_seed(seed),
+            },
+            born: 0,
+        }
+    }
+
+    fn chain<'a>(&'a self, graph: &'a Graph) -> &'a Chain {
+        match &self.chain {
+            StartChain::Initiator => graph.initiator(),
+            StartChain::Fixed(chain) => chain,
+            StartChain::Evaluated(chain) => chain,
+        }
+    }
+}
+
+/// An element that a descent has found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub(super) standing: Standing,
+    pub(super) object: usize,
+    /// The step of its birth.
+    pub(super) level: u32,
+    pub(super) joined: bool,
+    /// Its rank at its level, where ranks are counted; else 0.
+    pub(super) rank: u64,
+}
+
+/// The chain that a level of the stack goes through.
+#[derive(Clone, Copy)]
+enum Source<'g> {
+    Start,
+    Fixed(&'g Chain),
+    /// In the pool of evaluated productions.
+    Pooled(usize),
+}
+
+struct Entry<'g> {
+    standing: Standing,
+    source: Source<'g>,
+    reversed: bool,
+    /// How many instances have been visited.
+    next: usize,
+    /// Whether what ends this chain ends all the elements that were replaced on the way to it.
+    meets_end: bool,
+    /// The step of birth of the chain's elements.
+    level: u32,
+}
+
+/// A depth-first walk over one fractal of approximant `target`.
+pub(super) struct Descent<'g> {
+    graph: &'g Graph,
+    born: u32,
+    target: u32,
+    stack: Vec<Entry<'g>>,
+    /// Whether the pen stands at the end of the element before, free to go on.
+    joined: bool,
+    ranks: Ranks,
+    pool: Vec<Production>,
+    free: Vec<usize>,
+    slots: Vec<f64>,
+    points: Vec<DVec2>,
+    pub(super) visited: u64,
+}
+
+/// The numbers of elements of every level that have been visited so far.
+///
+/// An infertile element counts at its level and at all later ones: what it adds there is passed
+/// down when the walk next goes there.
+#[derive(Default)]
+struct Ranks {
+    counts: Vec<u64>,
+    pending: Vec<u64>,
+}
+
+impl Ranks {
+    /// Counts an element at a level, and tells its rank from 1.
+    fn count(&mut self, level: usize, kept: bool) -> u64 {
+        self.counts[level] += 1;
+        if kept && level + 1 < self.pending.len() {
+            self.pending[level + 1] += 1;
+        }
+        self.counts[level]
+    }
+
+    /// The walk goes down to a level.
+    fn enter(&mut self, level: usize) {
+        let pending = std::mem::take(&mut self.pending[level]);
+        self.counts[level] += pending;
+        if let Some(below) = self.pending.get_mut(level + 1) {
+            *below += pending;
+        }
+    }
+}
+
+impl<'g> Descent<'g> {
+    pub(super) fn new(graph: &'g Graph, start: &Start<'g>, target: u32) -> Self {
+        let chain = start.chain(graph);
+        let levels = if graph.is_regular() {
+            0
+        } else {
+            (target - start.born) as usize + 1
+        };
+        Self {
+            graph,
+            born: start.born,
+            target,
+            stack: vec![Entry {
+                standing: start.standing,
+                source: Source::Start,
+                reversed: start.standing.frame.direction.is_reversed(),
+                next: 0,
+                meets_end: true,
+                level: start.born,
+            }],
+            joined: chain.is_ring(),
+            ranks: Ranks {
+                counts: vec![0; levels],
+                pending: vec![0; levels],
+            },
+            pool: Vec::new(),
+            free: Vec::new(),
+            slots: Vec::new(),
+            points: Vec::new(),
+            visited: 0,
+        }
+    }
+
+    /// Whether the last element joins the first one of a ring; to be asked at the end.
+    pub(super) fn ends_joined(&self) -> bool {
+        self.joined
+    }
+
+    /// The next element of approximant `target`.
+    pub(super) fn next(&mut self, start: &Start<'g>) -> Result<Option<Found>, CompileError> {
+        loop {
+            let Some(entry) = self.stack.last_mut() else {
+                return Ok(None);
+            };
+            let chain = match entry.source {
+                Source::Start => start.chain(self.graph),
+                Source::Fixed(chain) => chain,
+                Source::Pooled(number) => &self.pool[number].body,
+            };
+            let count = chain.instances.len();
+            if entry.next == count {
+                // Only an empty chain is still on the stack when it is done.
+                self.joined = false;
+                self.pop();
+                continue;
+            }
+            let listed = if entry.reversed {
+                count - 1 - entry.next
+            } else {
+                entry.next
+            };
+            let instance = &chain.instances[listed];
+            if entry.next > 0 {
+                let link = if entry.reversed { listed + 1 } else { listed };
+                self.joined &= chain.instances[link].joined;
+            }
+            entry.next += 1;
+            let is_root = matches!(entry.source, Source::Start)
+                && matches!(start.chain, StartChain::Initiator);
+            let standing = Standing {
+                frame: entry.standing.frame.compose(&instance.frame),
+                length: if is_root {
+                    1.0
+                } else {
+                    entry.standing.length * instance.length
+                },
+                root: if is_root {
+                    instance.position
+                } else {
+                    entry.standing.root
+                },
+                path: if self.graph.draws() {
+                    entry.standing.path.child(instance.position)
+                } else {
+                    entry.standing.path
+                },
+            };
+            let level = entry.level;
+            let object = instance.object;
+            let last = entry.next == count;
+            let meets_end = !last || entry.meets_end;
+            self.visited += 1;
+
+            let replacement = &self.graph.objects()[object].replacement;
+            let kept = matches!(replacement, Replacement::Kept);
+            let rank = if self.graph.is_regular() {
+                0
+            } else {
+                self.ranks.count((level - self.born) as usize, kept)
+            };
+            if kept || level == self.target {
+                let joined = self.joined;
+                let object_ = &self.graph.objects()[object];
+                let open = !self.graph.base_elements()[object_.base_element].is_closed();
+                self.joined = object_.visible && open && meets_end;
+                if last {
+                    self.pop();
+                }
+                return Ok(Some(Found {
+                    standing,
+                    object,
+                    level,
+                    joined: joined && object_.visible && open,
+                    rank,
+                }));
+            }
+            if last {
+                // The chain is done: what follows the child's last element follows the chain's.
+                self.pop();
+            }
+            self.push(standing, object, level, rank, meets_end)?;
+        }
+    }
+
+    fn pop(&mut self) {
+        if let Some(Entry {
+            source: Source::Pooled(number),
+            ..
+        }) = self.stack.pop()
+        {
+            self.free.push(number);
+        }
+    }
+
+    /// Goes down into what replaces an element.
+    fn push(
+        &mut self,
+        standing: Standing,
+        object: usize,
+        level: u32,
+        rank: u64,
+        meets_end: bool,
+    ) -> Result<(), CompileError> {
+        let source = match &self.graph.objects()[object].replacement {
+            Replacement::Fixed(production) => Source::Fixed(&production.body),
+            _ => Source::Pooled(self.evaluate(&standing, object, level, rank)?),
+        };
+        let chain = match source {
+            Source::Fixed(chain) => chain,
+            Source::Pooled(number) => &self.pool[number].body,
+            Source::Start => unreachable!("a start is never pushed"),
+        };
+        let reversed = standing.frame.direction.is_reversed();
+        let [mut first, mut end] = chain.meets_frame;
+        if reversed {
+            (first, end) = (end, first);
+        }
+        self.joined &= first;
+        if !self.graph.is_regular() {
+            self.ranks.enter((level + 1 - self.born) as usize);
+        }
+        self.stack.push(Entry {
+            standing,
+            source,
+            reversed,
+            next: 0,
+            meets_end: end && meets_end,
+            level: level + 1,
+        });
+        Ok(())
+    }
+
+    /// Works out the production of an object where it stands, into the pool.
+    fn evaluate(
+        &mut self,
+        standing: &Standing,
+        object: usize,
+        level: u32,
+        rank: u64,
+    ) -> Result<usize, CompileError> {
+        let Replacement::Evaluated(alternatives) = &self.graph.objects()[object].replacement else {
+            unreachable!("a graph is walked no deeper than it is resolved");
+        };
+        let rule = self.graph.rule();
+        #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
+        let moment = Moment {
+            index: rank.max(1) as f64,
+            age: f64::from(level - self.born),
+            step: f64::from(level),
+            length: standing.length,
+        };
+        let alternative = if let [only] = alternatives.as_slice() {
+            only
+        } else {
+            let generator = rule.selection().select(&moment, standing.path);
+            alternatives
+                .iter()
+                .find(|alternative| alternative.generator == generator)
+                .unwrap_or_else(|| unreachable!("every candidate has its alternative"))
+        };
+        let generator = &rule.generators()[alternative.generator];
+        generator.evaluate(&moment, standing.path, &mut self.slots, &mut self.points);
+        if !self.points.iter().all(|point| point.is_finite()) {
+            return Err(CompileError::not_finite(generator.name(), &moment));
+        }
+        let number = self.free.pop().unwrap_or_else(|| {
+            self.pool.push(Production::default());
+            self.pool.len() - 1
+        });
+        self.pool[number].set(generator.parts(), &self.points, &alternative.objects);
+        Ok(number)
+    }
+
+    /// The fractals that an element of approximant `target` seeds when it is replaced.
+    pub(super) fn seeds(&mut self, found: &Found) -> Result<Vec<Start<'g>>, CompileError> {
+        let standing = found.standing;
+        let graph = self.graph;
+        let start = |seed: &Seed, chain| Start {
+            chain,
+            standing: planted(graph, &standing, seed.placement),
+            born: found.level + 1,
+        };
+        match &graph.objects()[found.object].replacement {
+            Replacement::Kept => Ok(Vec::new()),
+            Replacement::Fixed(production) => Ok(production
+                .seeds
+                .iter()
+                .map(|seed| start(seed, StartChain::Fixed(&seed.chain)))
+                .collect()),
+            _ => {
+                let number = self.evaluate(&standing, found.object, found.level, found.rank)?;
+                let starts = self.pool[number]
+                    .seeds
+                    .iter()
+                    .map(|seed| start(seed, StartChain::Evaluated(seed.chain.clone())))
+                    .collect();
+                self.free.push(number);
+                Ok(starts)
+            }
+        }
+    }
+}
+
+/// The standing of a part that an element seeds.
+fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
+    if placement != Placement::SeedsAsInitiator {
+        return *standing;
+    }
+    let root = graph
+        .initiator()
+        .instances
+        .iter()
+        .find(|instance| instance.position == standing.root)
+        .map_or(Frame::UNIT, |instance| instance.frame);
+    let [origin, _] = standing.frame.ends();
+    Standing {
+        frame: Frame {
+            map: DAffine2::from_mat2_translation(root.map.matrix2, origin),
+            direction: root.direction,
+        },
+        length: 1.0,
+        ..*standing
+    }
+}

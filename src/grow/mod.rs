@@ -1,0 +1,89 @@
+//! Growing: the walk over the elements of an approximant, in order, streamed.
+//!
+//! The walk goes depth-first through the graph. It holds one entry a level, so its memory grows
+//! with the number of steps and not with the number of elements. Where new fractals are seeded, a
+//! fractal is walked once for its own elements and again, to ever greater depth, for its seeds.
+
+mod descent;
+mod walk;
+
+pub use walk::{Growth, Walked, walk};
+
+use crate::geometry::Frame;
+use crate::graph::CompileError;
+
+/// An element of an approximant.
+#[derive(Clone, Copy, Debug)]
+pub struct Element {
+    /// Where it stands.
+    pub frame: Frame,
+    /// Its length as a multiple of the initiator element's that it descends from.
+    pub length: f64,
+    /// Its rank in its fractal, from 1.
+    pub index: u64,
+    /// The object that it is.
+    pub object: usize,
+    /// The step of its birth: 0 for the initiator's elements.
+    pub born: u32,
+    /// Whether it is replaced in the next step.
+    pub fertile: bool,
+    /// Whether its first point of traversal joins the last one of the element before it; the first
+    /// element of a fractal joins the last one if the fractal is a ring.
+    pub joined: bool,
+}
+
+/// A fractal of an approximant: a list of elements of one age.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fractal {
+    /// Its number in the order of the walk, from 0.
+    pub number: u64,
+    /// Its age: the number of times that it has been replaced.
+    pub age: u32,
+}
+
+/// What receives the elements of a walk.
+pub trait Visitor {
+    /// What may go wrong in it.
+    type Error;
+
+    /// A fractal begins.
+    ///
+    /// # Errors
+    ///
+    /// Whatever ends the walk.
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
+
+    /// An element of the fractal, in order of traversal.
+    ///
+    /// # Errors
+    ///
+    /// Whatever ends the walk.
+    fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
+
+    /// The fractal ends; `joined` tells whether its last element goes on to the first of a ring.
+    ///
+    /// # Errors
+    ///
+    /// Whatever ends the walk.
+    fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
+}
+
+/// Why a walk ends early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WalkError<E> {
+    /// There are more elements than allowed.
+    #[error("there are more than {limit} elements")]
+    TooManyElements {
+        /// The largest number allowed.
+        limit: u64,
+    },
+    /// A generator has a point that is not finite.
+    #[error(transparent)]
+    NotFinite(#[from] CompileError),
+    /// The walk was cancelled.
+    #[error("interrupted")]
+    Cancelled,
+    /// What the visitor said.
+    #[error("{0}")]
+    Visitor(E),
+}

@@ -1,0 +1,207 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::graph::{Graph, Replacement};
+
+use super::descent::{Descent, Found, Start};
+use super::{Element, Fractal, Visitor, WalkError};
+
+/// How far to grow, and within what limits.
+#[derive(Clone, Copy, Debug)]
+pub struct Growth<'a> {
+    /// The number of steps; the graph must be compiled for at least as many.
+    pub steps: u32,
+    /// What random draws depend on, beside the path.
+    pub seed: u64,
+    /// The walk ends with an error once it has more elements than this.
+    pub most_elements: u64,
+    /// The walk ends soon after this is set.
+    pub cancel: Option<&'a AtomicBool>,
+}
+
+impl Growth<'_> {
+    /// Growth by a number of steps with seed 0 and the default limit of 50 million elements.
+    #[must_use]
+    pub fn steps(steps: u32) -> Self {
+        Self {
+            steps,
+            seed: 0,
+            most_elements: 50_000_000,
+            cancel: None,
+        }
+    }
+}
+
+/// What a walk has met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Walked {
+    /// The number of elements.
+    pub elements: u64,
+    /// The number of fractals that have been started, those without elements included.
+    pub fractals: u64,
+}
+
+/// A walk may visit this many elements of earlier approximants for each element that is allowed,
+/// so that it ends even where all of them vanish.
+const VISITS_AN_ELEMENT: u64 = 16;
+
+/// Visits between two looks at the flag that cancels.
+const PATIENCE: u64 = 1 << 12;
+
+/// A fractal whose seeds are being looked for.
+struct Parent<'g> {
+    start: Start<'g>,
+    /// The approximant whose elements are being replaced, and the walk over it.
+    step: u32,
+    descent: Descent<'g>,
+    /// Seeds that are still to be walked, the next one last.
+    queue: Vec<Start<'g>>,
+}
+
+struct Walk<'g, 'v, V> {
+    graph: &'g Graph,
+    growth: Growth<'v>,
+    visitor: &'v mut V,
+    walked: Walked,
+    visited: u64,
+    next_look: u64,
+}
+
+/// Walks over the elements of an approximant, fractal by fractal.
+///
+/// Fractals come depth-first: a fractal's own elements in order of traversal, then its seeds in
+/// the order of birth step, index and part, each followed by its own seeds.
+///
+/// # Errors
+///
+/// If there are more elements than allowed, if a generator yields points that are not finite, if
+/// the walk is cancelled, or if the visitor says so.
+///
+/// # Panics
+///
+/// If the graph was compiled for fewer steps.
+pub fn walk<V: Visitor>(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    visitor: &mut V,
+) -> Result<Walked, WalkError<V::Error>> {
+    assert!(
+        graph.depth().is_none_or(|depth| depth >= growth.steps),
+        "the graph is not resolved for {} steps",
+        growth.steps
+    );
+    let mut walk = Walk {
+        graph,
+        growth: *growth,
+        visitor,
+        walked: Walked::default(),
+        visited: 0,
+        next_look: PATIENCE,
+    };
+    walk.run(Start::initiator(growth.seed))?;
+    Ok(walk.walked)
+}
+
+impl<'g, V: Visitor> Walk<'g, '_, V> {
+    fn run(&mut self, first: Start<'g>) -> Result<(), WalkError<V::Error>> {
+        let mut parents = Vec::new();
+        let mut next = Some(first);
+        loop {
+            if let Some(start) = next.take() {
+                self.fractal(&start)?;
+                if self.graph.seeds && start.born < self.growth.steps {
+                    parents.push(Parent {
+                        step: start.born,
+                        descent: Descent::new(self.graph, &start, start.born),
+                        start,
+                        queue: Vec::new(),
+                    });
+                }
+            }
+            let Some(parent) = parents.last_mut() else {
+                return Ok(());
+            };
+            next = parent.queue.pop();
+            if next.is_some() {
+                continue;
+            }
+            match parent.descent.next(&parent.start)? {
+                Some(found) => {
+                    if found.level == parent.step {
+                        parent.queue = parent.descent.seeds(&found)?;
+                        parent.queue.reverse();
+                    }
+                    let visited = std::mem::take(&mut parent.descent.visited);
+                    self.visit(visited)?;
+                }
+                None if parent.step + 1 < self.growth.steps => {
+                    parent.step += 1;
+                    parent.descent = Descent::new(self.graph, &parent.start, parent.step);
+                }
+                None => {
+                    parents.pop();
+                }
+            }
+        }
+    }
+
+    /// The elements of one fractal of the last approximant.
+    fn fractal(&mut self, start: &Start<'g>) -> Result<(), WalkError<V::Error>> {
+        let fractal = Fractal {
+            number: self.walked.fractals,
+            age: self.growth.steps - start.born,
+        };
+        self.walked.fractals += 1;
+        self.visitor.begin(fractal).map_err(WalkError::Visitor)?;
+        let mut descent = Descent::new(self.graph, start, self.growth.steps);
+        let mut index = 0;
+        while let Some(found) = descent.next(start)? {
+            index += 1;
+            self.walked.elements += 1;
+            if self.walked.elements > self.growth.most_elements {
+                return Err(self.too_many());
+            }
+            self.visit(std::mem::take(&mut descent.visited))?;
+            self.visitor
+                .element(&self.element(&found, index))
+                .map_err(WalkError::Visitor)?;
+        }
+        self.visit(descent.visited)?;
+        self.visitor
+            .end(descent.ends_joined())
+            .map_err(WalkError::Visitor)
+    }
+
+    fn element(&self, found: &Found, index: u64) -> Element {
+        let object = &self.graph.objects()[found.object];
+        Element {
+            frame: found.standing.frame,
+            length: found.standing.length,
+            index,
+            object: found.object,
+            born: found.level,
+            fertile: !matches!(object.replacement, Replacement::Kept),
+            joined: found.joined,
+        }
+    }
+
+    fn visit(&mut self, count: u64) -> Result<(), WalkError<V::Error>> {
+        self.visited += count;
+        if self.visited < self.next_look {
+            return Ok(());
+        }
+        self.next_look = self.visited + PATIENCE;
+        if self.visited / VISITS_AN_ELEMENT > self.growth.most_elements {
+            return Err(self.too_many());
+        }
+        match self.growth.cancel {
+            Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
+            _ => Ok(()),
+        }
+    }
+
+    fn too_many(&self) -> WalkError<V::Error> {
+        WalkError::TooManyElements {
+            limit: self.growth.most_elements,
+        }
+    }
+}

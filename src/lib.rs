@@ -1,0 +1,45 @@
+//! Linear fractals: grown from production rules, drawn and measured.
+//!
+//! A *production rule* (Kaandorp, "Interactive generation of fractal objects", CWI report CS-R8706,
+//! 1987) has three components: an *initiator*, an array of *generators* and a *base element*. Step
+//! by step every fertile element is replaced by a smaller copy of a generator.
+//!
+//! # The way of the data
+//!
+//! ```text
+//!  library/*.yaml, a user's file
+//!     │  document   what was written, with places in the file; parents and components put in
+//!     ▼
+//!  RuleDocument
+//!     │  rule       names looked up, expressions compiled, everything checked
+//!     ▼
+//!  Rule             the validated model
+//!     │  graph      dependence on the moment becomes more objects
+//!     ▼
+//!  Graph            objects that instance each other: forecast, bounds
+//!     │  grow       a depth-first walk
+//!     ▼
+//!  elements, in order, streamed
+//!     ├── render    pictures: SVG
+//!     ├── export    tables: CSV, JSON
+//!     └── measure   similarity dimension
+//! ```
+//!
+//! Each stage knows only the stages above it. `render`, `export` and `measure` do not know each
+//! other; [`cli`] uses what is public here and nothing else. Names and files are the
+//! [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in files are
+//! [`expression`]s.
+
+pub mod catalogue;
+pub mod cli;
+pub mod diagnostic;
+pub mod document;
+pub mod export;
+pub mod expression;
+pub mod geometry;
+pub mod graph;
+pub mod grow;
+pub mod measure;
+pub mod render;
+pub mod rule;
+pub mod style;

@@ -1,0 +1,7 @@
+//! The `kfrac` program: see [`kfrac::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    kfrac::cli::run()
+}

@@ -1,0 +1,5 @@
+//! Dimensions.
+
+mod similarity;
+
+pub use similarity::{Similarity, similarity_dimension};

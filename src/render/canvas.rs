@@ -1,0 +1,121 @@
+use crate::geometry::{Bounds, DVec2};
+
+/// The size of a picture, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// The long side; the other follows from what is drawn.
+    Long(u32),
+    /// Width and height; what is drawn is fitted into them, in the middle.
+    Exactly(u32, u32),
+}
+
+/// How the plane is laid on a picture: pixels run right and down from the upper left corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Canvas {
+    size: [u32; 2],
+    /// Pixels a unit of the rule.
+    scale: f64,
+    /// The point of the plane that lies in the upper left corner.
+    corner: DVec2,
+}
+
+/// A picture that margin and strokes fill.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoRoom {
+    /// Nothing is left between the margins.
+    #[error("the margins and strokes ({taken} pixels) leave no room in a picture of {size} pixels")]
+    Margins {
+        /// The pixels that margins and strokes take from a side.
+        taken: f64,
+        /// That side.
+        size: u32,
+    },
+    /// Nothing is drawn.
+    #[error("there is nothing to draw: no element is visible")]
+    Nothing,
+    /// What is drawn is larger than numbers can tell.
+    #[error("what is to be drawn has no finite size")]
+    Infinite,
+}
+
+impl Canvas {
+    /// The canvas that shows `bounds` with `pad` pixels free on every side.
+    ///
+    /// # Errors
+    ///
+    /// If the box is empty or not finite, or if the padding leaves no room.
+    pub fn fit(bounds: &Bounds, size: Size, pad: f64) -> Result<Self, NoRoom> {
+        if bounds.is_empty() {
+            return Err(NoRoom::Nothing);
+        }
+        let extent = bounds.size();
+        if !bounds.is_finite() || !extent.is_finite() {
+            return Err(NoRoom::Infinite);
+        }
+        let room = |side: u32| {
+            let room = f64::from(side) - 2.0 * pad;
+            let taken = 2.0 * pad;
+            if room > 0.0 {
+                Ok(room)
+            } else {
+                Err(NoRoom::Margins { taken, size: side })
+            }
+        };
+        let (scale, size) = match size {
+            Size::Long(side) => {
+                let scale = room(side)? / extent.max_element();
+                let scale = if scale.is_finite() { scale } else { 1.0 };
+                let short = |extent: f64| whole_pixels(extent * scale + 2.0 * pad).min(side);
+                let size = if extent.x >= extent.y {
+                    [side, short(extent.y)]
+                } else {
+                    [short(extent.x), side]
+                };
+                (scale, size)
+            }
+            Size::Exactly(width, height) => {
+                let scale = (room(width)? / extent.x).min(room(height)? / extent.y);
+                (if scale.is_finite() { scale } else { 1.0 }, [width, height])
+            }
+        };
+        let centre = bounds.min() + extent / 2.0;
+        let half = DVec2::new(f64::from(size[0]), -f64::from(size[1])) / (2.0 * scale);
+        Ok(Self {
+            size,
+            scale,
+            corner: centre - half,
+        })
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Pixels a unit of the rule.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Where a point of the plane lies, in pixels from the upper left corner, y down.
+    #[inline]
+    #[must_use]
+    pub fn pixel(&self, point: DVec2) -> DVec2 {
+        DVec2::new(
+            (point.x - self.corner.x) * self.scale,
+            (self.corner.y - point.y) * self.scale,
+        )
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate, and pictures are smaller than that"
+)]
+fn whole_pixels(extent: f64) -> u32 {
+    // A hair less than a whole pixel more is rounding, not extent.
+    ((extent - 1e-9).ceil() as u32).max(1)
+}

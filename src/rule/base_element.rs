@@ -1,0 +1,269 @@
+use crate::geometry::{Bounds, DAffine2, DVec2};
+
+/// A piece of a base element, from the last point of the piece before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// A straight line to a point.
+    Line(DVec2),
+    /// A cubic Bézier curve: two control points and the end point.
+    Cubic(DVec2, DVec2, DVec2),
+}
+
+impl Piece {
+    /// The piece's last point.
+    #[must_use]
+    pub fn end(&self) -> DVec2 {
+        match *self {
+            Self::Line(end) | Self::Cubic(_, _, end) => end,
+        }
+    }
+
+    /// The piece in the image of a map.
+    #[inline]
+    #[must_use]
+    pub fn transformed(&self, map: &DAffine2) -> Self {
+        match *self {
+            Self::Line(end) => Self::Line(map.transform_point2(end)),
+            Self::Cubic(a, b, end) => Self::Cubic(
+                map.transform_point2(a),
+                map.transform_point2(b),
+                map.transform_point2(end),
+            ),
+        }
+    }
+}
+
+/// A base element: what is drawn where an element stands.
+///
+/// Coordinates are those of the unit frame, in which the element runs from (0, 0) to (1, 0).
+///
+/// Guarantees: at least one piece, all coordinates finite. An open base element does not end where
+/// it starts; a closed one is a polygon (or a curve) whose last piece ends at its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseElement {
+    start: DVec2,
+    pieces: Vec<Piece>,
+    /// The same outline from its last point to its first.
+    backwards: (DVec2, Vec<Piece>),
+    closed: bool,
+}
+
+impl BaseElement {
+    /// A base element from a start point and pieces; a closed one gets its last side if it is missing.
+    ///
+    /// Returns `None` for a base element of no extent (see the guarantees above).
+    #[must_use]
+    pub fn new(start: DVec2, mut pieces: Vec<Piece>, closed: bool) -> Option<Self> {
+        let end = pieces.last()?.end();
+        if closed && end != start {
+            pieces.push(Piece::Line(start));
+        }
+        if !closed && end == start || pieces.iter().all(|piece| piece.end() == start) {
+            return None;
+        }
+        let finite = |piece: &Piece| match piece {
+            Piece::Line(end) => end.is_finite(),
+            Piece::Cubic(a, b, end) => a.is_finite() && b.is_finite() && end.is_finite(),
+        };
+        if !start.is_finite() || !pieces.iter().all(finite) {
+            return None;
+        }
+        Some(Self {
+            backwards: backwards(start, &pieces),
+            start,
+            pieces,
+            closed,
+        })
+    }
+
+    /// The line from (0, 0) to (1, 0): the base element of a rule that names none.
+    #[must_use]
+    pub fn line() -> Self {
+        let (start, pieces) = (DVec2::ZERO, vec![Piece::Line(DVec2::X)]);
+        Self {
+            backwards: backwards(start, &pieces),
+            start,
+            pieces,
+            closed: false,
+        }
+    }
+
+    /// Whether the outline is closed; closed base elements never join their neighbours.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Whether this is the plain line from (0, 0) to (1, 0).
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        self.start == DVec2::ZERO && self.pieces == [Piece::Line(DVec2::X)]
+    }
+
+    /// Where the outline starts, in the order of listing.
+    #[must_use]
+    pub fn start(&self) -> DVec2 {
+        self.start
+    }
+
+    /// The pieces in the order of listing.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Start and pieces in the order of traversal: as listed, or backwards.
+    #[inline]
+    #[must_use]
+    pub fn outline(&self, reversed: bool) -> (DVec2, &[Piece]) {
+        if reversed {
+            (self.backwards.0, &self.backwards.1)
+        } else {
+            (self.start, &self.pieces)
+        }
+    }
+
+    /// Whether the outline begins and ends where the element does, at (0, 0) and at (1, 0).
+    ///
+    /// Such an element shares its end points with the neighbours that it joins; others (a Hilbert
+    /// cup) are linked to them by a line.
+    #[must_use]
+    pub fn ends_meet_frame(&self) -> [bool; 2] {
+        [
+            !self.closed && self.start == DVec2::ZERO,
+            !self.closed && self.backwards.0 == DVec2::X,
+        ]
+    }
+
+    /// The support function: the largest x·u over the outline's points x.
+    #[must_use]
+    pub fn support(&self, direction: DVec2) -> f64 {
+        let mut from = self.start.dot(direction);
+        let mut largest = from;
+        for piece in &self.pieces {
+            let end = piece.end().dot(direction);
+            largest = largest.max(end);
+            if let Piece::Cubic(a, b, _) = piece {
+                let values = [from, a.dot(direction), b.dot(direction), end];
+                largest = largest.max(largest_of_cubic(values));
+            }
+            from = end;
+        }
+        largest
+    }
+
+    /// Adds the outline's image under a map to a box, with `pad` more on every side.
+    pub fn add_to(&self, bounds: &mut Bounds, map: &DAffine2, pad: f64) {
+        let mut from = map.transform_point2(self.start);
+        let mut add = |point: DVec2| {
+            bounds.add(point - pad);
+            bounds.add(point + pad);
+        };
+        add(from);
+        for piece in &self.pieces {
+            let piece = piece.transformed(map);
+            if let Piece::Cubic(a, b, end) = piece {
+                let largest = |u: DVec2| largest_of_cubic([from, a, b, end].map(|p| p.dot(u)));
+                add(DVec2::new(largest(DVec2::X), largest(DVec2::Y)));
+                add(-DVec2::new(largest(-DVec2::X), largest(-DVec2::Y)));
+            }
+            from = piece.end();
+            add(from);
+        }
+    }
+
+    /// The area between the outline and the line back from its end to its start: positive where
+    /// that is encircled counter-clockwise.
+    #[must_use]
+    pub fn signed_area(&self) -> f64 {
+        let mut from = self.start;
+        let mut twice = 0.0;
+        for piece in &self.pieces {
+            // ½∮(x dy − y dx) of a cubic is a sum of cross products of its control points.
+            if let Piece::Cubic(a, b, end) = *piece {
+                twice += (6.0 * (from.perp_dot(a) + b.perp_dot(end))
+                    + 3.0 * (from.perp_dot(b) + a.perp_dot(b) + a.perp_dot(end))
+                    + from.perp_dot(end))
+                    / 10.0;
+            } else {
+                twice += from.perp_dot(piece.end());
+            }
+            from = piece.end();
+        }
+        (twice + from.perp_dot(self.start)) / 2.0
+    }
+}
+
+fn backwards(start: DVec2, pieces: &[Piece]) -> (DVec2, Vec<Piece>) {
+    let mut from = start;
+    let mut reversed = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        reversed.push(match *piece {
+            Piece::Line(_) => Piece::Line(from),
+            Piece::Cubic(a, b, _) => Piece::Cubic(b, a, from),
+        });
+        from = piece.end();
+    }
+    reversed.reverse();
+    (from, reversed)
+}
+
+/// The largest value of a cubic Bézier polynomial over [0, 1], from the zeros of its derivative.
+fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
+    let (d0, d1, d2) = (p1 - p0, p2 - p1, p3 - p2);
+    let (a, b, c) = (d0 - 2.0 * d1 + d2, d1 - d0, d0);
+    let root = (b * b - a * c).max(0.0).sqrt();
+    // The two zeros of a t² + 2 b t + c in the form that does not cancel.
+    let q = -(b + b.signum() * root);
+    [q / a, c / q]
+        .into_iter()
+        .filter(|t| (0.0..=1.0).contains(t))
+        .map(|t| {
+            let s = 1.0 - t;
+            s * s * s * p0 + 3.0 * s * s * t * p1 + 3.0 * s * t * t * p2 + t * t * t * p3
+        })
+        .fold(p0.max(p3), f64::max)
+}
+
+/// Cubic Bézier pieces along the circular arc from `from` through `through` to `to`.
+///
+/// Each spans at most 22.5°, which keeps them within 1e-9 of the radius of the arc. `None` if the
+/// three points lie on a line.
+#[must_use]
+pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
+    let (a, b) = (through - from, to - from);
+    let cross = 2.0 * a.perp_dot(b);
+    let centre = from + (a.perp() * b.length_squared() - b.perp() * a.length_squared()) / cross;
+    if !centre.is_finite() || cross.abs() < 1e-12 * b.length_squared() {
+        return None;
+    }
+    let angle = |p: DVec2| libm::atan2((p - centre).y, (p - centre).x);
+    let turn = |angle: f64| angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).floor();
+    let whole = if cross > 0.0 {
+        turn(angle(to) - angle(from))
+    } else {
+        -turn(angle(from) - angle(to))
+    };
+    let count = (whole.abs() / (std::f64::consts::PI / 8.0)).ceil().max(1.0);
+    let step = whole / count;
+    let (sine, cosine) = (libm::sin(step), libm::cos(step));
+    let handle = 4.0 / 3.0 * libm::tan(step / 4.0);
+    let mut radius = from - centre;
+    let mut pieces = Vec::new();
+    let mut number = 1.0;
+    while number <= count {
+        let next = DVec2::new(
+            radius.x * cosine - radius.y * sine,
+            radius.x * sine + radius.y * cosine,
+        );
+        let end = if number == count { to } else { centre + next };
+        pieces.push(Piece::Cubic(
+            centre + radius + radius.perp() * handle,
+            centre + next - next.perp() * handle,
+            end,
+        ));
+        radius = next;
+        number += 1.0;
+    }
+    Some(pieces)
+}

@@ -1,0 +1,154 @@
+//! Random draws as pure functions of the seed and of an element's path.
+//!
+//! A path is the position in the initiator, then at each replacement the position in the generator
+//! as listed. It is carried as a 64-bit hash that grows by one mixing step a replacement, so a
+//! draw does not depend on what was drawn elsewhere, on the order or on the number of steps.
+
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
+use crate::expression::Program;
+
+/// The hash of a seed and of an element's path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Path(u64);
+
+impl Path {
+    /// The path that leads nowhere yet, for a seed.
+    #[must_use]
+    pub fn of_seed(seed: u64) -> Self {
+        Self(mix(seed ^ 0x6b66_7261_635f_7631))
+    }
+
+    /// The path to the child at a position.
+    #[inline]
+    #[must_use]
+    pub fn child(self, position: u32) -> Self {
+        Self(mix(
+            self.0.rotate_left(17) ^ (u64::from(position) + 1).wrapping_mul(GOLDEN)
+        ))
+    }
+
+    /// The stream of random numbers that belongs to a name at this path.
+    fn stream(self, name: u64) -> Pcg64Mcg {
+        let high = mix(self.0 ^ name);
+        let low = mix(high.wrapping_add(GOLDEN));
+        Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low))
+    }
+}
+
+/// 2⁶⁴ divided by the golden ratio, odd: the increment of SplitMix64.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014).
+fn mix(value: u64) -> u64 {
+    let z = value.wrapping_add(GOLDEN);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// A name's hash (FNV-1a), which keeps the streams of a path's variables apart.
+fn hash_of_name(name: &str) -> u64 {
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+/// A number from [0, 1) with 53 random bits.
+#[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
+fn unit(stream: &mut Pcg64Mcg) -> f64 {
+    (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// How a variable of a generator's random function is distributed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Distribution {
+    /// Equally likely between two limits: from the first on, below the second.
+    Uniform(Program, Program),
+    /// Normal, with mean and standard deviation (Box & Muller 1958).
+    Normal(Program, Program),
+    /// One of the values, all equally likely.
+    Choice(Vec<Program>),
+}
+
+/// A variable that is drawn anew for every element that is replaced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    name: String,
+    stream: u64,
+    distribution: Distribution,
+}
+
+impl Variable {
+    /// A variable with its distribution.
+    #[must_use]
+    pub fn new(name: &str, distribution: Distribution) -> Self {
+        Self {
+            name: name.into(),
+            stream: hash_of_name(name),
+            distribution,
+        }
+    }
+
+    /// The name that expressions call it by.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How it is distributed.
+    #[must_use]
+    pub fn distribution(&self) -> &Distribution {
+        &self.distribution
+    }
+
+    /// The value that belongs to a path.
+    #[must_use]
+    pub fn draw(&self, path: Path, slots: &[f64]) -> f64 {
+        let mut stream = path.stream(self.stream);
+        match &self.distribution {
+            Distribution::Uniform(low, high) => {
+                let (low, high) = (low.eval(slots), high.eval(slots));
+                low + (high - low) * unit(&mut stream)
+            }
+            Distribution::Normal(mean, deviation) => {
+                // 1 − u lies in (0, 1], so that the logarithm is finite.
+                let radius = (-2.0 * libm::log(1.0 - unit(&mut stream))).sqrt();
+                let angle = std::f64::consts::TAU * unit(&mut stream);
+                mean.eval(slots) + deviation.eval(slots) * radius * libm::cos(angle)
+            }
+            Distribution::Choice(values) => {
+                values[pick_index(&mut stream, values.len())].eval(slots)
+            }
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a count of list entries, and a floor below it"
+)]
+fn pick_index(stream: &mut Pcg64Mcg, count: usize) -> usize {
+    ((unit(stream) * count as f64) as usize).min(count - 1)
+}
+
+/// Picks an entry by weight: the index, for weights that are not negative and not all zero.
+#[must_use]
+pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
+    let total: f64 = weights.clone().sum();
+    let mut left = unit(&mut path.stream(hash_of_name("select"))) * total;
+    let mut last = 0;
+    for (index, weight) in weights.enumerate() {
+        if weight > 0.0 {
+            last = index;
+            if left < weight {
+                return index;
+            }
+            left -= weight;
+        }
+    }
+    last
+}

@@ -1,0 +1,207 @@
+use crate::expression::{Program, degrees};
+use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
+
+use super::draw::{Path, Variable};
+
+/// What the expressions of a generator and of a selection see of the element that is replaced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The element's rank in its fractal, from 1.
+    pub index: f64,
+    /// The age of its fractal.
+    pub age: f64,
+    /// The number of the approximant that is being replaced.
+    pub step: f64,
+    /// Its length, as a multiple of the initiator element's that it descends from.
+    pub length: f64,
+}
+
+impl Moment {
+    /// The names that expressions know the fields by, in the order of their slots.
+    pub const NAMES: [&'static str; 4] = ["i", "age", "step", "length"];
+    /// The slot of `i`.
+    pub const INDEX: usize = 0;
+    /// The slot of `age`.
+    pub const AGE: usize = 1;
+    /// The slot of `step`.
+    pub const STEP: usize = 2;
+    /// The slot of `length`.
+    pub const LENGTH: usize = 3;
+
+    /// The values, in the order of their slots.
+    #[must_use]
+    pub fn slots(&self) -> [f64; 4] {
+        [self.index, self.age, self.step, self.length]
+    }
+}
+
+/// A part of a random function: moves points of the generator (Kaandorp 1987, figure 4).
+///
+/// Points are scaled and turned about a centre, then shifted. Angles are degrees, positive
+/// counter-clockwise; lengths are those of the unit frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    pub(crate) rotate: Program,
+    pub(crate) scale: [Program; 2],
+    pub(crate) shift: [Program; 2],
+    pub(crate) about: [Program; 2],
+    /// The points that move, by their number.
+    pub(crate) points: Vec<usize>,
+}
+
+impl Move {
+    fn map(&self, slots: &[f64]) -> DAffine2 {
+        let vector = |[x, y]: &[Program; 2]| DVec2::new(x.eval(slots), y.eval(slots));
+        let angle = self.rotate.eval(slots);
+        let (sine, cosine) = (degrees::sin(angle), degrees::cos(angle));
+        let scale = vector(&self.scale);
+        let turn = DMat2::from_cols(DVec2::new(cosine, sine), DVec2::new(-sine, cosine));
+        let about = vector(&self.about);
+        let linear = turn * DMat2::from_diagonal(scale);
+        DAffine2::from_mat2_translation(linear, about - linear * about + vector(&self.shift))
+    }
+}
+
+/// Where the elements of a part go (Kaandorp 1987, step E1 of the algorithm, and figure 6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// They take the replaced element's place.
+    Stays,
+    /// They start a new fractal in the replaced element's frame.
+    Seeds,
+    /// They start a new fractal with the linear part of the initiator element that the replaced
+    /// element descends from, and with its origin at the replaced element's first point.
+    SeedsAsInitiator,
+}
+
+impl Placement {
+    /// Whether a new fractal starts.
+    #[must_use]
+    pub fn seeds(self) -> bool {
+        self != Self::Stays
+    }
+}
+
+/// An element as an initiator or a generator lists it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ListedElement {
+    /// The number of the point that it runs from.
+    pub from: usize,
+    /// The number of the point that it runs to.
+    pub to: usize,
+    /// Its direction.
+    pub direction: Direction,
+    /// Whether it is replaced in the next step.
+    pub fertile: bool,
+    /// Whether it is drawn.
+    pub visible: bool,
+    /// Whether it joins the element listed before it (the first one: the last, in a closed chain).
+    pub joined: bool,
+    /// The generator that it names for its replacement.
+    pub generator: Option<usize>,
+    /// Its base element, by number.
+    pub base_element: usize,
+}
+
+/// A list of elements that stand together: an initiator, or a part of a generator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Where the elements go.
+    pub placement: Placement,
+    /// The elements in the order of listing.
+    pub elements: Vec<ListedElement>,
+    /// Whether the first element is written to start at (0, 0) and the last to end at (1, 0).
+    pub meets_frame: [bool; 2],
+}
+
+/// A generator: what replaces a fertile element.
+///
+/// The coordinates of its points are those of the unit frame, in which the replaced element runs
+/// from (0, 0) to (1, 0).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Generator {
+    pub(crate) name: String,
+    pub(crate) variables: Vec<Variable>,
+    pub(crate) points: Vec<[Program; 2]>,
+    pub(crate) moves: Vec<Move>,
+    pub(crate) parts: Vec<Part>,
+}
+
+impl Generator {
+    /// The name that selections and elements call it by.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The variables of its random function.
+    #[must_use]
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Its parts, in the order of listing.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// All elements, in the order of listing, across parts.
+    pub fn elements(&self) -> impl Iterator<Item = &ListedElement> {
+        self.parts.iter().flat_map(|part| &part.elements)
+    }
+
+    /// Whether the points depend on draws.
+    #[must_use]
+    pub fn is_random(&self) -> bool {
+        !self.variables.is_empty()
+    }
+
+    /// All expressions of the generator except those of the distributions.
+    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
+        let moves = self.moves.iter().flat_map(|m| {
+            std::iter::once(&m.rotate)
+                .chain(&m.scale)
+                .chain(&m.shift)
+                .chain(&m.about)
+        });
+        let drawn = self.variables.iter().flat_map(|variable| {
+            use super::draw::Distribution::{Choice, Normal, Uniform};
+            match variable.distribution() {
+                Uniform(a, b) | Normal(a, b) => vec![a, b],
+                Choice(values) => values.iter().collect(),
+            }
+        });
+        self.points.iter().flatten().chain(moves).chain(drawn)
+    }
+
+    /// The points for one replacement: drawn, evaluated, moved.
+    ///
+    /// `scratch` holds slots between calls, so that nothing is allocated.
+    pub(crate) fn evaluate(
+        &self,
+        moment: &Moment,
+        path: Path,
+        scratch: &mut Vec<f64>,
+        points: &mut Vec<DVec2>,
+    ) {
+        scratch.clear();
+        scratch.extend(moment.slots());
+        for variable in &self.variables {
+            let value = variable.draw(path, scratch);
+            scratch.push(value);
+        }
+        points.clear();
+        points.extend(
+            self.points
+                .iter()
+                .map(|[x, y]| DVec2::new(x.eval(scratch), y.eval(scratch))),
+        );
+        for moving in &self.moves {
+            let map = moving.map(scratch);
+            for &number in &moving.points {
+                points[number] = map.transform_point2(points[number]);
+            }
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! How elements are drawn: strokes, fills, colours by class.
+
+mod palette;
+
+use std::fmt;
+
+pub use palette::{Palette, UnknownPalette};
+
+/// A colour: red, green, blue and opacity, 0 to 255 each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour([u8; 4]);
+
+impl Colour {
+    /// Black.
+    pub const BLACK: Self = Self([0, 0, 0, 255]);
+
+    /// Reads a colour as CSS writes it: a name, `#3b6`, `#33bb66`, `rgb(…)`, `hsl(…)`, `oklch(…)` ….
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        colorgrad::Color::from_html(text)
+            .ok()
+            .map(|colour| Self(colour.to_rgba8()))
+    }
+
+    /// Red, green, blue and opacity.
+    #[must_use]
+    pub fn rgba(self) -> [u8; 4] {
+        self.0
+    }
+
+    /// The opacity, from 0 to 1.
+    #[must_use]
+    pub fn opacity(self) -> f64 {
+        f64::from(self.0[3]) / 255.0
+    }
+}
+
+/// As `#rrggbb`; the opacity is left out.
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [red, green, blue, _] = self.0;
+        write!(f, "#{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+/// The width of a stroke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Width {
+    /// In pixels of the picture.
+    Pixels(f64),
+    /// As a multiple of the element's length |p1 − p0|.
+    Relative(f64),
+}
+
+/// The ends of open paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cap {
+    /// A half disk.
+    #[default]
+    Round,
+    /// Cut off at the end point.
+    Butt,
+    /// Half a stroke's width longer.
+    Square,
+}
+
+/// The corners of paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Join {
+    /// A disk.
+    #[default]
+    Round,
+    /// Cut off.
+    Bevel,
+    /// Pointed, up to four times the stroke's width.
+    Miter,
+}
+
+/// What an element's colour tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorBy {
+    /// Nothing: one colour for all.
+    #[default]
+    None,
+    /// The step of its birth.
+    Step,
+    /// The age of its fractal.
+    Age,
+    /// The number of its fractal.
+    Fractal,
+    /// Its rank in its fractal.
+    Index,
+    /// The generator that it comes from (the initiator first).
+    Generator,
+    /// Its direction.
+    Direction,
+}
+
+/// The names of the variants of an enumeration, as files and the command line write them.
+pub trait Named: Sized + Copy + 'static {
+    /// Every variant with its name.
+    const NAMES: &'static [(&'static str, Self)];
+
+    /// The variant with a name.
+    #[must_use]
+    fn from_name(name: &str) -> Option<Self> {
+        let mut names = Self::NAMES.iter();
+        names
+            .find(|(known, _)| *known == name)
+            .map(|(_, variant)| *variant)
+    }
+}
+
+impl Named for Cap {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("round", Self::Round),
+        ("butt", Self::Butt),
+        ("square", Self::Square),
+    ];
+}
+
+impl Named for Join {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("round", Self::Round),
+        ("bevel", Self::Bevel),
+        ("miter", Self::Miter),
+    ];
+}
+
+impl Named for ColorBy {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("none", Self::None),
+        ("step", Self::Step),
+        ("age", Self::Age),
+        ("fractal", Self::Fractal),
+        ("index", Self::Index),
+        ("generator", Self::Generator),
+        ("direction", Self::Direction),
+    ];
+}
+
+/// How elements are drawn.
+///
+/// Open base elements are stroked. Closed ones are filled with the colour of their class, or with
+/// `fill`, or with `stroke`; they are outlined only where both `fill` and `stroke` are given.
+/// `fill` also fills fractals that are one closed path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Style {
+    /// The colour of strokes; black if none is given.
+    pub stroke: Option<Colour>,
+    /// Their width.
+    pub width: Width,
+    /// The ends of open paths.
+    pub cap: Cap,
+    /// The corners of paths.
+    pub join: Join,
+    /// The colour of areas.
+    pub fill: Option<Colour>,
+    /// The colour behind everything; transparent if none is given.
+    pub background: Option<Colour>,
+    /// What the colours of the palette tell.
+    pub color_by: ColorBy,
+    /// The colours that classes get.
+    pub palette: Palette,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            stroke: None,
+            width: Width::Pixels(1.5),
+            cap: Cap::Round,
+            join: Join::Round,
+            fill: None,
+            background: None,
+            color_by: ColorBy::None,
+            palette: Palette::default(),
+        }
+    }
+}
+
+impl Style {
+    /// Whether closed base elements get an outline beside their fill.
+    #[must_use]
+    pub fn outlines_polygons(&self) -> bool {
+        self.fill.is_some() && self.stroke.is_some()
+    }
+}
+
+/// What part of the plane is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct View {
+    /// A window in the rule's units: lower left corner, width, height; everything if none is given.
+    pub window: Option<[f64; 4]>,
+    /// Pixels left free around what is drawn, strokes included.
+    pub margin: f64,
+}

@@ -1,0 +1,153 @@
+use std::fmt;
+use std::sync::Arc;
+
+use colorgrad::{Gradient, GradientBuilder, LinearGradient, preset};
+
+use super::Colour;
+
+/// A scale of colours, from 0 to 1.
+#[derive(Clone)]
+pub struct Palette {
+    name: String,
+    gradient: Arc<dyn Gradient + Send + Sync>,
+}
+
+/// A palette of a name that does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no palette of this name")]
+pub struct UnknownPalette;
+
+/// Our own palettes, as colours at even distances, mixed in Oklab.
+const OWN: &[(&str, &[&str])] = &[
+    (
+        "earth-to-leaf",
+        &["#6b4a2f", "#8a6a3b", "#7f8f3a", "#5fa04e", "#8fc46a"],
+    ),
+    ("leaf", &["#2f6b3f", "#5fa04e", "#a5c957"]),
+    ("bark", &["#5a4030", "#8a6a4a", "#b89a72"]),
+    ("fire", &["#8c1c13", "#d1491b", "#f2921d", "#f7c64a"]),
+    ("ice", &["#2b5c8a", "#4c94b8", "#8fc7d6"]),
+    ("sunset", &["#4b3f8f", "#a0458f", "#e0605f", "#f2a65a"]),
+    ("ink", &["#3a4a5a", "#6f8191"]),
+];
+
+type Preset = fn() -> Arc<dyn Gradient + Send + Sync>;
+
+/// The palettes of the field, with the names that it knows them by.
+const PRESETS: &[(&str, Preset)] = &[
+    ("viridis", || Arc::new(preset::viridis())),
+    ("magma", || Arc::new(preset::magma())),
+    ("inferno", || Arc::new(preset::inferno())),
+    ("plasma", || Arc::new(preset::plasma())),
+    ("cividis", || Arc::new(preset::cividis())),
+    ("turbo", || Arc::new(preset::turbo())),
+    ("spectral", || Arc::new(preset::spectral())),
+    ("rainbow", || Arc::new(preset::rainbow())),
+    ("sinebow", || Arc::new(preset::sinebow())),
+    ("warm", || Arc::new(preset::warm())),
+    ("cool", || Arc::new(preset::cool())),
+    ("blues", || Arc::new(preset::blues())),
+    ("greens", || Arc::new(preset::greens())),
+    ("oranges", || Arc::new(preset::oranges())),
+    ("purples", || Arc::new(preset::purples())),
+    ("reds", || Arc::new(preset::reds())),
+];
+
+impl Palette {
+    /// The names of all palettes.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        let own = OWN.iter().map(|(name, _)| *name);
+        own.chain(PRESETS.iter().map(|(name, _)| *name))
+    }
+
+    /// The palette with a name.
+    ///
+    /// # Errors
+    ///
+    /// If no palette has it.
+    pub fn named(name: &str) -> Result<Self, UnknownPalette> {
+        if let Some((_, colours)) = OWN.iter().find(|(own, _)| *own == name) {
+            let colours: Vec<_> = colours
+                .iter()
+                .filter_map(|text| Colour::parse(text))
+                .collect();
+            return Ok(Self::of_colours(name, &colours));
+        }
+        let (name, preset) = PRESETS
+            .iter()
+            .find(|(preset, _)| *preset == name)
+            .ok_or(UnknownPalette)?;
+        Ok(Self {
+            name: (*name).into(),
+            gradient: preset(),
+        })
+    }
+
+    /// A palette from colours at even distances, mixed in Oklab; black if there are none.
+    #[must_use]
+    pub fn of_colours(name: &str, colours: &[Colour]) -> Self {
+        let colours: Vec<_> = match colours {
+            [] => vec![Colour::BLACK; 2],
+            [only] => vec![*only; 2],
+            several => several.to_vec(),
+        };
+        let colours: Vec<_> = colours
+            .iter()
+            .map(|colour| {
+                let [red, green, blue, opacity] = colour.rgba();
+                colorgrad::Color::from_rgba8(red, green, blue, opacity)
+            })
+            .collect();
+        let gradient = GradientBuilder::new()
+            .colors(&colours)
+            .mode(colorgrad::BlendMode::Oklab)
+            .build::<LinearGradient>()
+            .unwrap_or_else(|_| unreachable!("two colours or more make a gradient"));
+        Self {
+            name: name.into(),
+            gradient: Arc::new(gradient),
+        }
+    }
+
+    /// The name; empty for a palette of one's own.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The colour at a place from 0 to 1.
+    #[must_use]
+    pub fn at(&self, place: f64) -> Colour {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "colours need no more than f32"
+        )]
+        let place = place.clamp(0.0, 1.0) as f32;
+        Colour(self.gradient.at(place).to_rgba8())
+    }
+}
+
+impl Default for Palette {
+    fn default() -> Self {
+        Self {
+            name: "viridis".into(),
+            gradient: Arc::new(preset::viridis()),
+        }
+    }
+}
+
+impl PartialEq for Palette {
+    fn eq(&self, other: &Self) -> bool {
+        let samples = [0.0, 0.25, 0.5, 0.75, 1.0];
+        self.name == other.name
+            && samples
+                .iter()
+                .all(|&place| self.at(place) == other.at(place))
+    }
+}
+
+impl fmt::Debug for Palette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Palette").field(&self.name).finish()
+    }
+}
