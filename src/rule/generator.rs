@@ -177,8 +177,9 @@ impl Generator {
 
     /// The points for one replacement: drawn, evaluated, moved.
     ///
-    /// `scratch` holds slots between calls, so that nothing is allocated.
-    pub(crate) fn evaluate(
+    /// `scratch` and `points` are overwritten: their memory is used again, so nothing is allocated
+    /// in a walk. The points may be infinite or NaN where an expression is.
+    pub fn evaluate(
         &self,
         moment: &Moment,
         path: Path,

@@ -1,0 +1,279 @@
+//! Laws that hold for every rule, tried on random ones.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+#[path = "laws/lists.rs"]
+mod lists;
+#[path = "laws/rules.rs"]
+mod rules;
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::Source;
+use kfrac::document::Document;
+use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
+use kfrac::graph::Graph;
+use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::render::{Size, svg};
+use kfrac::rule::Rule;
+use num_bigint::BigUint;
+use proptest::prelude::*;
+use rules::Features;
+
+fn read(text: &str) -> Arc<Rule> {
+    let source = Source::new("random.yaml", text);
+    let document =
+        Document::read(&source, &Catalogue::embedded()).unwrap_or_else(|e| panic!("{e}{text}"));
+    Arc::new(
+        document
+            .resolve(&[])
+            .unwrap_or_else(|e| panic!("{e}{text}"))
+            .0,
+    )
+}
+
+/// Everything that a walk tells.
+#[derive(Default)]
+struct Collected {
+    fractals: Vec<(Fractal, Vec<Element>, bool)>,
+}
+
+impl Collected {
+    fn elements(&self) -> impl Iterator<Item = &Element> {
+        self.fractals.iter().flat_map(|(_, elements, _)| elements)
+    }
+}
+
+impl Visitor for Collected {
+    type Error = Infallible;
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        self.fractals.push((fractal, Vec::new(), false));
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.fractals.last_mut().unwrap().1.push(*element);
+        Ok(())
+    }
+
+    fn end(&mut self, joined: bool) -> Result<(), Infallible> {
+        self.fractals.last_mut().unwrap().2 = joined;
+        Ok(())
+    }
+}
+
+fn collect(graph: &Graph, steps: u32, seed: u64) -> Collected {
+    let mut collected = Collected::default();
+    let growth = Growth {
+        seed,
+        ..Growth::steps(steps)
+    };
+    let walked = walk(graph, &growth, &mut collected).unwrap();
+    assert_eq!(walked.elements, collected.elements().count() as u64);
+    assert_eq!(walked.fractals, collected.fractals.len() as u64);
+    collected
+}
+
+fn close(a: DVec2, b: DVec2) -> bool {
+    a.distance(b) <= 1e-12 * (1.0 + a.length())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Two engines: the walk over the graph, and Kaandorp's algorithm on lists.
+    #[test]
+    fn the_walk_agrees_with_kaandorps_lists(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
+        let rule = read(&text);
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let walked = collect(&graph, steps, seed);
+        let grown = lists::grow(&rule, steps, seed);
+        let listed = grown.all();
+        prop_assert_eq!(walked.fractals.len(), listed.len());
+        for ((fractal, elements, end), list) in walked.fractals.iter().zip(listed) {
+            prop_assert_eq!(fractal.age, list.age);
+            prop_assert_eq!(elements.len(), list.items.len());
+            let drawn = |item: &lists::Item| item.listed.visible;
+            for (number, (element, item)) in elements.iter().zip(&list.items).enumerate() {
+                prop_assert_eq!(element.index, number as u64 + 1);
+                prop_assert_eq!(element.frame.direction, item.frame.direction);
+                let [from, to] = element.frame.ends();
+                let [from_, to_] = item.frame.ends();
+                prop_assert!(close(from, from_) && close(to, to_));
+                prop_assert!((element.length - item.length).abs() < 1e-12);
+                prop_assert_eq!(element.fertile, item.listed.fertile);
+                prop_assert_eq!(element.born, item.born);
+                prop_assert_eq!(graph.objects()[element.object].visible, item.listed.visible);
+                if number > 0 {
+                    let joined = item.joined && drawn(item) && drawn(&list.items[number - 1]);
+                    prop_assert_eq!(element.joined, joined, "element {} of {}", number + 1, elements.len());
+                }
+            }
+            if let (Some(first), Some(item), Some(last)) = (elements.first(), list.items.first(), list.items.last()) {
+                prop_assert_eq!(first.joined && *end, item.joined && drawn(item) && drawn(last));
+            }
+        }
+    }
+
+    /// Counts of regular rules are powers of the replacement matrix: the forecast, from the graph,
+    /// is what the walk finds.
+    #[test]
+    fn the_forecast_agrees_with_the_walk(text in rules::rule(Features::REGULAR), steps in 0..4u32) {
+        let graph = Graph::compile(&read(&text), steps).unwrap();
+        let Some(mut forecast) = graph.forecast() else {
+            prop_assert!(!graph.is_regular());
+            return Ok(());
+        };
+        for _ in 0..steps {
+            prop_assert!(forecast.advance());
+        }
+        let level = forecast.level();
+        let walked = collect(&graph, steps, 0);
+        prop_assert_eq!(level.elements, BigUint::from(walked.elements().count()));
+        prop_assert_eq!(level.fertile, BigUint::from(walked.elements().filter(|element| element.fertile).count()));
+        prop_assert_eq!(level.fractals, BigUint::from(walked.fractals.len()));
+        let length: f64 = walked.elements().map(|element| element.frame.length()).sum();
+        prop_assert!((level.length.unwrap() - length).abs() < 1e-9 * (1.0 + length));
+    }
+
+    /// The box from the graph is the box of what the walk finds.
+    #[test]
+    fn the_bounds_agree_with_the_walk(text in rules::rule(Features::DETERMINISTIC), steps in 0..4u32) {
+        let graph = Graph::compile(&read(&text), steps).unwrap();
+        let Some(bounds) = graph.bounds(steps) else { return Ok(()) };
+        let mut walked = Bounds::EMPTY;
+        for element in collect(&graph, steps, 0).elements() {
+            if graph.objects()[element.object].visible {
+                walked.extend(element.frame.ends());
+            }
+        }
+        prop_assert!(close(bounds.min(), walked.min()) && close(bounds.max(), walked.max()),
+            "{:?} {:?}", bounds, walked);
+    }
+
+    /// Growing commutes with a similarity of the initiator.
+    #[test]
+    fn growing_commutes_with_a_similarity(
+        text in rules::rule(Features { seeds: false, ..Features::ALL }),
+        steps in 0..4u32,
+        (x, y) in (-3..4i32, 1..4i32),
+        (a, b) in (-2..3i32, -2..3i32),
+    ) {
+        // z → s z + t, of the initiator's points as written.
+        let (sx, sy) = (f64::from(x) / 3.0, f64::from(y) / 3.0);
+        let turned = turn_initiator(&text, [sx, sy], [f64::from(a), f64::from(b)]);
+        let similarity = Frame::between(
+            DVec2::new(f64::from(a), f64::from(b)),
+            DVec2::new(f64::from(a) + sx, f64::from(b) + sy),
+            Direction::Normal,
+        );
+        let walk_of = |text: &str| {
+            let graph = Graph::compile(&read(text), steps).unwrap();
+            collect(&graph, steps, 0)
+        };
+        let (plain, moved) = (walk_of(&text), walk_of(&turned));
+        prop_assert_eq!(plain.elements().count(), moved.elements().count());
+        for (plain, moved) in plain.elements().zip(moved.elements()) {
+            let expected = plain.frame.ends().map(|point| similarity.map.transform_point2(point));
+            let found = moved.frame.ends();
+            prop_assert!(close(expected[0], found[0]) && close(expected[1], found[1]));
+            prop_assert_eq!(plain.frame.direction, moved.frame.direction);
+        }
+    }
+
+    /// What is said to be joined stands together.
+    #[test]
+    fn connected_chains_stay_connected(text in rules::rule(Features::ALL), steps in 0..4u32) {
+        let graph = Graph::compile(&read(&text), steps).unwrap();
+        for (_, elements, end) in collect(&graph, steps, 1).fractals {
+            for pair in elements.windows(2).filter(|pair| pair[1].joined) {
+                prop_assert!(close(pair[0].frame.ends()[1], pair[1].frame.ends()[0]));
+            }
+            if let ([first, ..], [.., last], true) = (elements.as_slice(), elements.as_slice(), end) {
+                prop_assert!(!first.joined || close(last.frame.ends()[1], first.frame.ends()[0]));
+            }
+        }
+    }
+
+    /// The fertile elements of approximant n of a random rule stand where n + 1 refines them: the
+    /// elements of n + 1 that are not new are those of n that were infertile, and what is new hangs
+    /// on a fertile one.
+    #[test]
+    fn the_next_approximant_refines_this_one(text in rules::rule(Features::ALL), steps in 0..3u32, seed in 0..3u64) {
+        let rule = read(&text);
+        let graph = Graph::compile(&rule, steps + 1).unwrap();
+        let (now, next) = (collect(&graph, steps, seed), collect(&graph, steps + 1, seed));
+        let kept = |element: &&Element| !element.fertile;
+        let old = |element: &&Element| element.born <= steps;
+        let stands: Vec<_> = now.elements().filter(kept).map(|element| element.frame).collect();
+        let stays: Vec<_> = next.elements().filter(old).map(|element| element.frame).collect();
+        prop_assert_eq!(stands.len(), stays.len());
+        for frame in &stays {
+            prop_assert!(stands.contains(frame));
+        }
+        // One list engine step from what stands leads to what stands next.
+        let fertile = now.elements().filter(|element| element.fertile).count();
+        let new = next.elements().filter(|element| element.born == steps + 1).count();
+        prop_assert!(fertile > 0 || new == 0);
+    }
+
+    /// The same input gives the same bytes.
+    #[test]
+    fn two_runs_give_the_same_bytes(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
+        let draw = || {
+            let rule = read(&text);
+            let graph = Graph::compile(&rule, steps).unwrap();
+            let mut bytes = Vec::new();
+            let growth = Growth { seed, ..Growth::steps(steps) };
+            let labels = svg::Labels::default();
+            let drawn = svg::write(&graph, &growth, rule.style(), rule.view(), Size::Long(300), &labels, &mut bytes);
+            (drawn.map_err(|error| error.to_string()), bytes)
+        };
+        prop_assert_eq!(draw(), draw());
+    }
+}
+
+/// The rule with z → s z + t applied to the initiator's points, in their expressions.
+fn turn_initiator(text: &str, [sx, sy]: [f64; 2], [tx, ty]: [f64; 2]) -> String {
+    let (initiator, rest) = text.split_once("generators:").unwrap();
+    let mut turned = String::new();
+    let mut left = initiator;
+    while let Some(start) = left.find('[') {
+        let end = left.find(']').unwrap();
+        let (x, y) = left[start + 1..end].split_once(", ").unwrap();
+        turned.push_str(&left[..start]);
+        turned.push_str(&format!(
+            "[({sx})*({x}) - ({sy})*({y}) + ({tx}), ({sy})*({x}) + ({sx})*({y}) + ({ty})]"
+        ));
+        left = &left[end + 1..];
+    }
+    format!("{turned}{left}generators:{rest}")
+}
+
+#[test]
+fn directions_multiply_like_the_klein_four_group() {
+    use Direction::{BothReflected, Normal, XReflected, YReflected};
+    let table = [
+        [Normal, YReflected, XReflected, BothReflected],
+        [YReflected, Normal, BothReflected, XReflected],
+        [XReflected, BothReflected, Normal, YReflected],
+        [BothReflected, XReflected, YReflected, Normal],
+    ];
+    for (a, row) in Direction::ALL.into_iter().zip(table) {
+        for (b, product) in Direction::ALL.into_iter().zip(row) {
+            assert_eq!(a * b, product);
+            // So do the maps that they stand for, with elements from 0 to 1.
+            let frames =
+                [a, b, product].map(|direction| Frame::between(DVec2::ZERO, DVec2::X, direction));
+            assert!(
+                frames[0]
+                    .compose(&frames[1])
+                    .map
+                    .abs_diff_eq(frames[2].map, 1e-15)
+            );
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Kaandorp's algorithm (1987, section 2.2) on lists: every fractal of an approximant is held in
+//! memory and replaced as a whole. Slow, and simple enough to be read beside the paper.
+
+use kfrac::geometry::{DAffine2, DVec2, Direction, Frame};
+use kfrac::rule::draw::Path;
+use kfrac::rule::{ListedElement, Moment, Part, Placement, Rule};
+
+/// An element of a list.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    pub listed: ListedElement,
+    pub frame: Frame,
+    pub length: f64,
+    pub born: u32,
+    /// The frame of the initiator element that it descends from.
+    root: Frame,
+    path: Path,
+    /// Whether it goes on from the one before (the first one: from the last), by structure alone.
+    pub joined: bool,
+}
+
+/// A fractal: a list of elements of one age, and the fractals that it has seeded.
+#[derive(Clone, Debug)]
+pub(crate) struct Grown {
+    pub age: u32,
+    pub items: Vec<Item>,
+    seeds: Vec<Grown>,
+}
+
+impl Grown {
+    /// This fractal and its seeds, depth-first.
+    pub(crate) fn all(&self) -> Vec<&Grown> {
+        let mut all = vec![self];
+        all.extend(self.seeds.iter().flat_map(Grown::all));
+        all
+    }
+}
+
+/// Approximant `steps` of a rule.
+pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
+    let points = rule.initiator_points();
+    let items = rule
+        .initiator()
+        .elements
+        .iter()
+        .zip(0..)
+        .map(|(listed, position)| {
+            let frame = Frame::between(points[listed.from], points[listed.to], listed.direction);
+            Item {
+                listed: listed.clone(),
+                frame,
+                length: 1.0,
+                born: 0,
+                root: frame,
+                path: Path::of_seed(seed).child(position),
+                joined: listed.joined,
+            }
+        });
+    let mut first = Grown {
+        age: 0,
+        items: items.collect(),
+        seeds: Vec::new(),
+    };
+    for step in 0..steps {
+        replace(rule, &mut first, step);
+    }
+    first
+}
+
+fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
+    for seed in &mut fractal.seeds {
+        replace(rule, seed, step);
+    }
+    let mut next: Vec<Item> = Vec::new();
+    let mut broken = false;
+    for (item, rank) in std::mem::take(&mut fractal.items).into_iter().zip(1u32..) {
+        // `broken`: the list before does not reach the point where this element starts.
+        let joined = item.joined && !broken;
+        if !item.listed.fertile {
+            next.push(Item { joined, ..item });
+            broken = false;
+        } else {
+            let moment = Moment {
+                index: f64::from(rank),
+                age: f64::from(fractal.age),
+                step: f64::from(step),
+                length: item.length,
+            };
+            let number = item
+                .listed
+                .generator
+                .unwrap_or_else(|| rule.selection().select(&moment, item.path));
+            let generator = &rule.generators()[number];
+            let mut points = Vec::new();
+            generator.evaluate(&moment, item.path, &mut Vec::new(), &mut points);
+            let mut position = 0;
+            let mut body = Vec::new();
+            let mut ends = [false; 2];
+            for part in generator.parts() {
+                match part.placement {
+                    Placement::Stays => {
+                        if body.is_empty() {
+                            ends[0] = part.meets_frame[0];
+                        }
+                        ends[1] = part.meets_frame[1];
+                        body.extend(place(part, &points, &item, &mut position, step + 1));
+                    }
+                    placement => {
+                        let mut parent = item.clone();
+                        if placement == Placement::SeedsAsInitiator {
+                            let [origin, _] = item.frame.ends();
+                            parent.length = 1.0;
+                            parent.frame = Frame {
+                                map: DAffine2::from_mat2_translation(item.root.map.matrix2, origin),
+                                direction: item.root.direction,
+                            };
+                        }
+                        let mut items = place(part, &points, &parent, &mut position, step + 1);
+                        turn(&mut items, parent.frame.direction);
+                        fractal.seeds.push(Grown {
+                            age: 0,
+                            items,
+                            seeds: Vec::new(),
+                        });
+                    }
+                }
+            }
+            if let Some(first) = body.first_mut() {
+                first.joined = false;
+            }
+            turn(&mut body, item.frame.direction);
+            if item.frame.direction.is_reversed() {
+                ends.reverse();
+            }
+            if let Some(first) = body.first_mut() {
+                first.joined = joined && ends[0];
+            }
+            broken = body.is_empty() || !ends[1];
+            next.extend(body);
+        }
+    }
+    if let Some(first) = next.first_mut() {
+        // A ring goes on from its last element.
+        first.joined &= !broken;
+    }
+    fractal.items = next;
+    fractal.age += 1;
+}
+
+fn place(part: &Part, points: &[DVec2], parent: &Item, position: &mut u32, born: u32) -> Vec<Item> {
+    let mut items = Vec::new();
+    for listed in &part.elements {
+        let (from, to) = (points[listed.from], points[listed.to]);
+        items.push(Item {
+            listed: listed.clone(),
+            frame: parent
+                .frame
+                .compose(&Frame::between(from, to, listed.direction)),
+            length: parent.length * (to - from).length(),
+            born,
+            root: parent.root,
+            path: parent.path.child(*position),
+            joined: listed.joined,
+        });
+        *position += 1;
+    }
+    items
+}
+
+/// Puts a list into the order of traversal: backwards for directions 3 and 4. What joined the
+/// element listed before is then joined by it.
+fn turn(items: &mut [Item], direction: Direction) {
+    if direction.is_reversed() {
+        let mut joined: Vec<bool> = items.iter().map(|item| item.joined).collect();
+        let count = joined.len().min(1);
+        joined.rotate_left(count);
+        items.reverse();
+        joined.reverse();
+        for (item, joined) in items.iter_mut().zip(joined) {
+            item.joined = joined;
+        }
+    }
+}
