@@ -35,11 +35,15 @@ impl Colour {
     }
 }
 
-/// As `#rrggbb`; the opacity is left out.
+/// As `#rrggbb`; the opacity is left out. The alternate form is `#rrggbbaa` where that matters.
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [red, green, blue, _] = self.0;
-        write!(f, "#{red:02x}{green:02x}{blue:02x}")
+        let [red, green, blue, opacity] = self.0;
+        write!(f, "#{red:02x}{green:02x}{blue:02x}")?;
+        if f.alternate() && opacity < 255 {
+            write!(f, "{opacity:02x}")?;
+        }
+        Ok(())
     }
 }
 
@@ -100,6 +104,18 @@ pub enum ColorBy {
 pub trait Named: Sized + Copy + 'static {
     /// Every variant with its name.
     const NAMES: &'static [(&'static str, Self)];
+
+    /// The variant's name.
+    #[must_use]
+    fn name(self) -> &'static str
+    where
+        Self: PartialEq,
+    {
+        let mut names = Self::NAMES.iter();
+        names
+            .find(|(_, known)| *known == self)
+            .map_or("", |(name, _)| name)
+    }
 
     /// The variant with a name.
     #[must_use]

@@ -2,31 +2,453 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
-use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
 
-fn kfrac(folder: &std::path::Path) -> Command {
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+
+fn kfrac(folder: &Path) -> Command {
     let mut command = Command::cargo_bin("kfrac").unwrap();
     command
         .current_dir(folder)
         .env_remove("KFRAC_LIBRARY")
-        .env("XDG_DATA_HOME", folder);
+        .env("XDG_DATA_HOME", folder.join("data"));
     command
+}
+
+fn stdout(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+}
+
+fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Assert {
+    kfrac(folder).args(arguments).assert()
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }
 
 #[test]
 fn the_main_job_works_in_an_empty_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let run = kfrac(folder.path())
-        .args(["grow", "pythagoras.yaml", "--steps", "8"])
-        .assert()
-        .success();
-    let said = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+    let run = run(folder.path(), &["grow", "pythagoras.yaml", "--steps", "8"]).success();
+    let said = stderr(&run);
     assert!(
-        said.starts_with("pythagoras.svg: step 8 of pythagoras, 766 elements, 1024 x "),
+        said.starts_with("pythagoras.svg: step 8 of pythagoras, 766 elements, 1024 x 699 pixels, "),
         "{said}"
     );
-    assert!(run.get_output().stdout.is_empty());
-    let svg = std::fs::read_to_string(folder.path().join("pythagoras.svg")).unwrap();
+    assert_eq!(said.lines().count(), 1);
+    assert_eq!(stdout(&run), "");
+    let svg = fs::read_to_string(folder.path().join("pythagoras.svg")).unwrap();
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(files(folder.path()), ["pythagoras.svg"]);
+}
+
+#[test]
+fn rows_are_elements_in_order_of_traversal() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = run(
+        folder.path(),
+        &[
+            "grow", "koch", "--steps", "1", "--format", "csv", "-o", "-", "-q",
+        ],
+    )
+    .success();
+    assert_eq!(
+        stdout(&csv),
+        "fractal,age,index,x0,y0,x1,y1,fertile,direction,visible\n\
+         0,1,1,0,0,0.3333333333333333,0,true,1,true\n\
+         0,1,2,0.3333333333333333,0,0.5,0.28867513459481287,true,1,true\n\
+         0,1,3,0.5,0.28867513459481287,0.6666666666666666,0,true,1,true\n\
+         0,1,4,0.6666666666666666,0,1,0,true,1,true\n"
+    );
+    let json = run(
+        folder.path(),
+        &[
+            "grow", "spiral", "--steps", "0", "--format", "json", "-o", "-",
+        ],
+    )
+    .success();
+    assert_eq!(
+        stdout(&json),
+        "{\"fractal\":0,\"age\":0,\"index\":1,\"x0\":0,\"y0\":0,\"x1\":1,\"y1\":0,\"fertile\":true,\
+         \"direction\":1,\"visible\":true}\n"
+    );
+    assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
+fn info_tells_the_size_of_every_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let info = run(folder.path(), &["info", "koch", "--steps", "3", "--json"]).success();
+    let info: serde_json::Value = serde_json::from_str(&stdout(&info)).unwrap();
+    let keys: Vec<_> = info
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
+    let mut expected = [
+        "name",
+        "kind",
+        "space",
+        "title",
+        "params",
+        "random",
+        "regular",
+        "steps",
+        "elements",
+        "fertile",
+        "fractals",
+        "length",
+        "area",
+        "bounds",
+        "limit_bounds",
+        "dimension",
+    ];
+    expected.sort_unstable();
+    assert_eq!(keys, expected);
+    assert_eq!(info["elements"], serde_json::json!(["1", "4", "16", "64"]));
+    assert_eq!(info["fractals"], serde_json::json!(["1", "1", "1", "1"]));
+    assert_eq!(info["area"], serde_json::Value::Null);
+    assert_eq!(info["bounds"]["min"], serde_json::json!([0, 0]));
+    let dimension = info["dimension"]["similarity"].as_f64().unwrap();
+    assert!((dimension - 4f64.ln() / 3f64.ln()).abs() < 1e-12);
+
+    let info = run(folder.path(), &["info", "random-tree", "--json"]).success();
+    let info: serde_json::Value = serde_json::from_str(&stdout(&info)).unwrap();
+    assert_eq!(info["random"], true);
+    assert!(info["elements"].is_array() && info["length"].is_null() && info["bounds"].is_null());
+}
+
+#[test]
+fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = run(folder.path(), &["grow", "koch", "--steps", "40"]).code(1);
+    assert_eq!(
+        stderr(&refused),
+        "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements; 12 is the deepest step within \
+         --max-elements\n"
+    );
+    // Where the size is not known before, the walk ends at the limit and leaves nothing.
+    fs::write(
+        folder.path().join("many.yaml"),
+        "initiator: segment\ngenerators: {a: koch, b: levy}\nselect: {at_random: {a: 1, b: 1}}\n",
+    )
+    .unwrap();
+    let ended = run(
+        folder.path(),
+        &[
+            "grow",
+            "many.yaml",
+            "--steps",
+            "30",
+            "--max-elements",
+            "1000",
+        ],
+    )
+    .code(1);
+    assert!(
+        stderr(&ended).contains("more than 1,000 elements"),
+        "{}",
+        stderr(&ended)
+    );
+    assert_eq!(files(folder.path()), ["many.yaml"]);
+}
+
+#[test]
+fn parameters_are_set_by_name_and_within_their_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |setting: &str| {
+        let arguments = [
+            "grow",
+            "pythagoras",
+            "--steps",
+            "1",
+            "--set",
+            setting,
+            "-o",
+            "-",
+            "--format",
+            "csv",
+        ];
+        run(folder.path(), &arguments)
+    };
+    assert!(
+        stdout(&rows("angle=30").success()).contains(",0.7499999999999999,1.4330127018922192,")
+    );
+    assert_eq!(
+        stdout(&rows("angle=60/2").success()),
+        stdout(&rows("angle=30").success())
+    );
+    let unknown = rows("angel=30").code(2);
+    assert!(
+        stderr(&unknown).contains("did you mean 'angle'?"),
+        "{}",
+        stderr(&unknown)
+    );
+    assert!(stderr(&rows("angle=89").code(2)).contains("above its largest value 85"));
+    rows("angle").code(2);
+    rows("angle=1/0").code(2);
+}
+
+#[test]
+fn the_command_line_has_its_own_exit_status() {
+    let folder = tempfile::tempdir().unwrap();
+    for wrong in [
+        &["grow"][..],
+        &["grow", "koch", "--steps", "-1"],
+        &["grow", "koch", "--size", "0x0"],
+        &["grow", "koch", "--stroke", "blurple"],
+        &["grow", "koch", "--palette", "virids"],
+        &["grow", "koch", "-o", "koch.bmp"],
+        &["grow", "koch", "--view", "0,0,0,1"],
+        &["grwo", "koch"],
+    ] {
+        run(folder.path(), wrong).code(2);
+    }
+    run(folder.path(), &["grow", "kosh"]).code(1);
+    run(folder.path(), &["grow", "koch", "--margin", "600"]).code(1);
+    run(
+        folder.path(),
+        &["grow", "koch", "-o", "no/such/folder/koch.svg"],
+    )
+    .code(1);
+    assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
+fn folders_of_ones_own_come_before_the_library() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |path: &str, title: &str| {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let text = format!(
+            "title: {title}\ninitiator: segment\ngenerator: [[0, 0], [1/2, 1/3], [1, 0]]\n"
+        );
+        fs::write(path, text).unwrap();
+    };
+    let title = |arguments: &[&str]| {
+        let info = kfrac(folder.path())
+            .env("KFRAC_LIBRARY", folder.path().join("environment"))
+            .args(["info", "koch", "--json"])
+            .args(arguments)
+            .assert()
+            .success();
+        let info: serde_json::Value = serde_json::from_str(&stdout(&info)).unwrap();
+        info["title"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(title(&[]), "Koch curve");
+    write("data/kfrac/rules/koch.yaml", "data");
+    assert_eq!(title(&[]), "data");
+    write("environment/rules/koch.yaml", "environment");
+    assert_eq!(title(&[]), "environment");
+    write("given/koch.yaml", "given");
+    assert_eq!(title(&["--library", "given"]), "given");
+    // A file that exists wins.
+    write("koch", "here");
+    assert_eq!(title(&["--library", "given"]), "here");
+}
+
+#[test]
+fn the_library_is_listed_with_rules_and_components() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = run(folder.path(), &["list", "--json"]).success();
+    let list: serde_json::Value = serde_json::from_str(&stdout(&list)).unwrap();
+    let koch = list
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|row| row["name"] == "koch" && row["kind"] == "rule");
+    assert_eq!(koch.unwrap()["path"], "embedded");
+    assert_eq!(koch.unwrap()["title"], "Koch curve");
+    for kind in ["rule", "initiator", "generator", "base_element"] {
+        assert!(
+            list.as_array()
+                .unwrap()
+                .iter()
+                .any(|row| row["kind"] == kind),
+            "{kind}"
+        );
+    }
+    let dragons = stdout(&run(folder.path(), &["list", "dragon"]).success());
+    assert!(dragons.contains("terdragon") && !dragons.contains("koch"));
+}
+
+#[test]
+fn a_rule_is_printed_as_it_is_or_with_everything_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = stdout(&run(folder.path(), &["cat", "vegetation"]).success());
+    assert_eq!(plain, include_str!("../library/rules/vegetation.yaml"));
+    let inline = stdout(&run(folder.path(), &["cat", "pythagoras-30", "--inline"]).success());
+    assert!(!inline.contains("extends") && inline.contains("- [0, 0]"));
+    // What was inlined draws the same.
+    let csv = |rule: &str, input: &str| {
+        let assert = kfrac(folder.path())
+            .args(["grow", rule, "--steps", "4", "--format", "csv", "-o", "-"])
+            .write_stdin(input)
+            .assert()
+            .success();
+        stdout(&assert)
+    };
+    assert_eq!(csv("-", &inline), csv("pythagoras-30", ""));
+}
+
+#[test]
+fn a_picture_tells_how_to_make_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "grow",
+        "random-tree",
+        "--steps",
+        "5",
+        "--seed",
+        "7",
+        "--set",
+        "sway=20",
+        "--size",
+        "300x200",
+        "--color-by",
+        "generator",
+        "--margin",
+        "3",
+        "--background",
+        "#abcd",
+    ];
+    run(folder.path(), &arguments).success();
+    let path = folder.path().join("random-tree.svg");
+    let first = fs::read_to_string(&path).unwrap();
+    let start = first.find("<metadata>\n").unwrap() + "<metadata>\n".len();
+    let end = first.find("</metadata>").unwrap();
+    let text = first[start..end]
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&amp;", "&");
+    let command = text
+        .lines()
+        .find(|line| line.starts_with("# kfrac grow"))
+        .unwrap()
+        .to_owned();
+    fs::write(folder.path().join("random-tree.yaml"), text).unwrap();
+    fs::remove_file(&path).unwrap();
+    let words = command
+        .split_whitespace()
+        .skip(2)
+        .map(|word| word.trim_matches('\''));
+    let words: Vec<_> = words.collect();
+    run(folder.path(), &words).success();
+    assert_eq!(fs::read_to_string(&path).unwrap(), first);
+}
+
+#[test]
+fn check_tells_all_that_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("wrong.yaml"),
+        "initiator: segmnt\ngenerator:\n  - [0, 0]\n  - {to: [1/2, 1/0], fertil: false}\n  - [1, 0]\n",
+    )
+    .unwrap();
+    let check = run(folder.path(), &["check", "koch", "wrong.yaml", "--json"]).code(1);
+    let rows: serde_json::Value = serde_json::from_str(&stdout(&check)).unwrap();
+    let places: Vec<_> = rows
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| (&row["line"], &row["column"]))
+        .collect();
+    assert_eq!(
+        serde_json::to_string(&places).unwrap(),
+        "[[1,12],[4,18],[4,22]]"
+    );
+    assert!(
+        rows.as_array()
+            .unwrap()
+            .iter()
+            .all(|row| row["severity"] == "error" && row["file"] == "wrong.yaml")
+    );
+    assert_eq!(
+        stdout(&run(folder.path(), &["check", "koch"]).success()),
+        "koch: ok\n"
+    );
+}
+
+#[test]
+fn an_existing_file_is_replaced_as_a_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("koch.svg");
+    fs::write(&path, "old").unwrap();
+    run(folder.path(), &["grow", "koch", "--margin", "600"]).code(1);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+    run(folder.path(), &["grow", "koch"]).success();
+    assert!(fs::read_to_string(&path).unwrap().ends_with("</svg>\n"));
+    assert_eq!(files(folder.path()), ["koch.svg"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = run(
+        folder.path(),
+        &["grow", "koch", "-o", "/dev/full", "--format", "svg"],
+    )
+    .code(1);
+    assert!(
+        stderr(&full).contains("'/dev/full' cannot be written"),
+        "{}",
+        stderr(&full)
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
+        .current_dir(folder.path())
+        .args(["grow", "koch", "--steps", "9", "--format", "csv", "-o", "-"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
+        .current_dir(folder.path())
+        .args(["grow", "koch", "--steps", "12", "--format", "csv"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    // The work is under way once the file that is to become the table is there.
+    while files(folder.path()).is_empty() {
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "it ended before it could be interrupted"
+        );
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(files(folder.path()), [""; 0]);
 }

@@ -47,7 +47,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let rows: Vec<_> = all
             .iter()
             .flat_map(|(file, diagnostics)| {
-                diagnostics.iter().map(|diagnostic| row(file, diagnostic))
+                let mut rows: Vec<_> = diagnostics.iter().map(|found| row(file, found)).collect();
+                rows.sort_by_key(|row| (row.file != *file, row.file, row.line, row.column));
+                rows
             })
             .collect();
         output::print(&format!(

@@ -113,6 +113,56 @@ impl Format {
     }
 }
 
+impl Arguments {
+    /// The command that makes the picture again from the rule as resolved.
+    fn command(&self, name: &str, growth: &Growth<'_>) -> String {
+        let mut command = format!(
+            "kfrac grow {name}.yaml --steps {} --seed {}",
+            growth.steps, growth.seed
+        );
+        let mut option = |name: &str, value: Option<String>| {
+            if let Some(value) = value {
+                command.push_str(&format!(" --{name} '{value}'"));
+            }
+        };
+        for setting in &self.rule.set {
+            option("set", Some(format!("{}={}", setting.name, setting.value)));
+        }
+        let colour = |colour: Option<Colour>| colour.map(|colour| format!("{colour:#}"));
+        option(
+            "size",
+            Some(match self.size {
+                Size::Long(side) => side.to_string(),
+                Size::Exactly(width, height) => format!("{width}x{height}"),
+            }),
+        );
+        option(
+            "view",
+            self.view
+                .map(|view| view.map(|number| number.to_string()).join(",")),
+        );
+        option("stroke", colour(self.stroke));
+        option(
+            "stroke-width",
+            self.stroke_width.map(|width| match width {
+                Width::Pixels(width) => width.to_string(),
+                Width::Relative(width) => format!("{}%", width * 100.0),
+            }),
+        );
+        option("fill", colour(self.fill));
+        option("cap", self.cap.map(|cap| cap.name().into()));
+        option("join", self.join.map(|join| join.name().into()));
+        option("margin", self.margin.map(|margin| margin.to_string()));
+        option("background", colour(self.background));
+        option("color-by", self.color_by.map(|by| by.name().into()));
+        option(
+            "palette",
+            self.palette.as_ref().map(|palette| palette.name().into()),
+        );
+        command
+    }
+}
+
 const MOST_PIXELS: u32 = 1_000_000;
 
 fn size(text: &str) -> Result<Size, String> {
@@ -325,16 +375,10 @@ fn labels(arguments: &Arguments, loaded: &Loaded, growth: &Growth<'_>) -> svg::L
         .clone()
         .unwrap_or_else(|| loaded.name.clone());
     let mut provenance = format!(
-        "# kfrac {} grow {}.yaml --steps {} --seed {}",
+        "# kfrac {}\n# {}\n",
         env!("CARGO_PKG_VERSION"),
-        loaded.name,
-        growth.steps,
-        growth.seed
+        arguments.command(&loaded.name, growth)
     );
-    for setting in &arguments.rule.set {
-        provenance.push_str(&format!(" --set {}={}", setting.name, setting.value));
-    }
-    provenance.push('\n');
     for parameter in loaded.rule.parameters() {
         provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
     }

@@ -201,13 +201,13 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         },
     );
     let dimension = match (info.dimension.similarity, &info.dimension.note) {
-        (Some(value), Some(note)) => format!("{value} ({note})"),
-        (Some(value), None) => value.to_string(),
+        (Some(value), Some(note)) => format!("{} ({note})", decimal(value)),
+        (Some(value), None) => decimal(value),
         (None, note) => note.clone().unwrap_or_else(|| "unknown".into()),
     };
     line("dimension", &dimension);
     let corners = |corners: &Corners| {
-        let [[a, b], [c, d]] = [corners.min, corners.max];
+        let [[a, b], [c, d]] = [corners.min, corners.max].map(|corner| corner.map(decimal));
         format!("[{a}, {b}] to [{c}, {d}]")
     };
     if let Some(bounds) = &info.bounds {
@@ -225,6 +225,12 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         None => text.push_str("How large its steps are is not known before they are grown.\n"),
     }
     text
+}
+
+/// Twelve decimals, without zeros at the end.
+fn decimal(value: f64) -> String {
+    let text = format!("{value:.12}");
+    text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
 fn parameter_line(parameter: &Parameter) -> String {

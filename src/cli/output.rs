@@ -17,7 +17,10 @@ pub(super) enum Output {
         path: PathBuf,
     },
     /// A pipe or device, written as it is.
-    Device(BufWriter<File>),
+    Device {
+        file: BufWriter<File>,
+        path: PathBuf,
+    },
 }
 
 /// Bytes that are handed to the system at once.
@@ -45,7 +48,11 @@ impl Output {
                 .write(true)
                 .open(path)
                 .with_context(failed)?;
-            return Ok(Self::Device(BufWriter::with_capacity(BUFFER, device)));
+            let file = BufWriter::with_capacity(BUFFER, device);
+            return Ok(Self::Device {
+                file,
+                path: path.to_path_buf(),
+            });
         }
         // A link stays one: what it points to is replaced.
         let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
@@ -72,7 +79,9 @@ impl Output {
     pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {
             Self::Standard(mut out) => out.flush()?,
-            Self::Device(mut out) => out.flush()?,
+            Self::Device { mut file, path } => file
+                .flush()
+                .with_context(|| format!("'{}' cannot be written", path.display()))?,
             Self::File { file, path } => {
                 let failed = || format!("'{}' cannot be written", path.display());
                 let file = file
@@ -93,7 +102,7 @@ impl Write for Output {
         match self {
             Self::Standard(out) => out.write(bytes),
             Self::File { file, .. } => file.write(bytes),
-            Self::Device(out) => out.write(bytes),
+            Self::Device { file, .. } => file.write(bytes),
         }
     }
 
@@ -101,7 +110,7 @@ impl Write for Output {
         match self {
             Self::Standard(out) => out.flush(),
             Self::File { file, .. } => file.flush(),
-            Self::Device(out) => out.flush(),
+            Self::Device { file, .. } => file.flush(),
         }
     }
 }

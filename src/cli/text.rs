@@ -11,7 +11,7 @@ pub(super) fn complain(diagnostics: &Diagnostics) {
     let stderr = anstream::stderr();
     let color = std::io::stderr().is_terminal();
     // Nobody is left to be told that standard error is closed.
-    let _ = write!(stderr.lock(), "{}", diagnostics.render(color));
+    let _ = writeln!(stderr.lock(), "{}", diagnostics.render(color).trim_end());
 }
 
 /// Writes a line to standard error.

@@ -26,6 +26,8 @@ struct State {
     object: usize,
     vector: DVec2,
     offset: f64,
+    /// What rounding has taken from the offset.
+    lost: f64,
 }
 
 /// What the search needs to know of the graph.
@@ -188,7 +190,7 @@ impl Graph {
 
     fn support(&self, direction: DVec2, steps: Option<u32>, reach: &Reach) -> Option<f64> {
         let start = self.initiator.instances.iter();
-        let mut states = merged(start.map(|instance| child(instance, direction, 0.0)));
+        let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         for level in 0..=MOST_LEVELS {
             let last = steps == Some(level);
@@ -199,7 +201,8 @@ impl Graph {
                 let kept = matches!(object.replacement, Replacement::Kept);
                 if (kept || last) && object.visible {
                     let base_element = &self.base_elements()[object.base_element];
-                    best = best.max(state.offset + base_element.support(state.vector));
+                    let reached = base_element.support(state.vector) + state.lost;
+                    best = best.max(state.offset + reached);
                 }
                 let size = state.vector.length() * reach.radius;
                 if reach.alive[state.object] {
@@ -220,7 +223,7 @@ impl Graph {
                 if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
                     if size <= NEGLIGIBLE * (1.0 + state.offset.abs()) {
                         if reach.alive[state.object] {
-                            best = best.max(state.offset);
+                            best = best.max(state.offset + state.lost);
                         }
                         continue;
                     }
@@ -229,7 +232,9 @@ impl Graph {
                         .iter()
                         .flat_map(|seed| &seed.chain.instances);
                     let all = production.body.instances.iter().chain(seeds);
-                    next.extend(all.map(|instance| child(instance, state.vector, state.offset)));
+                    next.extend(
+                        all.map(|instance| child(instance, state.vector, state.offset, state.lost)),
+                    );
                 }
             }
             if next.is_empty() {
@@ -244,12 +249,18 @@ impl Graph {
     }
 }
 
-fn child(instance: &Instance, vector: DVec2, offset: f64) -> State {
+fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
     let map = &instance.frame.map;
+    let shift = vector.dot(map.translation);
+    // Knuth's exact sum of two doubles (TwoSum): errors of many levels do not add up.
+    let sum = offset + shift;
+    let rounded = sum - offset;
+    let error = (offset - (sum - rounded)) + (shift - rounded);
     State {
         object: instance.object,
         vector: map.matrix2.transpose() * vector,
-        offset: offset + vector.dot(map.translation),
+        offset: sum,
+        lost: lost + error,
     }
 }
 
@@ -264,7 +275,9 @@ fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
         match numbers.get(&(state.object, key)) {
             Some(&number) => {
                 let known: &mut State = &mut kept[number];
-                known.offset = known.offset.max(state.offset);
+                if (known.offset, known.lost) < (state.offset, state.lost) {
+                    (known.offset, known.lost) = (state.offset, state.lost);
+                }
             }
             None => {
                 numbers.insert((state.object, key), kept.len());

@@ -46,7 +46,14 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if edges.iter().any(|edge| edge.ratio >= 1.0) {
         return Similarity::none("there is no limit set: a generator does not shrink");
     }
-    let radius = |dimension: f64| spectral_radius(size, &edges, dimension);
+    let moran = moran_ratios(size, &edges);
+    let radius = |dimension: f64| match &moran {
+        Some(ratios) => ratios
+            .iter()
+            .map(|&ratio| libm::pow(ratio, dimension))
+            .sum(),
+        None => spectral_radius(size, &edges, dimension),
+    };
     let at_zero = radius(0.0);
     if at_zero < 1.0 - 1e-9 {
         return Similarity::none("nothing stays fertile");
@@ -114,6 +121,21 @@ fn edges(graph: &Graph) -> Option<Vec<Edge>> {
         }
     }
     Some(edges)
+}
+
+/// The ratios of Moran's equation, if all objects that are replaced have the same ones.
+fn moran_ratios(size: usize, edges: &[Edge]) -> Option<Vec<f64>> {
+    let mut ratios = vec![Vec::new(); size];
+    for edge in edges {
+        ratios[edge.from].push(edge.ratio);
+    }
+    ratios
+        .iter_mut()
+        .for_each(|ratios| ratios.sort_by(f64::total_cmp));
+    // An object that nothing fertile comes from leads nowhere.
+    let mut rows = ratios.into_iter().filter(|ratios| !ratios.is_empty());
+    let first = rows.next()?;
+    rows.all(|row| row == first).then_some(first)
 }
 
 /// The spectral radius of the matrix of Σ ratio^D, by power iteration on the matrix plus the

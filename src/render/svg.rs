@@ -234,8 +234,8 @@ impl<'a, W: Write> Painter<'a, W> {
                 Width::Pixels(width) => format!(r#" stroke-width="{}""#, width * FINE),
                 Width::Relative(_) => String::new(),
             };
-            let cap = name(self.style.cap);
-            let join = name(self.style.join);
+            let cap = self.style.cap.name();
+            let join = self.style.join.name();
             writeln!(
                 self.buffer,
                 r#"<g fill="none" stroke="{stroke}"{}{width}{}{}>"#,
@@ -461,11 +461,4 @@ impl<W: Write> Visitor for Painter<'_, W> {
         }
         Ok(())
     }
-}
-
-fn name<T: Named + PartialEq>(variant: T) -> &'static str {
-    T::NAMES
-        .iter()
-        .find(|(_, known)| *known == variant)
-        .map_or("", |(name, _)| name)
 }
