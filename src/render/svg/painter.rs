@@ -1,0 +1,366 @@
+use std::io::{self, Write};
+
+use crate::geometry::DVec2;
+use crate::graph::Graph;
+use crate::grow::{Element, Fractal, Visitor};
+use crate::render::path::{PathData, Position};
+use crate::render::{Canvas, Classes};
+use crate::rule::Piece;
+use crate::style::{Cap, Colour, Join, Named, Style, Width};
+
+use super::{FINE, opacity};
+
+/// Path data is handed on in pieces of about this many bytes.
+const CHUNK: usize = 1 << 16;
+
+/// How a path element is painted: a new one is begun where this changes.
+#[derive(Clone, Copy, PartialEq)]
+struct Paint {
+    kind: Kind,
+    /// The width of a relative stroke, in steps of a quarter octave.
+    width: i32,
+}
+
+/// What a path element holds.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// Open lines.
+    Line,
+    /// A closed path of lines that is filled.
+    Ring,
+    /// Closed base elements.
+    Polygon,
+}
+
+impl Paint {
+    fn strokes(self, style: &Style) -> bool {
+        self.kind != Kind::Polygon || style.outlines_polygons()
+    }
+}
+
+/// Where the element before ended.
+#[derive(Clone, Copy)]
+struct Previous {
+    end: DVec2,
+    /// Whether that is the end of the element's frame.
+    meets_frame: bool,
+    /// Whether the pen has drawn it.
+    drawn: bool,
+}
+
+/// Writes the elements of one class.
+pub(super) struct Painter<'a, W: Write> {
+    graph: &'a Graph,
+    style: &'a Style,
+    canvas: &'a Canvas,
+    classes: &'a Classes,
+    class: u64,
+    colour: Option<Colour>,
+    out: &'a mut W,
+    buffer: Vec<u8>,
+    path: PathData,
+    paint: Option<Paint>,
+    group_is_open: bool,
+    fractal: Fractal,
+    previous: Option<Previous>,
+    /// For a ring that has not been broken: whether its first element starts where its frame does.
+    ring: Option<bool>,
+    is_first: bool,
+    /// Whether the fractal is a closed path that is filled.
+    fills: bool,
+}
+
+impl<'a, W: Write> Painter<'a, W> {
+    pub(super) fn new(
+        graph: &'a Graph,
+        style: &'a Style,
+        canvas: &'a Canvas,
+        classes: &'a Classes,
+        class: u64,
+        colour: Option<Colour>,
+        out: &'a mut W,
+    ) -> Self {
+        Self {
+            graph,
+            style,
+            canvas,
+            classes,
+            class,
+            colour,
+            out,
+            buffer: Vec::with_capacity(2 * CHUNK),
+            path: PathData::default(),
+            paint: None,
+            group_is_open: false,
+            fractal: Fractal { number: 0, age: 0 },
+            previous: None,
+            ring: None,
+            is_first: true,
+            fills: false,
+        }
+    }
+
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    fn position(&self, point: DVec2) -> Position {
+        let fine = self.canvas.pixel(point) * FINE;
+        [fine.x.round() as i64, fine.y.round() as i64]
+    }
+
+    /// Goes on with the open path element if it is painted alike, or begins a new one.
+    fn begin_path(&mut self, paint: Paint) -> io::Result<()> {
+        if self.paint == Some(paint) {
+            return Ok(());
+        }
+        self.end_path()?;
+        let stroke = self.colour.or(self.style.stroke).unwrap_or(Colour::BLACK);
+        if !self.group_is_open {
+            self.group_is_open = true;
+            let width = match self.style.width {
+                Width::Pixels(width) => format!(r#" stroke-width="{}""#, width * FINE),
+                Width::Relative(_) => String::new(),
+            };
+            let cap = self.style.cap.name();
+            let join = self.style.join.name();
+            writeln!(
+                self.buffer,
+                r#"<g fill="none" stroke="{stroke}"{}{width}{}{}>"#,
+                opacity("stroke", stroke),
+                if self.style.cap == Cap::Butt {
+                    String::new()
+                } else {
+                    format!(r#" stroke-linecap="{cap}""#)
+                },
+                if self.style.join == Join::Miter {
+                    String::new()
+                } else {
+                    format!(r#" stroke-linejoin="{join}""#)
+                },
+            )?;
+        }
+        self.buffer.extend_from_slice(b"<path");
+        match paint.kind {
+            Kind::Line => {}
+            Kind::Ring => self.attribute("fill", self.style.fill)?,
+            Kind::Polygon => {
+                self.attribute("fill", self.colour.or(self.style.fill).or(Some(stroke)))?;
+                if self.style.outlines_polygons() {
+                    self.attribute("stroke", self.style.stroke)?;
+                } else {
+                    self.buffer.extend_from_slice(br#" stroke="none""#);
+                }
+            }
+        }
+        if let (Width::Relative(_), true) = (self.style.width, paint.strokes(self.style)) {
+            let width = libm::exp2(f64::from(paint.width) / 4.0);
+            write!(self.buffer, r#" stroke-width="{width:.1}""#)?;
+        }
+        self.buffer.extend_from_slice(b" d=\"");
+        self.paint = Some(paint);
+        Ok(())
+    }
+
+    /// A colour that differs from the group's.
+    fn attribute(&mut self, name: &str, colour: Option<Colour>) -> io::Result<()> {
+        let Some(colour) = colour else { return Ok(()) };
+        write!(
+            self.buffer,
+            r#" {name}="{colour}"{}"#,
+            opacity(name, colour)
+        )
+    }
+
+    fn end_path(&mut self) -> io::Result<()> {
+        if self.paint.take().is_some() {
+            self.path.finish();
+            self.path.drain(&mut self.buffer);
+            self.path = PathData::default();
+            self.buffer.extend_from_slice(b"\"/>\n");
+        }
+        if let Some(previous) = &mut self.previous {
+            previous.drawn = false;
+        }
+        self.hand_on(CHUNK)
+    }
+
+    /// Hands the buffer on once it holds more than `most` bytes.
+    fn hand_on(&mut self, most: usize) -> io::Result<()> {
+        if self.buffer.len() > most {
+            self.out.write_all(&self.buffer)?;
+            self.buffer.clear();
+        }
+        Ok(())
+    }
+
+    pub(super) fn close_group(mut self) -> io::Result<()> {
+        self.end_path()?;
+        if self.group_is_open {
+            self.buffer.extend_from_slice(b"</g>\n");
+        }
+        self.hand_on(0)
+    }
+
+    fn polygon(&mut self, element: &Element) -> io::Result<()> {
+        let outlined = self.style.outlines_polygons();
+        let width = if outlined {
+            self.width_class(element)
+        } else {
+            0
+        };
+        self.begin_path(Paint {
+            kind: Kind::Polygon,
+            width,
+        })?;
+        let object = &self.graph.objects()[element.object];
+        let base_element = &self.graph.base_elements()[object.base_element];
+        let map = element.frame.map;
+        // One orientation for all, so that what overlaps stays filled under the nonzero rule.
+        let mirrored = element.frame.direction.is_mirrored();
+        let backwards = (base_element.signed_area() < 0.0) != mirrored;
+        let (start, pieces) = base_element.outline(backwards);
+        self.path
+            .move_to(self.position(map.transform_point2(start)));
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+        let returned = matches!(pieces.last(), Some(Piece::Line(_)));
+        self.path.close(returned);
+        Ok(())
+    }
+
+    fn line(&mut self, element: &Element) -> io::Result<()> {
+        let object = &self.graph.objects()[element.object];
+        let base_element = &self.graph.base_elements()[object.base_element];
+        let reversed = element.frame.direction.is_reversed();
+        let map = element.frame.map;
+        if self.is_first {
+            let whole = self.classes.keep_fractals_whole();
+            self.fills = element.joined && self.style.fill.is_some() && whole;
+        }
+        self.begin_path(Paint {
+            kind: if self.fills { Kind::Ring } else { Kind::Line },
+            width: self.width_class(element),
+        })?;
+        let [mut meets_start, mut meets_end] = base_element.ends_meet_frame();
+        if reversed {
+            (meets_start, meets_end) = (meets_end, meets_start);
+        }
+        let (start, pieces) = base_element.outline(reversed);
+        let start = map.transform_point2(start);
+        let previous = self.previous.filter(|_| element.joined);
+        let shares = previous.is_some_and(|previous| previous.meets_frame && meets_start);
+        match previous {
+            Some(Previous { drawn: true, .. }) if shares => {}
+            Some(Previous { drawn: true, .. }) => self.path.line_to(self.position(start)),
+            Some(Previous { end, .. }) if !shares => {
+                self.path.move_to(self.position(end));
+                self.path.line_to(self.position(start));
+            }
+            _ => self.path.move_to(self.position(start)),
+        }
+        if self.is_first {
+            self.ring = element.joined.then_some(meets_start);
+        } else if !previous.is_some_and(|previous| previous.drawn) {
+            self.ring = None;
+        }
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+        let end = pieces
+            .last()
+            .map_or(start, |piece| map.transform_point2(piece.end()));
+        self.previous = Some(Previous {
+            end,
+            meets_frame: meets_end,
+            drawn: true,
+        });
+        Ok(())
+    }
+
+    #[inline]
+    fn piece(&mut self, piece: &Piece) {
+        match *piece {
+            Piece::Line(end) => self.path.line_to(self.position(end)),
+            Piece::Cubic(a, b, end) => {
+                self.path
+                    .curve_to(self.position(a), self.position(b), self.position(end));
+            }
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    fn width_class(&self, element: &Element) -> i32 {
+        match self.style.width {
+            Width::Pixels(_) => 0,
+            Width::Relative(width) => {
+                let fine = width * element.frame.length() * self.canvas.scale() * FINE;
+                (4.0 * libm::log2(fine.max(1.0))).round() as i32
+            }
+        }
+    }
+}
+
+impl<W: Write> Visitor for Painter<'_, W> {
+    type Error = io::Error;
+
+    fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
+        self.fractal = fractal;
+        self.previous = None;
+        self.ring = None;
+        self.is_first = true;
+        self.fills = false;
+        Ok(())
+    }
+
+    #[inline]
+    fn element(&mut self, element: &Element) -> io::Result<()> {
+        let object = &self.graph.objects()[element.object];
+        let base_element = &self.graph.base_elements()[object.base_element];
+        if !object.visible || base_element.is_closed() {
+            self.previous = None;
+        }
+        if self.classes.of(element, &self.fractal, self.graph) != self.class {
+            if object.visible && !base_element.is_closed() {
+                let reversed = element.frame.direction.is_reversed();
+                let (start, pieces) = base_element.outline(reversed);
+                let end = pieces.last().map_or(start, Piece::end);
+                let [meets_start, meets_end] = base_element.ends_meet_frame();
+                self.previous = Some(Previous {
+                    end: element.frame.map.transform_point2(end),
+                    meets_frame: if reversed { meets_start } else { meets_end },
+                    drawn: false,
+                });
+            }
+        } else if !object.visible {
+        } else if base_element.is_closed() {
+            self.polygon(element)?;
+        } else {
+            self.line(element)?;
+        }
+        self.is_first = false;
+        if self.path.len() > CHUNK {
+            self.path.drain(&mut self.buffer);
+            self.hand_on(CHUNK)?;
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, joined: bool) -> io::Result<()> {
+        if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
+            && previous.drawn
+        {
+            self.path.close(meets_start && previous.meets_frame);
+        }
+        // Polygons of different fractals stay in one path; lines begin a new one.
+        if self.paint.is_some_and(|paint| paint.kind != Kind::Polygon) {
+            self.end_path()?;
+        }
+        Ok(())
+    }
+}
