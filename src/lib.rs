@@ -43,3 +43,8 @@ pub mod measure;
 pub mod render;
 pub mod rule;
 pub mod style;
+
+/// The programs of the README are tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -1,0 +1,42 @@
+//! Grows a rule of the library and writes it as SVG to standard output.
+//!
+//!     cargo run --example grow_svg -- dragon 10 > dragon.svg
+
+use std::error::Error;
+use std::io;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use kfrac::grow::Growth;
+use kfrac::render::{Size, svg};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().unwrap_or_else(|| "pythagoras".into());
+    let steps = arguments.next().map_or(Ok(8), |steps| steps.parse())?;
+
+    let catalogue = Catalogue::embedded();
+    let source = catalogue
+        .rule(&name)
+        .map_err(|error| error.message().to_owned())?;
+    let (rule, _warnings) = Document::read(&source, &catalogue)?.resolve(&[])?;
+    let rule = Arc::new(rule);
+    let graph = Graph::compile(&rule, steps)?;
+    let labels = svg::Labels {
+        title: name,
+        ..svg::Labels::default()
+    };
+    let out = &mut io::BufWriter::new(io::stdout().lock());
+    svg::write(
+        &graph,
+        &Growth::steps(steps),
+        rule.style(),
+        rule.view(),
+        Size::Long(800),
+        &labels,
+        out,
+    )?;
+    Ok(())
+}

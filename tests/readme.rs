@@ -1,0 +1,93 @@
+//! The rules in the two README files: each is read, resolved without a warning, compiled and grown.
+//!
+//! A block that begins with ```` ```yaml ```` alone is a whole rule. One that begins with
+//! ```` ```yaml fragment ```` is a piece of one and is left out.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::Source;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+
+/// The blocks that are whole rules, named by file and line.
+fn rules(file: &str, text: &str) -> Vec<(String, String)> {
+    let mut rules = Vec::new();
+    let mut lines = text.lines().zip(1..);
+    while let Some((line, number)) = lines.next() {
+        let Some(info) = line.strip_prefix("```") else {
+            continue;
+        };
+        let block: Vec<_> = lines
+            .by_ref()
+            .map(|(line, _)| line)
+            .take_while(|line| *line != "```")
+            .collect();
+        match info.trim() {
+            "yaml" => rules.push((format!("{file}:{number}"), block.join("\n") + "\n")),
+            "yaml fragment" | "text" | "rust" | "sh" => {}
+            other => panic!("{file}:{number}: blocks of '{other}' are not known to this test"),
+        }
+    }
+    rules
+}
+
+/// Counts visible elements.
+struct Visible<'g> {
+    graph: &'g Graph,
+    count: usize,
+}
+
+impl Visitor for Visible<'_> {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.count += usize::from(self.graph.objects()[element.object].visible);
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+fn check(file: &str, text: &str) -> usize {
+    let catalogue = Catalogue::embedded();
+    let rules = rules(file, text);
+    for (name, text) in &rules {
+        let source = Source::new(name.as_str(), text.as_str());
+        let document = Document::read(&source, &catalogue)
+            .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
+        let (rule, warnings) = document
+            .resolve(&[])
+            .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
+        assert!(warnings.is_empty(), "{name}: {warnings:#?}");
+        let graph = Graph::compile(&Arc::new(rule), 2).unwrap();
+        let mut visible = Visible {
+            graph: &graph,
+            count: 0,
+        };
+        walk(&graph, &Growth::steps(2), &mut visible).unwrap();
+        assert!(visible.count > 0, "{name}: nothing is to be seen at step 2");
+    }
+    rules.len()
+}
+
+#[test]
+fn the_rules_of_the_reference_grow() {
+    let rules = check("library/README.md", include_str!("../library/README.md"));
+    assert!(rules >= 10, "only {rules} whole rules were found");
+}
+
+#[test]
+fn the_rule_of_the_front_page_grows() {
+    assert!(check("README.md", include_str!("../README.md")) >= 1);
+}
