@@ -1,7 +1,7 @@
 //! The state of an element that decides what it becomes, beside its kind.
 
-use crate::expression::Dependence;
-use crate::rule::{ListedElement, Moment, Placement, Rule, Selection};
+use crate::expression::{Dependence, Program};
+use crate::rule::{Generator, ListedElement, Moment, Placement, Rule, Selection};
 
 /// What an element is, apart from where and when: elements of one class behave alike in one state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,8 +78,14 @@ impl Dependences {
                 Dependence::Free => all.index_is_free = true,
             }
         }
-        // A drawn length is known only where the element stands.
-        all.length &= !rule.is_random();
+        if rule.is_random() {
+            // A drawn length is known only where the element stands, and what is worked out there
+            // needs the index there.
+            let needs_index = |program: &Program| program.dependence(Moment::INDEX) != Dependence::None;
+            all.index_is_free |= all.length && rule.selection().programs().any(needs_index);
+            all.index_is_free |= rule.generators().iter().flat_map(Generator::programs).any(needs_index);
+            all.length = false;
+        }
         // A seed that stands as the initiator may run backwards or not, depending on its root.
         let resets = rule
             .generators()

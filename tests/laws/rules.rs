@@ -36,7 +36,7 @@ impl Features {
 
 /// A random rule.
 pub(crate) fn rule(features: Features) -> impl Strategy<Value = String> {
-    let initiator = (chain(1..4, false), any::<bool>());
+    let initiator = (chain(1..4, None), any::<bool>());
     (initiator, vec(generator(features), 1..4)).prop_flat_map(
         move |((initiator, closed), generators)| {
             selection(features, generators.len()).prop_map(move |selection| {
@@ -56,13 +56,28 @@ pub(crate) fn rule(features: Features) -> impl Strategy<Value = String> {
     )
 }
 
+/// A coordinate that may depend on the moment.
+fn moving(features: Features) -> impl Strategy<Value = String> {
+    let free = if features.free_index { "i/50" } else { "0" };
+    let moments = ["", "", "", "", " + (i % 2)/9", " + age/20", " - step/30", " + length/7", free];
+    (number(), 0..moments.len()).prop_map(move |(number, moment)| match moments[moment] {
+        "i/50" => format!("{number} + i/50"),
+        moment => format!("{number}{moment}"),
+    })
+}
+
 fn number() -> impl Strategy<Value = &'static str> {
     select(&["0", "1/4", "1/3", "1/2", "-1/4", "2/3", "sqrt(3)/6", "3/4"][..])
 }
 
-fn element(named: bool) -> impl Strategy<Value = String> {
+fn element(features: Option<Features>) -> impl Strategy<Value = String> {
+    let named = features.is_some();
     let flags = (1..5u8, any::<bool>(), 0..8u8, 0..6u8, 0..4u8);
-    (number(), number(), flags, number(), number()).prop_map(
+    let x = match features {
+        Some(features) => moving(features).boxed(),
+        None => number().prop_map(String::from).boxed(),
+    };
+    (x, number(), flags, number(), number()).prop_map(
         move |(x, y, (direction, fertile, visible, connected, jump), a, b)| {
             let mut text = format!("to: [{x}, {y}], direction: {direction}");
             if jump == 0 {
@@ -85,9 +100,13 @@ fn element(named: bool) -> impl Strategy<Value = String> {
 }
 
 /// The entries of a list of elements, from (0, 0) and, for a generator, to (1, 0).
-fn chain(count: std::ops::Range<usize>, generator: bool) -> impl Strategy<Value = String> {
+fn chain(
+    count: std::ops::Range<usize>,
+    features: Option<Features>,
+) -> impl Strategy<Value = String> {
+    let generator = features.is_some();
     let indent = if generator { "          " } else { "    " };
-    (vec(element(generator), count), 0..5u8, 1..5u8).prop_map(move |(elements, end, direction)| {
+    (vec(element(features), count), 0..5u8, 1..5u8).prop_map(move |(elements, end, direction)| {
         let mut text = format!("{indent}- [0, 0]\n");
         for (number, element) in elements.iter().enumerate() {
             // Points differ by a little that tells them apart, so that no element has no length.
@@ -102,7 +121,7 @@ fn chain(count: std::ops::Range<usize>, generator: bool) -> impl Strategy<Value 
 }
 
 fn generator(features: Features) -> impl Strategy<Value = String> {
-    let part = (chain(0..3, true), 0..6u8, any::<bool>());
+    let part = (chain(0..3, Some(features)), 0..6u8, any::<bool>());
     (vec(part, 1..3), 0..4u8).prop_map(move |(parts, draws)| {
         let mut text = String::new();
         if features.draws && draws == 0 {
