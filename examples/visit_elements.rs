@@ -2,6 +2,8 @@
 //!
 //!     cargo run --example visit_elements
 
+#![allow(clippy::print_stdout, reason = "it says what it has found")]
+
 use std::convert::Infallible;
 use std::error::Error;
 use std::sync::Arc;

@@ -81,9 +81,14 @@ impl Dependences {
         if rule.is_random() {
             // A drawn length is known only where the element stands, and what is worked out there
             // needs the index there.
-            let needs_index = |program: &Program| program.dependence(Moment::INDEX) != Dependence::None;
+            let needs_index =
+                |program: &Program| program.dependence(Moment::INDEX) != Dependence::None;
             all.index_is_free |= all.length && rule.selection().programs().any(needs_index);
-            all.index_is_free |= rule.generators().iter().flat_map(Generator::programs).any(needs_index);
+            all.index_is_free |= rule
+                .generators()
+                .iter()
+                .flat_map(Generator::programs)
+                .any(needs_index);
             all.length = false;
         }
         // A seed that stands as the initiator may run backwards or not, depending on its root.

@@ -60,7 +60,8 @@ pub trait Visitor {
     /// Whatever ends the walk.
     fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
 
-    /// The fractal ends; `joined` tells whether its last element goes on to the first of a ring.
+    /// The fractal ends. `joined` tells whether its last element is drawn to the very end of the
+    /// chain that started it: the fractal is a closed path if its first element is joined as well.
     ///
     /// # Errors
     ///

@@ -53,6 +53,8 @@ struct Parent<'g> {
     /// The approximant whose elements are being replaced, and the walk over it.
     step: u32,
     descent: Descent<'g>,
+    /// Whether that approximant has an element that can be replaced.
+    is_fertile: bool,
     /// Seeds that are still to be walked, the next one last.
     queue: Vec<Start<'g>>,
 }
@@ -113,6 +115,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
                         step: start.born,
                         descent: Descent::new(self.graph, &start, start.born),
                         start,
+                        is_fertile: false,
                         queue: Vec::new(),
                     });
                 }
@@ -126,14 +129,17 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             }
             match parent.descent.next(&parent.start)? {
                 Some(found) => {
-                    if found.level == parent.step {
+                    let replacement = &self.graph.objects()[found.object].replacement;
+                    if !matches!(replacement, Replacement::Kept) {
+                        parent.is_fertile = true;
                         parent.queue = parent.descent.seeds(&found)?;
                         parent.queue.reverse();
                     }
                     let visited = std::mem::take(&mut parent.descent.visited);
                     self.visit(visited)?;
                 }
-                None if parent.step + 1 < self.growth.steps => {
+                None if parent.is_fertile && parent.step + 1 < self.growth.steps => {
+                    parent.is_fertile = false;
                     parent.step += 1;
                     parent.descent = Descent::new(self.graph, &parent.start, parent.step);
                 }

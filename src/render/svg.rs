@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 use crate::grow::{Growth, walk};
-use crate::style::{Colour, Style, View};
+use crate::style::{Cap, Colour, Join, Named, Style, View, Width};
 
 use super::{Canvas, Classes, RenderError, Size, Survey};
 use painter::Painter;
@@ -73,7 +73,7 @@ pub fn write(
         walk(graph, growth, &mut painter)?;
         painter.close_group()?;
     }
-    out.write_all(b"</svg>\n")?;
+    out.write_all(b"</g>\n</svg>\n")?;
     Ok(Picture {
         size: canvas.size(),
         elements: survey.elements,
@@ -109,7 +109,18 @@ fn write_head(
             r#"<rect width="{wide}" height="{high}" fill="{background}"{opacity}/>"#
         )?;
     }
-    Ok(())
+    // What all paths share.
+    out.write_all(br#"<g fill="none""#)?;
+    if let Width::Pixels(width) = style.width {
+        write!(out, r#" stroke-width="{}""#, width * FINE)?;
+    }
+    if style.cap != Cap::Butt {
+        write!(out, r#" stroke-linecap="{}""#, style.cap.name())?;
+    }
+    if style.join != Join::Miter {
+        write!(out, r#" stroke-linejoin="{}""#, style.join.name())?;
+    }
+    out.write_all(b">\n")
 }
 
 /// Text as XML may hold it.

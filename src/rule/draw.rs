@@ -152,3 +152,115 @@ pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) ->
     }
     last
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn program(value: f64) -> Program {
+        Program::constant(value)
+    }
+
+    fn draws(distribution: Distribution) -> Vec<f64> {
+        let variable = Variable::new("tilt", distribution);
+        let root = Path::of_seed(7).child(0);
+        (0..4)
+            .map(|position| variable.draw(root.child(position), &[]))
+            .collect()
+    }
+
+    /// What is drawn is part of every picture: these values may never change.
+    #[test]
+    fn draws_are_pinned() {
+        let uniform = draws(Distribution::Uniform(program(-20.0), program(20.0)));
+        assert_eq!(
+            uniform,
+            [
+                -8.373871261423504,
+                18.81062091402123,
+                12.698145780350046,
+                -6.764760681728541
+            ]
+        );
+        let normal = draws(Distribution::Normal(program(0.0), program(1.0)));
+        assert_eq!(
+            normal,
+            [
+                0.292350687707011,
+                -2.1359064076414533,
+                1.2582490307144698,
+                0.1277267213301893
+            ]
+        );
+        let choice = draws(Distribution::Choice(vec![
+            program(1.0),
+            program(2.0),
+            program(3.0),
+        ]));
+        assert_eq!(choice, [1.0, 3.0, 3.0, 1.0]);
+        let root = Path::of_seed(7).child(0);
+        let picks: Vec<_> = (0..12)
+            .map(|p| pick_by_weight(root.child(p), [3.0, 0.0, 1.0].into_iter()))
+            .collect();
+        assert_eq!(picks, [0, 0, 0, 2, 0, 0, 0, 0, 0, 2, 0, 2]);
+    }
+
+    /// Means and variances of many draws are those of the distributions, within four standard errors.
+    #[test]
+    fn draws_are_distributed_as_they_say() {
+        let count = 40_000u32;
+        let sample = |distribution: Distribution| -> (f64, f64) {
+            let variable = Variable::new("x", distribution);
+            let path = Path::of_seed(0);
+            let values: Vec<_> = (0..count)
+                .map(|position| variable.draw(path.child(position), &[]))
+                .collect();
+            let mean = values.iter().sum::<f64>() / f64::from(count);
+            let square = values
+                .iter()
+                .map(|value| (value - mean) * (value - mean))
+                .sum::<f64>();
+            (mean, square / f64::from(count))
+        };
+        let error = 4.0 / f64::from(count).sqrt();
+        let (mean, variance) = sample(Distribution::Uniform(program(2.0), program(5.0)));
+        assert!((mean - 3.5).abs() < error * 0.75f64.sqrt() && (variance - 0.75).abs() < error);
+        let (mean, variance) = sample(Distribution::Normal(program(1.0), program(2.0)));
+        assert!(
+            (mean - 1.0).abs() < error * 2.0 && (variance - 4.0).abs() < error * 4.0 * 2f64.sqrt()
+        );
+        let (mean, _) = sample(Distribution::Choice(vec![
+            program(0.0),
+            program(1.0),
+            program(5.0),
+        ]));
+        assert!((mean - 2.0).abs() < error * 2.2);
+        let picked = (0..count)
+            .filter(|&p| pick_by_weight(Path::of_seed(1).child(p), [3.0, 1.0].into_iter()) == 0)
+            .count();
+        assert!((picked as f64 / f64::from(count) - 0.75).abs() < error * 0.44);
+    }
+
+    /// Names, positions, depths and seeds all lead to other streams.
+    #[test]
+    fn streams_are_apart() {
+        let mut seen = std::collections::BTreeSet::new();
+        for seed in 0..10 {
+            for path in [
+                Path::of_seed(seed),
+                Path::of_seed(seed).child(0),
+                Path::of_seed(seed).child(0).child(0),
+            ] {
+                for position in 0..10 {
+                    for name in ["a", "b", "ab"] {
+                        assert!(
+                            seen.insert(path.child(position).stream(hash_of_name(name)).next_u64())
+                        );
+                    }
+                }
+                // The child at 0 of one path is a start of the next.
+                seen.clear();
+            }
+        }
+    }
+}

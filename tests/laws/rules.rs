@@ -59,7 +59,17 @@ pub(crate) fn rule(features: Features) -> impl Strategy<Value = String> {
 /// A coordinate that may depend on the moment.
 fn moving(features: Features) -> impl Strategy<Value = String> {
     let free = if features.free_index { "i/50" } else { "0" };
-    let moments = ["", "", "", "", " + (i % 2)/9", " + age/20", " - step/30", " + length/7", free];
+    let moments = [
+        "",
+        "",
+        "",
+        "",
+        " + (i % 2)/9",
+        " + age/20",
+        " - step/30",
+        " + length/7",
+        free,
+    ];
     (number(), 0..moments.len()).prop_map(move |(number, moment)| match moments[moment] {
         "i/50" => format!("{number} + i/50"),
         moment => format!("{number}{moment}"),

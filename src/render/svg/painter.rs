@@ -6,7 +6,7 @@ use crate::grow::{Element, Fractal, Visitor};
 use crate::render::path::{PathData, Position};
 use crate::render::{Canvas, Classes};
 use crate::rule::Piece;
-use crate::style::{Cap, Colour, Join, Named, Style, Width};
+use crate::style::{Colour, Style, Width};
 
 use super::{FINE, opacity};
 
@@ -119,27 +119,8 @@ impl<'a, W: Write> Painter<'a, W> {
         let stroke = self.colour.or(self.style.stroke).unwrap_or(Colour::BLACK);
         if !self.group_is_open {
             self.group_is_open = true;
-            let width = match self.style.width {
-                Width::Pixels(width) => format!(r#" stroke-width="{}""#, width * FINE),
-                Width::Relative(_) => String::new(),
-            };
-            let cap = self.style.cap.name();
-            let join = self.style.join.name();
-            writeln!(
-                self.buffer,
-                r#"<g fill="none" stroke="{stroke}"{}{width}{}{}>"#,
-                opacity("stroke", stroke),
-                if self.style.cap == Cap::Butt {
-                    String::new()
-                } else {
-                    format!(r#" stroke-linecap="{cap}""#)
-                },
-                if self.style.join == Join::Miter {
-                    String::new()
-                } else {
-                    format!(r#" stroke-linejoin="{join}""#)
-                },
-            )?;
+            let opacity = opacity("stroke", stroke);
+            writeln!(self.buffer, r#"<g stroke="{stroke}"{opacity}>"#)?;
         }
         self.buffer.extend_from_slice(b"<path");
         match paint.kind {

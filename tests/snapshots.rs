@@ -1,0 +1,47 @@
+//! A few pictures, byte by byte: what changes in them is to be looked at.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use common::{compiled, document, resolved};
+use kfrac::grow::Growth;
+use kfrac::render::{Size, svg};
+
+/// A rule of the library at a size of 256 pixels.
+fn picture(name: &str, steps: u32) -> String {
+    let document = document(name);
+    let rule = resolved(&document, &[]);
+    let labels = svg::Labels {
+        title: rule.description().title.clone().unwrap(),
+        description: rule.description().about.clone().unwrap(),
+        provenance: document.to_yaml(),
+    };
+    let mut bytes = Vec::new();
+    svg::write(
+        &compiled(&rule, steps),
+        &Growth::steps(steps),
+        rule.style(),
+        rule.view(),
+        Size::Long(256),
+        &labels,
+        &mut bytes,
+    )
+    .unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+#[test]
+fn the_koch_curve_is_one_line() {
+    insta::assert_snapshot!("koch", picture("koch", 3));
+}
+
+#[test]
+fn the_dragon_changes_its_colour_along_the_way() {
+    insta::assert_snapshot!("dragon", picture("dragon", 6));
+}
+
+#[test]
+fn the_monkeys_tree_is_one_line() {
+    insta::assert_snapshot!("monkeys-tree", picture("monkeys-tree", 2));
+}
