@@ -139,11 +139,10 @@ fn polygons_have_one_orientation_whatever_their_direction() {
                 {to: [1, 0], direction: 4}]}";
     let found = paths(text, 1);
     assert_eq!(found.len(), 1);
-    let data = found[0].split('"').next_back().unwrap_or_default();
     let data = found[0]
-        .split("d=\"")
+        .split(" d=\"")
         .nth(1)
-        .unwrap_or(data)
+        .unwrap()
         .trim_end_matches('"');
     let polygons: Vec<_> = data
         .split('z')

@@ -17,15 +17,12 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// The classes for a survey's approximant of a number of steps.
-    #[must_use]
-    pub fn new(by: ColorBy, survey: &Survey<'_>, steps: u32) -> Self {
+    /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
+    fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let largest = match by {
-            ColorBy::None => 0,
+            ColorBy::None | ColorBy::Fractal | ColorBy::Index => 0,
             ColorBy::Step | ColorBy::Age => u64::from(steps),
-            ColorBy::Fractal => survey.fractals.saturating_sub(1),
-            ColorBy::Index => survey.largest_index.saturating_sub(1),
-            ColorBy::Generator => survey.graph.rule().generators().len() as u64,
+            ColorBy::Generator => graph.rule().generators().len() as u64,
             ColorBy::Direction => 3,
         };
         Self { by, largest }
@@ -35,6 +32,10 @@ impl Classes {
     #[must_use]
     pub fn count(&self) -> u64 {
         (self.largest + 1).min(MOST_CLASSES)
+    }
+
+    fn all(&self) -> std::ops::Range<u64> {
+        0..self.count()
     }
 
     /// The class of an element, from 0.
@@ -94,12 +95,17 @@ pub struct Survey<'g> {
     pub fractals: u64,
     /// The largest rank of an element in its fractal.
     pub largest_index: u64,
+    fractal: Fractal,
+    classes: Classes,
+    /// The classes that something visible is in.
+    used: Vec<bool>,
 }
 
 impl<'g> Survey<'g> {
     /// A survey that has seen nothing yet.
     #[must_use]
-    pub fn new(graph: &'g Graph, style: &'g Style) -> Self {
+    pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
+        let classes = Classes::before_survey(style.color_by, graph, steps);
         Self {
             graph,
             style,
@@ -108,7 +114,25 @@ impl<'g> Survey<'g> {
             elements: 0,
             fractals: 0,
             largest_index: 0,
+            fractal: Fractal { number: 0, age: 0 },
+            used: classes.all().map(|_| false).collect(),
+            classes,
         }
+    }
+
+    /// The classes of colour, now that everything has been seen, and those that are to be painted.
+    #[must_use]
+    pub fn classes(&self) -> (Classes, Vec<u64>) {
+        let mut classes = self.classes;
+        match classes.by {
+            ColorBy::Fractal => classes.largest = self.fractals.saturating_sub(1),
+            ColorBy::Index => classes.largest = self.largest_index.saturating_sub(1),
+            _ => {
+                let used = classes.all().zip(&self.used).filter(|(_, used)| **used);
+                return (classes, used.map(|(class, _)| class).collect());
+            }
+        }
+        (classes, classes.all().collect())
     }
 
     /// The pixels by which strokes of a width in pixels reach beyond their paths.
@@ -136,7 +160,8 @@ fn overhang(style: &Style) -> f64 {
 impl Visitor for Survey<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        self.fractal = fractal;
         self.fractals += 1;
         Ok(())
     }
@@ -146,6 +171,15 @@ impl Visitor for Survey<'_> {
         self.largest_index = self.largest_index.max(element.index);
         let object = &self.graph.objects()[element.object];
         if object.visible {
+            if !matches!(self.style.color_by, ColorBy::Fractal | ColorBy::Index) {
+                let class = self.classes.of(element, &self.fractal, self.graph);
+                if let Some(used) = usize::try_from(class)
+                    .ok()
+                    .and_then(|class| self.used.get_mut(class))
+                {
+                    *used = true;
+                }
+            }
             let base_element = &self.graph.base_elements()[object.base_element];
             let stroked = !base_element.is_closed() || self.style.outlines_polygons();
             let pad = match self.style.width {

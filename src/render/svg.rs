@@ -12,7 +12,7 @@ use crate::graph::Graph;
 use crate::grow::{Growth, walk};
 use crate::style::{Cap, Colour, Join, Named, Style, View, Width};
 
-use super::{Canvas, Classes, RenderError, Size, Survey};
+use super::{Canvas, RenderError, Size, Survey};
 use painter::Painter;
 
 /// Units of the file's coordinates to a pixel.
@@ -54,7 +54,7 @@ pub fn write(
     labels: &Labels,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
-    let mut survey = Survey::new(graph, style);
+    let mut survey = Survey::new(graph, style, growth.steps);
     walk(graph, growth, &mut survey)?;
     let (bounds, pad) = match view.window {
         Some([x, y, width, height]) => {
@@ -64,10 +64,10 @@ pub fn write(
         None => (survey.bounds, survey.overhang()),
     };
     let canvas = Canvas::fit(&bounds, size, view.margin + pad)?;
-    let classes = Classes::new(style.color_by, &survey, growth.steps);
+    let (classes, painted) = survey.classes();
 
     write_head(out, &canvas, style, labels)?;
-    for class in 0..classes.count() {
+    for class in painted {
         let colour = classes.colour(class, style);
         let mut painter = Painter::new(graph, style, &canvas, &classes, class, colour, out);
         walk(graph, growth, &mut painter)?;
