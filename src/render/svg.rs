@@ -13,7 +13,7 @@ use crate::grow::{Growth, walk};
 use crate::style::{Cap, Colour, Join, Named, Style, View, Width};
 
 use super::{Canvas, RenderError, Size, Survey};
-use painter::Painter;
+use painter::{Painter, Scene};
 
 /// Units of the file's coordinates to a pixel.
 const FINE: f64 = 100.0;
@@ -67,9 +67,14 @@ pub fn write(
     let (classes, painted) = survey.classes();
 
     write_head(out, &canvas, style, labels)?;
+    let scene = Scene {
+        graph,
+        style,
+        canvas: &canvas,
+        classes: &classes,
+    };
     for class in painted {
-        let colour = classes.colour(class, style);
-        let mut painter = Painter::new(graph, style, &canvas, &classes, class, colour, out);
+        let mut painter = Painter::new(scene, class, out);
         walk(graph, growth, &mut painter)?;
         painter.close_group()?;
     }

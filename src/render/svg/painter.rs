@@ -5,7 +5,7 @@ use crate::graph::Graph;
 use crate::grow::{Element, Fractal, Visitor};
 use crate::render::path::{PathData, Position};
 use crate::render::{Canvas, Classes};
-use crate::rule::Piece;
+use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Style, Width};
 
 use super::{FINE, opacity};
@@ -48,13 +48,40 @@ struct Previous {
     drawn: bool,
 }
 
+impl Previous {
+    /// The end of an open element that the pen has not drawn.
+    fn at_end(element: &Element, base_element: &BaseElement) -> Self {
+        let reversed = element.frame.direction.is_reversed();
+        let (start, pieces) = base_element.outline(reversed);
+        let end = pieces.last().map_or(start, Piece::end);
+        Self {
+            end: element.frame.map.transform_point2(end),
+            meets_frame: meets_frame(base_element, reversed)[1],
+            drawn: false,
+        }
+    }
+}
+
+/// Whether an outline starts and ends where its frame does, in the order of traversal.
+fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
+    let [start, end] = base_element.ends_meet_frame();
+    if reversed { [end, start] } else { [start, end] }
+}
+
+/// What is drawn, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) style: &'a Style,
+    pub(super) canvas: &'a Canvas,
+    pub(super) classes: &'a Classes,
+}
+
 /// Writes the elements of one class.
 pub(super) struct Painter<'a, W: Write> {
-    graph: &'a Graph,
-    style: &'a Style,
-    canvas: &'a Canvas,
-    classes: &'a Classes,
+    scene: Scene<'a>,
     class: u64,
+    /// The class's colour, where colours tell something.
     colour: Option<Colour>,
     out: &'a mut W,
     buffer: Vec<u8>,
@@ -71,22 +98,11 @@ pub(super) struct Painter<'a, W: Write> {
 }
 
 impl<'a, W: Write> Painter<'a, W> {
-    pub(super) fn new(
-        graph: &'a Graph,
-        style: &'a Style,
-        canvas: &'a Canvas,
-        classes: &'a Classes,
-        class: u64,
-        colour: Option<Colour>,
-        out: &'a mut W,
-    ) -> Self {
+    pub(super) fn new(scene: Scene<'a>, class: u64, out: &'a mut W) -> Self {
         Self {
-            graph,
-            style,
-            canvas,
-            classes,
+            scene,
             class,
-            colour,
+            colour: scene.classes.colour(class, scene.style),
             out,
             buffer: Vec::with_capacity(2 * CHUNK),
             path: PathData::default(),
@@ -106,7 +122,7 @@ impl<'a, W: Write> Painter<'a, W> {
         reason = "casts from floats saturate"
     )]
     fn position(&self, point: DVec2) -> Position {
-        let fine = self.canvas.pixel(point) * FINE;
+        let fine = self.scene.canvas.pixel(point) * FINE;
         [fine.x.round() as i64, fine.y.round() as i64]
     }
 
@@ -116,7 +132,10 @@ impl<'a, W: Write> Painter<'a, W> {
             return Ok(());
         }
         self.end_path()?;
-        let stroke = self.colour.or(self.style.stroke).unwrap_or(Colour::BLACK);
+        let stroke = self
+            .colour
+            .or(self.scene.style.stroke)
+            .unwrap_or(Colour::BLACK);
         if !self.group_is_open {
             self.group_is_open = true;
             let opacity = opacity("stroke", stroke);
@@ -125,17 +144,22 @@ impl<'a, W: Write> Painter<'a, W> {
         self.buffer.extend_from_slice(b"<path");
         match paint.kind {
             Kind::Line => {}
-            Kind::Ring => self.attribute("fill", self.style.fill)?,
+            Kind::Ring => self.attribute("fill", self.scene.style.fill)?,
             Kind::Polygon => {
-                self.attribute("fill", self.colour.or(self.style.fill).or(Some(stroke)))?;
-                if self.style.outlines_polygons() {
-                    self.attribute("stroke", self.style.stroke)?;
+                self.attribute(
+                    "fill",
+                    self.colour.or(self.scene.style.fill).or(Some(stroke)),
+                )?;
+                if self.scene.style.outlines_polygons() {
+                    self.attribute("stroke", self.scene.style.stroke)?;
                 } else {
                     self.buffer.extend_from_slice(br#" stroke="none""#);
                 }
             }
         }
-        if let (Width::Relative(_), true) = (self.style.width, paint.strokes(self.style)) {
+        if let (Width::Relative(_), true) =
+            (self.scene.style.width, paint.strokes(self.scene.style))
+        {
             let width = libm::exp2(f64::from(paint.width) / 4.0);
             write!(self.buffer, r#" stroke-width="{width:.1}""#)?;
         }
@@ -184,8 +208,8 @@ impl<'a, W: Write> Painter<'a, W> {
         self.hand_on(0)
     }
 
-    fn polygon(&mut self, element: &Element) -> io::Result<()> {
-        let outlined = self.style.outlines_polygons();
+    fn polygon(&mut self, element: &Element, base_element: &BaseElement) -> io::Result<()> {
+        let outlined = self.scene.style.outlines_polygons();
         let width = if outlined {
             self.width_class(element)
         } else {
@@ -195,8 +219,6 @@ impl<'a, W: Write> Painter<'a, W> {
             kind: Kind::Polygon,
             width,
         })?;
-        let object = &self.graph.objects()[element.object];
-        let base_element = &self.graph.base_elements()[object.base_element];
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
         let mirrored = element.frame.direction.is_mirrored();
@@ -212,23 +234,18 @@ impl<'a, W: Write> Painter<'a, W> {
         Ok(())
     }
 
-    fn line(&mut self, element: &Element) -> io::Result<()> {
-        let object = &self.graph.objects()[element.object];
-        let base_element = &self.graph.base_elements()[object.base_element];
+    fn line(&mut self, element: &Element, base_element: &BaseElement) -> io::Result<()> {
         let reversed = element.frame.direction.is_reversed();
         let map = element.frame.map;
         if self.is_first {
-            let whole = self.classes.keep_fractals_whole();
-            self.fills = element.joined && self.style.fill.is_some() && whole;
+            let whole = self.scene.classes.keep_fractals_whole();
+            self.fills = element.joined && self.scene.style.fill.is_some() && whole;
         }
         self.begin_path(Paint {
             kind: if self.fills { Kind::Ring } else { Kind::Line },
             width: self.width_class(element),
         })?;
-        let [mut meets_start, mut meets_end] = base_element.ends_meet_frame();
-        if reversed {
-            (meets_start, meets_end) = (meets_end, meets_start);
-        }
+        let [meets_start, meets_end] = meets_frame(base_element, reversed);
         let (start, pieces) = base_element.outline(reversed);
         let start = map.transform_point2(start);
         let previous = self.previous.filter(|_| element.joined);
@@ -277,10 +294,10 @@ impl<'a, W: Write> Painter<'a, W> {
         reason = "casts from floats saturate"
     )]
     fn width_class(&self, element: &Element) -> i32 {
-        match self.style.width {
+        match self.scene.style.width {
             Width::Pixels(_) => 0,
             Width::Relative(width) => {
-                let fine = width * element.frame.length() * self.canvas.scale() * FINE;
+                let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
                 (4.0 * libm::log2(fine.max(1.0))).round() as i32
             }
         }
@@ -301,28 +318,19 @@ impl<W: Write> Visitor for Painter<'_, W> {
 
     #[inline]
     fn element(&mut self, element: &Element) -> io::Result<()> {
-        let object = &self.graph.objects()[element.object];
-        let base_element = &self.graph.base_elements()[object.base_element];
+        let Scene { graph, classes, .. } = self.scene;
+        let object = &graph.objects()[element.object];
+        let base_element = &graph.base_elements()[object.base_element];
+        let is_mine = classes.of(element, &self.fractal, graph) == self.class;
         if !object.visible || base_element.is_closed() {
             self.previous = None;
-        }
-        if self.classes.of(element, &self.fractal, self.graph) != self.class {
-            if object.visible && !base_element.is_closed() {
-                let reversed = element.frame.direction.is_reversed();
-                let (start, pieces) = base_element.outline(reversed);
-                let end = pieces.last().map_or(start, Piece::end);
-                let [meets_start, meets_end] = base_element.ends_meet_frame();
-                self.previous = Some(Previous {
-                    end: element.frame.map.transform_point2(end),
-                    meets_frame: if reversed { meets_start } else { meets_end },
-                    drawn: false,
-                });
+            if object.visible && is_mine {
+                self.polygon(element, base_element)?;
             }
-        } else if !object.visible {
-        } else if base_element.is_closed() {
-            self.polygon(element)?;
+        } else if is_mine {
+            self.line(element, base_element)?;
         } else {
-            self.line(element)?;
+            self.previous = Some(Previous::at_end(element, base_element));
         }
         self.is_first = false;
         if self.path.len() > CHUNK {
