@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 /// Where a command writes.
 pub(super) enum Output {
@@ -13,7 +13,8 @@ pub(super) enum Output {
     Standard(BufWriter<io::StdoutLock<'static>>),
     /// A file under another name until it is finished.
     File {
-        file: BufWriter<NamedTempFile>,
+        file: BufWriter<File>,
+        part: TempPath,
         path: PathBuf,
     },
     /// A pipe or device, written as it is.
@@ -68,9 +69,13 @@ impl Output {
             // What the user's mask leaves of these, as for any new file.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let file = builder.tempfile_in(folder).with_context(failed)?;
+        let (file, part) = builder
+            .tempfile_in(folder)
+            .with_context(failed)?
+            .into_parts();
         Ok(Self::File {
             file: BufWriter::with_capacity(BUFFER, file),
+            part,
             path,
         })
     }
@@ -82,13 +87,14 @@ impl Output {
             Self::Device { mut file, path } => file
                 .flush()
                 .with_context(|| format!("'{}' cannot be written", path.display()))?,
-            Self::File { file, path } => {
+            Self::File {
+                mut file,
+                part,
+                path,
+            } => {
                 let failed = || format!("'{}' cannot be written", path.display());
-                let file = file
-                    .into_inner()
-                    .map_err(io::IntoInnerError::into_error)
-                    .with_context(failed)?;
-                file.persist(&path)
+                file.flush().with_context(failed)?;
+                part.persist(&path)
                     .map_err(|error| error.error)
                     .with_context(failed)?;
             }
