@@ -3,6 +3,7 @@
 //! A [`Source`] is a text with its name, a [`Place`] a stretch of it, a [`Diagnostic`] one mistake
 //! and [`Diagnostics`] all of them. What they print is the same on every machine and terminal.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,6 +14,7 @@ mod suggest;
 
 pub use source::{Place, Source};
 pub use suggest::did_you_mean;
+pub(crate) use suggest::{listed, nearest};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +48,7 @@ impl Diagnostic {
     fn new(severity: Severity, message: String) -> Self {
         Self {
             severity,
-            message,
+            message: shortened(message),
             place: None,
             hint: None,
         }
@@ -62,7 +64,7 @@ impl Diagnostic {
     /// The same mistake with what would mend it.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        self.hint = Some(shortened(hint.into()));
         self
     }
 
@@ -89,6 +91,19 @@ impl Diagnostic {
     pub fn hint_text(&self) -> Option<&str> {
         self.hint.as_deref()
     }
+}
+
+/// Characters of a message or hint that are kept: names in it may be of any length.
+const MOST_SAID: usize = 600;
+
+/// The text, without its middle if it is too long.
+fn shortened(text: String) -> String {
+    if text.len() <= MOST_SAID {
+        return text;
+    }
+    let start = source::char_boundary(&text, MOST_SAID / 2);
+    let end = source::char_boundary(&text, text.len() - MOST_SAID / 2);
+    format!("{} ... {}", &text[..start], &text[end..])
 }
 
 /// All that is wrong with a file. It displays as plain text, as [`Diagnostics::render`] without
@@ -124,6 +139,20 @@ impl Diagnostics {
     /// The mistakes in the order they were found.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.0.iter()
+    }
+
+    /// Each mistake once: what a file holds may be used, and looked at, several times.
+    #[must_use]
+    pub(crate) fn without_repeats(self) -> Self {
+        let mut said = HashSet::new();
+        let new = |diagnostic: &Diagnostic| {
+            let place = diagnostic.place.as_ref();
+            let place = place.map(|place| (place.source().name().to_owned(), place.range()));
+            said.insert((place, diagnostic.message.clone()))
+        };
+        let mut all = self.0;
+        all.retain(new);
+        Self(all)
     }
 
     /// The text that a person reads: sorted by source (in the order the sources were first named)

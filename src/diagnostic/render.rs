@@ -20,7 +20,11 @@ pub(super) fn render(diagnostics: &[Diagnostic], color: bool) -> String {
         Renderer::plain()
     };
     let renderer = renderer.term_width(WIDTH);
-    let sorted = sorted(diagnostics);
+    let mut sorted = sorted(diagnostics);
+    if sorted.len() > SHOWN {
+        // No warning takes an error's place.
+        sorted.sort_by_key(|diagnostic| diagnostic.severity == Severity::Warning);
+    }
     let mut out = String::new();
     for diagnostic in sorted.iter().take(SHOWN) {
         out += &one(&renderer, diagnostic);
@@ -35,7 +39,7 @@ pub(super) fn render(diagnostics: &[Diagnostic], color: bool) -> String {
 
 /// The diagnostics by source and place. What is reached twice, through an alias, is said once.
 fn sorted(diagnostics: &[Diagnostic]) -> Vec<&Diagnostic> {
-    let mut sources: Vec<*const Source> = Vec::new();
+    let mut sources: Vec<&Source> = Vec::new();
     let mut keyed: Vec<_> = diagnostics
         .iter()
         .map(|diagnostic| {
@@ -43,8 +47,8 @@ fn sorted(diagnostics: &[Diagnostic]) -> Vec<&Diagnostic> {
                 .place
                 .as_ref()
                 .map_or((usize::MAX, 0, 0), |place| {
-                    let source = std::ptr::from_ref::<Source>(place.source());
-                    let number = sources.iter().position(|&known| known == source);
+                    let source: &Source = place.source();
+                    let number = sources.iter().position(|known| known.is(source));
                     let number = number.unwrap_or_else(|| {
                         sources.push(source);
                         sources.len() - 1

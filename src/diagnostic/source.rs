@@ -99,6 +99,11 @@ impl Source {
         )
     }
 
+    /// Whether both are the same text under the same name.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other) || (self.name == other.name && self.text == other.text)
+    }
+
     /// The line that holds the byte offset, counted from 0.
     pub(super) fn line_of(&self, offset: usize) -> usize {
         self.line_starts.partition_point(|&start| start <= offset) - 1
@@ -124,7 +129,7 @@ impl fmt::Debug for Source {
 }
 
 /// The nearest start of a character at or before the byte offset.
-fn char_boundary(text: &str, offset: usize) -> usize {
+pub(super) fn char_boundary(text: &str, offset: usize) -> usize {
     let mut offset = offset.min(text.len());
     while !text.is_char_boundary(offset) {
         offset -= 1;
@@ -195,9 +200,7 @@ impl Place {
 
 impl PartialEq for Place {
     fn eq(&self, other: &Self) -> bool {
-        let same_source = Arc::ptr_eq(&self.source, &other.source)
-            || (self.source.name == other.source.name && self.source.text == other.source.text);
-        self.range() == other.range() && same_source
+        self.range() == other.range() && self.source.is(&other.source)
     }
 }
 

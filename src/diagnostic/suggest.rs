@@ -3,6 +3,23 @@
 /// Longer names are not compared, since comparing takes time proportional to both lengths.
 const MAX_CHARS: usize = 64;
 
+/// More candidates than this are not compared with a name, and more names are not listed.
+const MOST_CANDIDATES: usize = 1000;
+const MOST_LISTED: usize = 30;
+
+/// Names for a message, with commas between them: the first ones if they are many.
+pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names = names.into_iter();
+    let mut shown: Vec<&str> = names.by_ref().take(MOST_LISTED).collect();
+    if names.next().is_some() {
+        shown.push("...");
+    }
+    shown.join(", ")
+}
+
+/// Names that begin with the same letters, this many, are near: `parameters` and `params`.
+const SAME_BEGINNING: usize = 5;
+
 /// `did you mean 'x'?` for the nearest of the candidates, if one is near: at most a third of the
 /// letters differ (Damerau and Levenshtein's distance with adjacent letters swapped, case and the
 /// choice of `-` or `_` not counted). Of several equally near the first is taken.
@@ -10,10 +27,27 @@ pub fn did_you_mean<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<String> {
+    nearest(name, candidates).map(|candidate| format!("did you mean '{candidate}'?"))
+}
+
+/// The name that [`did_you_mean`] offers.
+pub(crate) fn nearest<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     let wanted = folded(name)?;
     let letters = wanted.chars().count();
+    let candidates: Vec<&str> = candidates.into_iter().take(MOST_CANDIDATES).collect();
+    let beginning = || {
+        let same = |candidate: &&&str| {
+            let letters = candidate.chars().zip(name.chars());
+            letters.take_while(|(a, b)| a == b).count() >= SAME_BEGINNING
+        };
+        candidates.iter().find(same).copied()
+    };
     candidates
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|candidate| *candidate != name)
         .filter_map(|candidate| {
             let known = folded(candidate)?;
@@ -24,7 +58,8 @@ pub fn did_you_mean<'a>(
             near.then_some((distance, candidate))
         })
         .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| format!("did you mean '{candidate}'?"))
+        .map(|(_, candidate)| candidate)
+        .or_else(beginning)
 }
 
 fn folded(name: &str) -> Option<String> {

@@ -3,34 +3,35 @@
 use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, nearest};
 
+use super::merge::{Entries, merge};
 use super::node::{Key, Node, Value};
-use super::rule::describes;
+use super::read::{DESCRIPTION, RULE};
 
 /// A parent may have a parent, and so on, up to this many.
 const MOST_PARENTS: usize = 32;
 
-type Entries = Vec<(Key, Node)>;
-
-/// The rule in a source with everything in it that it names; `None` if it is no mapping.
+/// The rule in a source with everything in it that it names, and whether all of that was found;
+/// `None` if it is no rule.
 pub(super) fn assemble(
     source: &Arc<Source>,
     catalogue: &Catalogue,
     diagnostics: &mut Diagnostics,
-) -> Option<Node> {
+) -> Option<(Node, bool)> {
     let mut assembly = Assembly {
         catalogue,
         diagnostics,
         components: Vec::new(),
+        known: Vec::new(),
+        complete: true,
     };
-    let mut node = assembly.extended(source, &mut vec![Arc::clone(source)])?;
-    let Value::Mapping(entries) = &mut node.value else {
-        return Some(node);
-    };
-    assembly.inline(entries);
-    assembly.hoist_parameters(entries);
-    Some(node)
+    let (place, mut entries) = assembly.extended(source, &mut vec![Arc::clone(source)])?;
+    assembly.inline(&mut entries);
+    assembly.hoist_parameters(&mut entries);
+    let complete = assembly.complete;
+    let value = Value::Mapping(entries);
+    Some((Node { place, value }, complete))
 }
 
 struct Assembly<'a> {
@@ -38,6 +39,10 @@ struct Assembly<'a> {
     diagnostics: &'a mut Diagnostics,
     /// The parameters of the components that have been put in, with the file they come from.
     components: Vec<(Arc<Source>, Entries)>,
+    /// The components that have been looked for.
+    known: Vec<(Shelf, String, Option<Node>)>,
+    /// Whether everything that is named has been found.
+    complete: bool,
 }
 
 impl Assembly<'_> {
@@ -45,27 +50,70 @@ impl Assembly<'_> {
         Node::parse_with(source, self.diagnostics)
     }
 
+    fn error(&mut self, place: &Place, message: String, hint: &str) {
+        self.diagnostics
+            .push(Diagnostic::error(message).at(place).hint(hint));
+    }
+
+    /// The entries of a rule alone, under the keys that are meant.
+    fn entries(&mut self, source: &Arc<Source>) -> Option<(Place, Entries)> {
+        let node = self.parse(source)?;
+        let Value::Mapping(entries) = node.value else {
+            let message = format!("a rule is needed here, this is {}", node.kind());
+            self.error(&node.place, message, RULE.hint);
+            return None;
+        };
+        let kind = entries.iter().find(|(key, _)| key.name == "kind");
+        if let Some((_, kind)) = kind
+            && !matches!(&kind.value, Value::Text(kind) if kind == "rule")
+        {
+            let message = format!("kind '{}' is not known", kind.place.text());
+            self.error(&kind.place, message, "kind: rule, which may be left out");
+            // The keys of another kind are not a rule's, so there is no use in looking at them.
+            nearest(kind.place.text(), ["rule"])?;
+        }
+        let keys = entries.iter().map(|(key, _)| key);
+        let meant = RULE.meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
+        let mut known = Vec::new();
+        for (name, (mut key, value)) in meant.into_iter().zip(entries) {
+            if let Some(name) = name {
+                key.name = name.into();
+                known.push((key, value));
+            } else if matches!(value.value, Value::Mapping(_)) {
+                self.complete = false;
+            }
+        }
+        Some((node.place, known))
+    }
+
     /// A rule with its parents' keys where it names none of its own.
-    fn extended(&mut self, source: &Arc<Source>, chain: &mut Vec<Arc<Source>>) -> Option<Node> {
-        let mut node = self.parse(source)?;
-        let Value::Mapping(entries) = &mut node.value else {
-            return Some(node);
-        };
+    fn extended(
+        &mut self,
+        source: &Arc<Source>,
+        chain: &mut Vec<Arc<Source>>,
+    ) -> Option<(Place, Entries)> {
+        let (place, mut entries) = self.entries(source)?;
         let Some(index) = entries.iter().position(|(key, _)| key.name == "extends") else {
-            return Some(node);
+            return Some((place, entries));
         };
-        let (key, parent) = entries.remove(index);
+        let (_, parent) = entries.remove(index);
+        let parents = self.parent(&parent, chain).unwrap_or_else(|| {
+            self.complete = false;
+            harmless_parent(&parent.place)
+        });
+        merge(&mut entries, parents);
+        Some((place, entries))
+    }
+
+    /// The entries of the rule that a node names.
+    fn parent(&mut self, parent: &Node, chain: &mut Vec<Arc<Source>>) -> Option<Entries> {
         let Value::Text(name) = &parent.value else {
             let message = format!(
                 "the name of a rule is needed here, this is {}",
                 parent.kind()
             );
-            self.diagnostics.push(
-                Diagnostic::error(message)
-                    .at(&parent.place)
-                    .hint("extends: koch"),
-            );
-            return Some(node);
+            self.error(&parent.place, message, "extends: koch");
+            return None;
         };
         let found = match self.catalogue.rule(name) {
             Ok(found) => found,
@@ -77,22 +125,20 @@ impl Assembly<'_> {
         let in_chain = chain
             .iter()
             .any(|source| source.name() == found.name() && source.text() == found.text());
-        if in_chain || chain.len() > MOST_PARENTS {
-            let message = if in_chain {
-                format!("'{name}' extends itself")
-            } else {
-                format!("more than {MOST_PARENTS} rules extend each other")
-            };
-            self.diagnostics
-                .push(Diagnostic::error(message).at(&key.place));
+        if in_chain {
+            let names = chain.iter().map(|source| source.name());
+            let names: Vec<_> = names.chain([found.name()]).collect();
+            let hint = format!("each extends the next: {}", names.join(", "));
+            self.error(&parent.place, format!("'{name}' extends itself"), &hint);
+            return None;
+        }
+        if chain.len() > MOST_PARENTS {
+            let message = format!("more than {MOST_PARENTS} rules extend each other");
+            self.error(&parent.place, message, "write the rule out");
             return None;
         }
         chain.push(Arc::clone(&found));
-        let base = self.extended(&found, chain)?;
-        if let (Value::Mapping(own), Value::Mapping(parents)) = (&mut node.value, base.value) {
-            merge(own, parents);
-        }
-        Some(node)
+        Some(self.extended(&found, chain)?.1)
     }
 
     /// Replaces the names of components by what they stand for.
@@ -168,39 +214,73 @@ impl Assembly<'_> {
         let Value::Text(name) = &node.value else {
             return;
         };
+        let known = self
+            .known
+            .iter()
+            .find(|(at, known, _)| *at == shelf && known == name);
+        let component = match known {
+            Some((.., component)) => component.clone(),
+            None => {
+                let component = self.find(name, shelf, &node.place);
+                self.known.push((shelf, name.clone(), component.clone()));
+                component
+            }
+        };
+        *node = component.unwrap_or_else(|| {
+            self.complete = false;
+            harmless(shelf, &node.place)
+        });
+    }
+
+    /// A component by name, without its description and its parameters.
+    fn find(&mut self, name: &str, shelf: Shelf, place: &Place) -> Option<Node> {
         let source = match self.catalogue.component(shelf, name) {
             Ok(source) => source,
             Err(error) => {
-                self.diagnostics.push(error.at(&node.place));
-                *node = harmless(shelf, &node.place);
-                return;
+                self.diagnostics.push(error.at(place));
+                return None;
             }
         };
-        let Some(mut component) = self.parse(&source) else {
-            *node = harmless(shelf, &node.place);
-            return;
-        };
-        if let Value::Mapping(entries) = &mut component.value {
-            if let Some(index) = entries.iter().position(|(key, _)| key.name == "params")
-                && let Value::Mapping(params) = entries.remove(index).1.value
-            {
-                self.components.push((source, params));
+        let mut component = self.parse(&source)?;
+        match &mut component.value {
+            Value::Mapping(entries) => {
+                if let Some(index) = entries.iter().position(|(key, _)| key.name == "params") {
+                    self.take_parameters(source, entries.remove(index).1);
+                }
+                entries.retain(|(key, _)| !DESCRIPTION.contains(&key.name.as_str()));
             }
-            entries.retain(|(key, _)| !describes(&key.name));
+            Value::Sequence(_) => {}
+            _ => {
+                let message = format!("this is no {} but {}", shelf.noun(), component.kind());
+                let hint = "`kfrac list` shows what the library has";
+                self.error(&component.place, message, hint);
+                return None;
+            }
         }
-        *node = component;
+        Some(component)
+    }
+
+    fn take_parameters(&mut self, source: Arc<Source>, params: Node) {
+        let kind = params.kind();
+        if let Value::Mapping(params) = params.value {
+            self.components.push((source, params));
+        } else {
+            self.complete = false;
+            let message = format!("a mapping of parameters is needed here, this is {kind}");
+            self.error(&params.place, message, "params: {angle: 45}");
+        }
     }
 
     /// Lets the components' parameters join the rule's.
     fn hoist_parameters(&mut self, entries: &mut Entries) {
-        let mut joined: Vec<(Option<Arc<Source>>, Key, Node)> = Vec::new();
+        let mut joined: Vec<(Arc<Source>, Key, Node)> = Vec::new();
         for (source, params) in std::mem::take(&mut self.components) {
             for (key, node) in params {
                 match joined.iter().find(|(_, known, _)| known.name == key.name) {
                     // A component that is used twice has its parameters once.
-                    Some((Some(known), ..)) if known.name() == source.name() => {}
-                    Some(_) => self.collision(&key),
-                    None => joined.push((Some(Arc::clone(&source)), key, node)),
+                    Some((known, ..)) if known.name() == source.name() => {}
+                    Some((_, other, _)) => self.collision(&key, &other.place),
+                    None => joined.push((Arc::clone(&source), key, node)),
                 }
             }
         }
@@ -236,20 +316,35 @@ impl Assembly<'_> {
             return;
         };
         for (_, key, node) in joined {
-            if own.iter().any(|(known, _)| known.name == key.name) {
-                self.collision(&key);
-            } else {
-                own.push((key, node));
+            match own.iter().find(|(known, _)| known.name == key.name) {
+                Some((known, _)) => self.collision(known, &key.place),
+                None => own.push((key, node)),
             }
         }
     }
 
-    fn collision(&mut self, key: &Key) {
+    fn collision(&mut self, key: &Key, other: &Place) {
         let message = format!("the rule has two parameters named '{}'", key.name);
-        let hint = "a component's parameters join the rule's: rename one of them";
-        self.diagnostics
-            .push(Diagnostic::error(message).at(&key.place).hint(hint));
+        let (name, line) = (other.source().name(), other.line());
+        let hint = format!("the other is in {name}, line {line}: rename one of them");
+        self.error(&key.place, message, &hint);
     }
+}
+
+/// Stands in for the parent of a rule that was not found.
+fn harmless_parent(place: &Place) -> Entries {
+    [
+        ("initiator", Shelf::Initiators),
+        ("generator", Shelf::Generators),
+    ]
+    .map(|(name, shelf)| {
+        let key = Key {
+            name: name.into(),
+            place: place.clone(),
+        };
+        (key, harmless(shelf, place))
+    })
+    .into()
 }
 
 /// Stands in for a component that was not found, so that no second error is reported for it.
@@ -259,7 +354,8 @@ fn harmless(shelf: Shelf, place: &Place) -> Node {
         value,
     };
     let number = |value| node(Value::Number(value));
-    let line = [0.0, 1.0].map(|x| node(Value::Sequence(vec![number(x), number(0.0)])));
+    // Shorter than what it replaces, so that there is no warning either.
+    let line = [0.0, 0.5].map(|x| node(Value::Sequence(vec![number(x), number(0.0)])));
     let key = if shelf == Shelf::BaseElements {
         "points"
     } else {
@@ -273,74 +369,4 @@ fn harmless(shelf: Shelf, place: &Place) -> Node {
         key,
         node(Value::Sequence(line.to_vec())),
     )]))
-}
-
-/// Keys that are true of the parent alone.
-const NOT_INHERITED: [&str; 2] = ["dimension", "hausdorff_dimension"];
-
-/// Adds a parent's entries to those of a rule that extends it.
-fn merge(own: &mut Entries, parents: Entries) {
-    let has = |own: &Entries, name: &str| own.iter().any(|(key, _)| key.name == name);
-    let one = has(own, "generator");
-    let several = has(own, "generators");
-    for (key, inherited) in parents {
-        let name = key.name.as_str();
-        let replaced = match name {
-            "generator" => several,
-            "generators" | "select" => one,
-            _ => NOT_INHERITED.contains(&name),
-        };
-        if replaced {
-            continue;
-        }
-        let Some((_, node)) = own.iter_mut().find(|(known, _)| known.name == key.name) else {
-            own.push((key, inherited));
-            continue;
-        };
-        if !["params", "style", "view"].contains(&name) {
-            continue;
-        }
-        if let (Value::Mapping(own), Value::Mapping(parents)) = (&mut node.value, inherited.value) {
-            merge_entries(own, parents, name == "params");
-        }
-    }
-}
-
-/// Merges entry by entry; a parameter's value replaces the parent's and keeps its limits.
-fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
-    for (key, inherited) in parents {
-        match own.iter_mut().find(|(known, _)| known.name == key.name) {
-            None => own.push((key, inherited)),
-            Some((own_key, node)) if params => {
-                if !matches!(node.value, Value::Mapping(_)) {
-                    let key = Key {
-                        name: "value".into(),
-                        place: own_key.place.clone(),
-                    };
-                    let place = node.place.clone();
-                    let value = std::mem::replace(&mut node.value, Value::Null);
-                    let value = Node { place, value };
-                    node.value = Value::Mapping(vec![(key, value)]);
-                }
-                let Value::Mapping(entries) = &mut node.value else {
-                    continue;
-                };
-                match inherited.value {
-                    Value::Mapping(inherited) => merge_entries(entries, inherited, false),
-                    value => {
-                        let key = Key {
-                            name: "value".into(),
-                            place: inherited.place.clone(),
-                        };
-                        let node = Node {
-                            place: inherited.place,
-                            value,
-                        };
-                        merge_entries(entries, vec![(key, node)], false);
-                    }
-                }
-            }
-            Some(_) => {}
-        }
-    }
 }

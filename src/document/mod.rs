@@ -4,9 +4,12 @@
 //! reads the result into a [`RuleDocument`]. Nothing outside this module sees YAML.
 
 mod assemble;
+mod merge;
 pub mod node;
+mod read;
 mod reader;
 mod rule;
+mod shape;
 mod style;
 mod yaml;
 
@@ -48,6 +51,19 @@ pub struct Point {
 }
 
 impl Point {
+    /// Stands in for a point that could not be read.
+    fn unknown(place: &Place) -> Self {
+        let unknown = || Written {
+            value: Expression::unknown(),
+            place: place.clone(),
+        };
+        Self {
+            x: unknown(),
+            y: unknown(),
+            place: place.clone(),
+        }
+    }
+
     /// Whether two points are written the same.
     #[must_use]
     pub fn is_written_like(&self, other: &Self) -> bool {
@@ -71,20 +87,23 @@ impl Document {
     /// All that is wrong with the text, its parents and its components.
     pub fn read(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
         let mut diagnostics = Diagnostics::default();
-        let node = assemble::assemble(source, catalogue, &mut diagnostics);
-        let Some(node) = node else {
+        let assembled = assemble::assemble(source, catalogue, &mut diagnostics);
+        let Some((node, complete)) = assembled else {
             return Err(diagnostics);
         };
-        let rule = rule::read(&node, &mut diagnostics);
+        let Some(rule) = read::read(&node, complete, &mut diagnostics) else {
+            return Err(diagnostics);
+        };
         if diagnostics.has_errors() {
             // What can be said about names and values is said too.
-            diagnostics.extend(Rule::resolve(&rule, &[]).err().into_iter().flatten());
-            return Err(diagnostics);
+            let (Ok((_, more)) | Err(more)) = Rule::resolve(&rule, &[]);
+            diagnostics.extend(more);
+            return Err(diagnostics.without_repeats());
         }
         Ok(Self {
             node,
             rule,
-            warnings: diagnostics,
+            warnings: diagnostics.without_repeats(),
         })
     }
 
@@ -106,10 +125,17 @@ impl Document {
     ///
     /// All that is wrong with it.
     pub fn resolve(&self, settings: &[Setting]) -> Result<(Rule, Diagnostics), Diagnostics> {
-        let (rule, doubts) = Rule::resolve(&self.rule, settings)?;
-        let mut warnings = self.warnings.clone();
-        warnings.extend(doubts);
-        Ok((rule, warnings))
+        let mut all = self.warnings.clone();
+        match Rule::resolve(&self.rule, settings) {
+            Ok((rule, doubts)) => {
+                all.extend(doubts);
+                Ok((rule, all.without_repeats()))
+            }
+            Err(mistakes) => {
+                all.extend(mistakes);
+                Err(all.without_repeats())
+            }
+        }
     }
 }
 

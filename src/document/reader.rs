@@ -1,43 +1,69 @@
 //! Reads values out of nodes, and notes what is wrong instead of giving up.
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, did_you_mean};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
 use crate::expression::Expression;
 use crate::style::Named;
 
 use super::node::{Node, Value};
+use super::shape::Shape;
 use super::{Number, Point, Written};
 
 /// Collects what is wrong while values are read.
 #[derive(Default)]
 pub(super) struct Reader {
     pub(super) diagnostics: Diagnostics,
+    /// Whether something could not be read that may give names a meaning.
+    pub(super) names_are_missing: bool,
+    /// The places of mistakes of syntax that have been mended.
+    mended: HashSet<(*const Source, usize, usize)>,
 }
 
-/// A mapping whose keys are taken one by one; those left over are unknown.
+/// The value of a key, and where the key is written.
+#[derive(Clone, Copy)]
+struct Field<'n> {
+    key: &'n Place,
+    value: &'n Node,
+}
+
+/// A mapping whose keys are taken one by one.
 pub(super) struct Fields<'n> {
     pub(super) place: &'n Place,
-    entries: Vec<(&'n super::node::Key, &'n Node)>,
-    /// The keys that have been asked for.
-    known: Vec<&'static str>,
+    entries: Vec<(&'static str, Field<'n>)>,
 }
 
 impl<'n> Fields<'n> {
-    /// The value of a key, once.
-    pub(super) fn take(&mut self, key: &'static str) -> Option<&'n Node> {
-        self.known.push(key);
-        let index = self.entries.iter().position(|(name, _)| name.name == key)?;
-        Some(self.entries.remove(index).1)
+    /// The value of a key.
+    pub(super) fn take(&self, key: &'static str) -> Option<&'n Node> {
+        self.field(key).map(|field| field.value)
     }
 
-    /// The value of a key, without taking it.
-    pub(super) fn has(&self, key: &str) -> bool {
-        self.entries.iter().any(|(name, _)| name.name == key)
+    /// Where a key is written; the mapping where it is not there.
+    pub(super) fn place_of(&self, key: &'static str) -> &'n Place {
+        self.field(key).map_or(self.place, |field| field.key)
+    }
+
+    fn field(&self, key: &'static str) -> Option<Field<'n>> {
+        let found = self.entries.iter().find(|(name, _)| *name == key);
+        found.map(|(_, field)| *field)
     }
 }
 
 impl Reader {
-    pub(super) fn error(&mut self, place: &Place, message: impl Into<String>) {
-        self.diagnostics.push(Diagnostic::error(message).at(place));
+    /// A reader of what has these mistakes.
+    pub(super) fn after(diagnostics: &Diagnostics) -> Self {
+        let places = diagnostics.iter().filter_map(Diagnostic::place);
+        Self {
+            mended: places.map(identity).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether a mistake at the very place of this node has been reported.
+    fn is_mended(&self, node: &Node) -> bool {
+        self.mended.contains(&identity(&node.place))
     }
 
     pub(super) fn error_with_hint(
@@ -56,37 +82,37 @@ impl Reader {
         let mut diagnostic = Diagnostic::error(message).at(&node.place);
         if !hint.is_empty() {
             diagnostic = diagnostic.hint(hint);
+        } else if node.value == Value::Null {
+            diagnostic = diagnostic.hint("write it behind the ':', or leave the key out");
         }
         self.diagnostics.push(diagnostic);
     }
 
-    pub(super) fn fields<'n>(
-        &mut self,
-        node: &'n Node,
-        what: &str,
-        hint: &str,
-    ) -> Option<Fields<'n>> {
+    /// The keys of a mapping; those that are not known are reported, and taken for what they mean.
+    pub(super) fn fields<'n>(&mut self, node: &'n Node, shape: &Shape) -> Option<Fields<'n>> {
         let Value::Mapping(entries) = &node.value else {
-            self.mismatch(node, what, hint);
+            self.mismatch(node, shape.what, shape.hint);
             return None;
         };
+        let keys = entries.iter().map(|(key, _)| key);
+        let meant = shape.meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
+        let mut known = Vec::new();
+        for (name, (key, value)) in meant.into_iter().zip(entries) {
+            let key = &key.place;
+            match name {
+                Some(name) => known.push((name, Field { key, value })),
+                None => self.names_are_missing |= matches!(value.value, Value::Mapping(_)),
+            }
+        }
         Some(Fields {
             place: &node.place,
-            entries: entries.iter().map(|(key, value)| (key, value)).collect(),
-            known: Vec::new(),
+            entries: known,
         })
     }
 
-    /// Reports the keys that nobody asked for.
-    pub(super) fn finish(&mut self, fields: Fields<'_>, what: &str) {
-        for (key, _) in fields.entries {
-            let known = fields.known.iter().copied();
-            let hint = did_you_mean(&key.name, known.clone()).unwrap_or_else(|| {
-                format!("{what} may have: {}", known.collect::<Vec<_>>().join(", "))
-            });
-            let message = format!("unknown key '{}' in {what}", key.name);
-            self.error_with_hint(&key.place, message, hint);
-        }
+    /// Whether this is a component by name: one that another mistake kept from being put in.
+    pub(super) fn is_component(&self, node: &Node) -> bool {
+        matches!(node.value, Value::Text(_)) && self.diagnostics.has_errors()
     }
 
     pub(super) fn text(&mut self, node: &Node) -> Option<String> {
@@ -105,24 +131,35 @@ impl Reader {
             None => default,
             Some((Value::Bool(flag), _)) => *flag,
             Some((_, node)) => {
-                self.mismatch(node, "true or false", "");
+                self.mismatch(node, "true or false", "write true or false, without quotes");
                 default
             }
         }
     }
 
-    /// An expression. Where it is wrong, that is noted and 0 stands in for it.
+    /// A name that something is called by.
+    pub(super) fn name(&mut self, node: &Node) -> Option<Written<String>> {
+        self.text(node).map(|value| Written {
+            value,
+            place: node.place.clone(),
+        })
+    }
+
+    /// An expression. Where it is wrong, that is noted and an unknown one stands in for it.
     pub(super) fn number(&mut self, node: &Node) -> Number {
         let expression = match &node.value {
             Value::Number(value) => Expression::number(*value),
             Value::Text(text) => Expression::parse(text).unwrap_or_else(|error| {
+                if self.is_mended(node) {
+                    return Expression::unknown();
+                }
                 let place = node.within(error.range.clone());
                 let mut diagnostic = Diagnostic::error(error.message).at(&place);
                 if let Some(hint) = error.hint {
                     diagnostic = diagnostic.hint(hint);
                 }
                 self.diagnostics.push(diagnostic);
-                Expression::number(0.0)
+                Expression::unknown()
             }),
             _ => {
                 self.mismatch(
@@ -130,7 +167,7 @@ impl Reader {
                     "a number",
                     "a number or an expression such as 1/3 or sqrt(3)/6",
                 );
-                Expression::number(0.0)
+                Expression::unknown()
             }
         };
         for warning in expression.warnings() {
@@ -152,28 +189,39 @@ impl Reader {
     }
 
     /// A list of exactly two numbers.
-    pub(super) fn point(&mut self, node: &Node) -> Option<Point> {
+    pub(super) fn point(&mut self, node: &Node) -> Point {
         let hint = "a point is written [x, y]";
+        let mut point = Point::unknown(&node.place);
         let Value::Sequence(entries) = &node.value else {
             self.mismatch(node, "a point", hint);
-            return None;
+            return point;
         };
-        let numbers: Vec<_> = entries.iter().map(|entry| self.number(entry)).collect();
-        let count = numbers.len();
-        if let Ok([x, y]) = <[Number; 2]>::try_from(numbers) {
-            return Some(Point {
-                x,
-                y,
-                place: node.place.clone(),
-            });
+        for (index, entry) in entries.iter().enumerate() {
+            let number = self.number(entry);
+            match index {
+                0 => point.x = number,
+                1 => point.y = number,
+                _ => {}
+            }
         }
-        let s = if count == 1 { "" } else { "s" };
-        self.error_with_hint(
-            &node.place,
-            format!("a point has two coordinates, this one has {count} number{s}"),
-            hint,
-        );
-        None
+        let count = entries.len();
+        if count == 2 {
+            return point;
+        }
+        if !entries.iter().any(|entry| self.is_mended(entry)) {
+            let s = if count == 1 { "" } else { "s" };
+            let message = format!("a point has two coordinates, this one has {count} number{s}");
+            let hint = match count {
+                3.. => "a point is written [x, y], decimals with a point: 0.5",
+                _ => hint,
+            };
+            self.error_with_hint(&node.place, message, hint);
+        }
+        Point::unknown(&node.place)
+    }
+
+    pub(super) fn optional_point(&mut self, node: Option<&Node>) -> Option<Point> {
+        node.map(|node| self.point(node))
     }
 
     pub(super) fn list<'n>(&mut self, node: &'n Node, what: &str, hint: &str) -> &'n [Node] {
@@ -202,4 +250,10 @@ impl Reader {
         }
         found
     }
+}
+
+/// What tells a place from others.
+fn identity(place: &Place) -> (*const Source, usize, usize) {
+    let range = place.range();
+    (Arc::as_ptr(place.source()), range.start, range.end)
 }

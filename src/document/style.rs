@@ -1,16 +1,44 @@
 //! `style` and `view`.
 
+use crate::diagnostic::Diagnostic;
 use crate::expression::Scope;
 use crate::style::{Colour, Palette, Style, View, Width};
 
 use super::node::{Node, Value};
 use super::reader::Reader;
+use super::shape::Shape;
+
+const STYLE: Shape = Shape {
+    what: "a style",
+    keys: &[
+        "stroke",
+        "fill",
+        "background",
+        "width",
+        "cap",
+        "join",
+        "color_by",
+        "palette",
+    ],
+    hint: "style: {stroke: black, width: 1.5}",
+};
+
+const WIDTH: Shape = Shape {
+    what: "a width",
+    keys: &["relative"],
+    hint: "width: 1.5 in pixels, or width: {relative: 0.1} of the element's length",
+};
+
+const VIEW: Shape = Shape {
+    what: "a view",
+    keys: &["window", "margin"],
+    hint: "view: {window: [x, y, width, height], margin: 10}",
+};
 
 pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
     let mut style = Style::default();
     let Some(node) = node else { return style };
-    let hint = "style: {stroke: black, width: 1.5}";
-    let Some(mut fields) = reader.fields(node, "a mapping of styles", hint) else {
+    let Some(fields) = reader.fields(node, &STYLE) else {
         return style;
     };
     style.stroke = fields
@@ -39,7 +67,6 @@ pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
     if let Some(palette) = fields.take("palette") {
         style.palette = read_palette(reader, palette).unwrap_or_default();
     }
-    reader.finish(fields, "a style");
     style
 }
 
@@ -68,11 +95,14 @@ fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
 
 fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
     if let Value::Mapping(_) = node.value {
-        let mut fields = reader.fields(node, "a width", "width: {relative: 0.1}")?;
-        let width = fields
-            .take("relative")
-            .and_then(|node| positive(reader, node));
-        reader.finish(fields, "a width");
+        let fields = reader.fields(node, &WIDTH)?;
+        let Some(relative) = fields.take("relative") else {
+            if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
+                reader.mismatch(node, WIDTH.what, WIDTH.hint);
+            }
+            return None;
+        };
+        let width = positive(reader, relative);
         return width.map(Width::Relative);
     }
     positive(reader, node).map(Width::Pixels)
@@ -82,7 +112,7 @@ fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
 fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
     let value = constant(reader, node)?;
     if value < 0.0 {
-        reader.error(&node.place, "this cannot be negative");
+        reader.error_with_hint(&node.place, "this cannot be negative", "0 or more");
         return None;
     }
     Some(value)
@@ -93,7 +123,13 @@ fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
     match number.value.compile(&Scope::new()) {
         Ok(program) => program.as_constant(),
         Err(error) => {
-            reader.error_with_hint(&number.place, error.message, "a number without parameters");
+            let mut diagnostic = Diagnostic::error(error.message).at(&node.within(error.range));
+            if number.value.names().is_empty() {
+                diagnostic = error.hint.into_iter().fold(diagnostic, Diagnostic::hint);
+            } else {
+                diagnostic = diagnostic.hint("a style or view does not know the parameters");
+            }
+            reader.diagnostics.push(diagnostic);
             None
         }
     }
@@ -120,7 +156,7 @@ fn read_palette(reader: &mut Reader, node: &Node) -> Option<Palette> {
                 .iter()
                 .filter_map(|entry| read_colour(reader, entry))
                 .collect();
-            Some(Palette::of_colours("", &colours))
+            (!colours.is_empty()).then(|| Palette::of_colours("", &colours))
         }
         _ => {
             reader.mismatch(node, "a palette", "palette: viridis, or a list of colours");
@@ -132,28 +168,33 @@ fn read_palette(reader: &mut Reader, node: &Node) -> Option<Palette> {
 pub(super) fn read_view(reader: &mut Reader, node: Option<&Node>) -> View {
     let mut view = View::default();
     let Some(node) = node else { return view };
-    let hint = "view: {window: [x, y, width, height], margin: 10}";
-    let Some(mut fields) = reader.fields(node, "a view", hint) else {
+    let Some(fields) = reader.fields(node, &VIEW) else {
         return view;
     };
     if let Some(window) = fields.take("window") {
-        let entries = reader.list(window, "a window", hint);
+        let entries = reader.list(window, "a list of four numbers", VIEW.hint);
         let numbers: Vec<_> = entries
             .iter()
             .filter_map(|entry| constant(reader, entry))
             .collect();
-        match <[f64; 4]>::try_from(numbers) {
-            Ok(numbers) if numbers[2] > 0.0 && numbers[3] > 0.0 => view.window = Some(numbers),
-            _ => reader.error_with_hint(
+        let wrong = match (&window.value, entries.len(), numbers.as_slice()) {
+            (Value::Sequence(_), 4, &[x, y, width, height]) => {
+                view.window = Some([x, y, width, height]);
+                width <= 0.0 || height <= 0.0
+            }
+            (Value::Sequence(_), count, _) => count != 4,
+            _ => false,
+        };
+        if wrong {
+            reader.error_with_hint(
                 &window.place,
                 "a window has a lower left corner, a width and a height above 0",
-                hint,
-            ),
+                VIEW.hint,
+            );
         }
     }
     if let Some(margin) = fields.take("margin") {
         view.margin = positive(reader, margin).unwrap_or_default();
     }
-    reader.finish(fields, "a view");
     view
 }

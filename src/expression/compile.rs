@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::functions::Meaning;
 use super::operator::{One, Two};
 use super::program::{Op, Program, STACK};
-use super::scope::{Named, Scope};
+use super::scope::{Named, Scope, UNKNOWN};
 use super::{Expression, ExpressionError, Node, Type};
 
 type Checked<T = ()> = Result<T, ExpressionError>;
@@ -36,12 +36,13 @@ impl Expression {
                 let hint = "a distribution belongs under `random:`, where it gets a name";
                 return Err(ExpressionError::new(self.range(), message).hint(hint));
             }
+            Node::Unknown => {}
             // Its branches are what must have the type.
             Node::Call(function, _) if function.meaning == Meaning::If => {}
             _ => self.check_type(needed)?,
         }
         match &self.node {
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) => Ok(()),
+            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Unknown => Ok(()),
             Node::Prefix(operator, operand) => operand.check(operator.takes(), scope),
             Node::Infix(operator, operands) => check_all(&operands[..], operator.takes(), scope),
             Node::Call(function, arguments) => match (function.meaning, arguments.as_slice()) {
@@ -99,6 +100,10 @@ impl Compiler<'_> {
                 }
                 None => Err(self.scope.unknown(name, range)),
             },
+            Node::Unknown => {
+                self.ops.push(Op::Slot(UNKNOWN));
+                Ok(())
+            }
             Node::Prefix(operation, operand) => self.one(*operation, operand, expression),
             Node::Infix(operation, operands) => {
                 let [left, right] = &**operands;

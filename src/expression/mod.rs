@@ -94,6 +94,8 @@ enum Node {
     Prefix(One, Box<Expression>),
     Infix(Two, Box<[Expression; 2]>),
     Call(&'static Function, Vec<Expression>),
+    /// Stands for a text that could not be read.
+    Unknown,
 }
 
 impl PartialEq for Expression {
@@ -136,6 +138,22 @@ impl Expression {
         number
     }
 
+    /// Stands in for an expression that could not be read, so that nothing more is said of it: it
+    /// compiles to a program without a value and is equal to no other.
+    #[must_use]
+    pub fn unknown() -> Self {
+        Self {
+            node: Node::Unknown,
+            range: 0..0,
+        }
+    }
+
+    /// Whether it is [`Expression::unknown`].
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        matches!(self.node, Node::Unknown)
+    }
+
     /// The name and arguments of the outermost call, if it is a distribution: `uniform`, `normal`
     /// or `choice`. Their number is right: two, two, at least one.
     #[must_use]
@@ -158,7 +176,7 @@ impl Expression {
     #[must_use]
     pub fn yields(&self) -> Type {
         match &self.node {
-            Node::Number(_) | Node::Name(_) => Type::Number,
+            Node::Number(_) | Node::Name(_) | Node::Unknown => Type::Number,
             Node::Truth(_) => Type::Condition,
             Node::Prefix(operator, _) => operator.yields(),
             Node::Infix(operator, _) => operator.yields(),
@@ -234,11 +252,30 @@ impl Expression {
         compile::compile(self, Type::Condition, scope)
     }
 
+    /// All that is wrong with it in a scope: each of its unknown names, or the one mistake that
+    /// [`compile`](Self::compile) or [`compile_condition`](Self::compile_condition) reports.
+    #[must_use]
+    pub fn mistakes(&self, result: Type, scope: &Scope) -> Vec<ExpressionError> {
+        let mut unknown: Vec<(&str, ExpressionError)> = Vec::new();
+        for (name, range) in self.names() {
+            if scope.get(name).is_none() && unknown.iter().all(|(known, _)| *known != name) {
+                unknown.push((name, scope.unknown(name, range)));
+            }
+        }
+        if unknown.is_empty() {
+            return compile::compile(self, result, scope)
+                .err()
+                .into_iter()
+                .collect();
+        }
+        unknown.into_iter().map(|(_, error)| error).collect()
+    }
+
     /// Calls `f` for this expression and all its parts, in the order of the text.
     fn visit<'a>(&'a self, f: &mut impl FnMut(&'a Self)) {
         f(self);
         match &self.node {
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) => {}
+            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Unknown => {}
             Node::Prefix(_, operand) => operand.visit(f),
             Node::Infix(_, operands) => operands.iter().for_each(|part| part.visit(f)),
             Node::Call(_, arguments) => arguments.iter().for_each(|part| part.visit(f)),

@@ -329,7 +329,13 @@ fn unknown_function(name: &str, range: Range<usize>) -> ExpressionError {
         return ExpressionError::new(range, message).hint(format!("write {name} * (...)"));
     }
     let functions = FUNCTIONS.each_ref().map(|function| function.name);
-    let hint = nearest(name, functions.into_iter()).map_or_else(
+    // `cosine` is `cos`.
+    let beginning = || {
+        let begins = |function: &&str| function.len() > 2 && name.starts_with(function);
+        functions.into_iter().find(begins)
+    };
+    let hint = nearest(name, functions.into_iter()).or_else(beginning);
+    let hint = hint.map_or_else(
         || {
             let all = functions.join(", ");
             format!("to multiply, write {name} * (...); the functions are {all}")

@@ -11,6 +11,7 @@ impl Display for Expression {
             Node::Number(value) => write_number(f, *value),
             Node::Truth(value) => write!(f, "{value}"),
             Node::Name(name) => f.write_str(name),
+            Node::Unknown => f.write_str("?"),
             Node::Prefix(operator, operand) => {
                 f.write_str(if *operator == One::Not { "not " } else { "-" })?;
                 operand.write_bound(f, operator.precedence())
@@ -45,7 +46,9 @@ impl Expression {
         let own = match &self.node {
             Node::Prefix(operator, _) => operator.precedence(),
             Node::Infix(operator, _) => operator.precedence(),
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Call(..) => ATOM,
+            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Call(..) | Node::Unknown => {
+                ATOM
+            }
         };
         if own < precedence {
             write!(f, "({self})")

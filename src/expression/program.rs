@@ -1,6 +1,7 @@
 //! Compiled expressions.
 
 use super::operator::{One, Two, modulo};
+use super::scope::UNKNOWN;
 
 /// The most intermediate values that a program may hold at a time.
 pub(super) const STACK: usize = 64;
@@ -43,6 +44,15 @@ impl Program {
     pub fn constant(value: f64) -> Self {
         Self {
             ops: vec![Op::Constant(value)],
+            depth: 1,
+        }
+    }
+
+    /// The program that stands in for one that is wrong: nothing is known of its value.
+    #[must_use]
+    pub fn unknown() -> Self {
+        Self {
+            ops: vec![Op::Slot(UNKNOWN)],
             depth: 1,
         }
     }

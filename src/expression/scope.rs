@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::functions::{FUNCTIONS, Function};
 use super::{ExpressionError, Range};
+use crate::diagnostic::listed;
 
 const CONSTANTS: [(&str, f64); 3] = [
     ("pi", std::f64::consts::PI),
@@ -32,7 +33,12 @@ pub(super) fn constant(name: &str) -> Option<f64> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scope {
     names: BTreeMap<String, Named>,
+    /// Whether other names stand for values that are not known.
+    open: bool,
 }
+
+/// The slot of values that are not known. No list of slots is that long, so they read as NaN.
+pub(super) const UNKNOWN: usize = usize::MAX;
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +65,17 @@ impl Scope {
         self.names.insert(name.to_owned(), Named::Slot(slot));
     }
 
+    /// Adds a name whose value could not be told, so that nothing more is said of what depends on
+    /// it.
+    pub fn unknown_value(&mut self, name: &str) {
+        self.variable(name, UNKNOWN);
+    }
+
+    /// Takes every other name for one whose value is not known.
+    pub fn accept_any_name(&mut self) {
+        self.open = true;
+    }
+
     /// Whether this name has been added.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
@@ -69,6 +86,7 @@ impl Scope {
         constant(name)
             .map(Named::Constant)
             .or_else(|| self.names.get(name).copied())
+            .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }
 
     pub(super) fn unknown(&self, name: &str, range: Range<usize>) -> ExpressionError {
@@ -79,12 +97,15 @@ impl Scope {
         let functions = FUNCTIONS.iter().map(|function| function.name);
         let candidates = known.iter().copied().chain(words).chain(functions);
         let hint = nearest(name, candidates).map_or_else(
-            || format!("what can be used here: {}", known.join(", ")),
+            || format!("what can be used here: {}", listed(known.iter().copied())),
             |nearest| format!("did you mean '{nearest}'?"),
         );
         ExpressionError::new(range, format!("unknown name '{name}'")).hint(hint)
     }
 }
+
+/// More candidates than this are not compared with a name.
+const MOST_CANDIDATES: usize = 1000;
 
 /// The candidate that `name` is most likely a misspelling of.
 pub(super) fn nearest<'a>(
@@ -99,6 +120,7 @@ pub(super) fn nearest<'a>(
         _ => 2,
     };
     candidates
+        .take(MOST_CANDIDATES)
         .map(|word| {
             let distance = strsim::damerau_levenshtein(&lower, &word.to_lowercase());
             (distance, word)

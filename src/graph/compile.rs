@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use crate::diagnostic::Diagnostic;
 use crate::geometry::DVec2;
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
@@ -43,6 +44,41 @@ impl CompileError {
             age: moment.age,
             step: moment.step,
             length: moment.length,
+        }
+    }
+
+    /// The error as a mistake in the file that the rule was read from.
+    #[must_use]
+    pub fn diagnostic(&self, rule: &Rule) -> Diagnostic {
+        let Self::NotFinite {
+            generator,
+            index,
+            age,
+            step,
+            length,
+        } = self;
+        let moment = Moment {
+            index: *index,
+            age: *age,
+            step: *step,
+            length: *length,
+        };
+        let diagnostic = Diagnostic::error(self.to_string());
+        let mut generators = rule.generators().iter();
+        let Some(generator) = generators.find(|known| known.name() == generator) else {
+            return diagnostic;
+        };
+        match generator.infinite_coordinate(&moment) {
+            Some((place, values)) => {
+                let values = values
+                    .iter()
+                    .map(|(name, value)| format!("{name} = {value}"));
+                let values = values.collect::<Vec<_>>().join(", ");
+                Diagnostic::error(format!("this is not finite where {values}"))
+                    .at(place)
+                    .hint("if(CONDITION, THIS, OTHERWISE) chooses between two values")
+            }
+            None => diagnostic.at(&generator.origin.name),
         }
     }
 }

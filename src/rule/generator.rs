@@ -1,4 +1,5 @@
-use crate::expression::{Program, degrees};
+use crate::diagnostic::Place;
+use crate::expression::{Dependence, Program, degrees};
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
 
 use super::draw::{Path, Variable};
@@ -114,12 +115,28 @@ pub struct Part {
     pub meets_frame: [bool; 2],
 }
 
+/// Where a generator was written: for messages about what shows only when it is evaluated.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    pub(crate) name: Place,
+    /// The coordinates of its points.
+    pub(crate) points: Vec<[Place; 2]>,
+}
+
+impl PartialEq for Origin {
+    /// Two generators are the same wherever they were written.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 /// A generator: what replaces a fertile element.
 ///
 /// The coordinates of its points are those of the unit frame, in which the replaced element runs
 /// from (0, 0) to (1, 0).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generator {
+    pub(crate) origin: Origin,
     pub(crate) name: String,
     pub(crate) variables: Vec<Variable>,
     pub(crate) points: Vec<[Program; 2]>,
@@ -138,6 +155,24 @@ impl Generator {
     #[must_use]
     pub fn variables(&self) -> &[Variable] {
         &self.variables
+    }
+
+    /// The first coordinate that is not finite at a moment, before points move: where it is
+    /// written, and what it depends on. None if it depends on draws or becomes infinite as it moves.
+    pub(crate) fn infinite_coordinate(
+        &self,
+        moment: &Moment,
+    ) -> Option<(&Place, Vec<(&'static str, f64)>)> {
+        let slots = moment.slots();
+        let written = self.points.iter().flatten();
+        let mut written = written.zip(self.origin.points.iter().flatten());
+        let (program, place) = written
+            .find(|(program, _)| !program.eval(&slots).is_finite())
+            .filter(|_| !self.is_random())?;
+        let depends = |slot: &usize| program.dependence(*slot) != Dependence::None;
+        let slots = (0..slots.len()).filter(depends);
+        let values = slots.map(|slot| (Moment::NAMES[slot], moment.slots()[slot]));
+        Some((place, values.collect()))
     }
 
     /// Its parts, in the order of listing.

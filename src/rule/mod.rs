@@ -12,6 +12,7 @@ mod resolve;
 mod selection;
 
 pub use base_element::{BaseElement, Piece, arc};
+pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
 pub use selection::Selection;
 

@@ -1,0 +1,76 @@
+//! What a rule takes over from the one that it extends.
+
+use super::node::{Key, Node, Value};
+
+/// The entries of a mapping.
+pub(super) type Entries = Vec<(Key, Node)>;
+
+/// Keys that are true of the parent alone.
+const NOT_INHERITED: [&str; 2] = ["dimension", "hausdorff_dimension"];
+
+/// Adds a parent's entries to those of a rule that extends it.
+pub(super) fn merge(own: &mut Entries, parents: Entries) {
+    let has = |own: &Entries, name: &str| own.iter().any(|(key, _)| key.name == name);
+    let one = has(own, "generator");
+    let several = has(own, "generators");
+    for (key, inherited) in parents {
+        let name = key.name.as_str();
+        let replaced = match name {
+            "generator" => several,
+            "generators" | "select" => one,
+            _ => NOT_INHERITED.contains(&name),
+        };
+        if replaced {
+            continue;
+        }
+        let Some((_, node)) = own.iter_mut().find(|(known, _)| known.name == key.name) else {
+            own.push((key, inherited));
+            continue;
+        };
+        if !["params", "style", "view"].contains(&name) {
+            continue;
+        }
+        if let (Value::Mapping(own), Value::Mapping(parents)) = (&mut node.value, inherited.value) {
+            merge_entries(own, parents, name == "params");
+        }
+    }
+}
+
+/// Merges entry by entry; a parameter's value replaces the parent's and keeps its limits.
+fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
+    for (key, inherited) in parents {
+        match own.iter_mut().find(|(known, _)| known.name == key.name) {
+            None => own.push((key, inherited)),
+            Some((own_key, node)) if params => {
+                if !matches!(node.value, Value::Mapping(_)) {
+                    let key = Key {
+                        name: "value".into(),
+                        place: own_key.place.clone(),
+                    };
+                    let place = node.place.clone();
+                    let value = std::mem::replace(&mut node.value, Value::Null);
+                    let value = Node { place, value };
+                    node.value = Value::Mapping(vec![(key, value)]);
+                }
+                let Value::Mapping(entries) = &mut node.value else {
+                    continue;
+                };
+                match inherited.value {
+                    Value::Mapping(inherited) => merge_entries(entries, inherited, false),
+                    value => {
+                        let key = Key {
+                            name: "value".into(),
+                            place: inherited.place.clone(),
+                        };
+                        let node = Node {
+                            place: inherited.place,
+                            value,
+                        };
+                        merge_entries(entries, vec![(key, node)], false);
+                    }
+                }
+            }
+            Some(_) => {}
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Base elements.
+
+use crate::document::node::{Node, Value};
+use crate::document::reader::Reader;
+use crate::document::rule::{BaseElementDocument, PieceDocument};
+use crate::document::shape::Shape;
+
+use super::rule::first_line;
+
+const BASE_ELEMENT: Shape = Shape {
+    what: "a base element",
+    keys: &["points", "closed", "from", "to"],
+    hint: "a name from the library (base_element: triangle), or \
+           {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}",
+};
+
+const PIECE: Shape = Shape {
+    what: "a piece of a base element",
+    keys: &["arc", "through", "curve", "control"],
+    hint: "a piece is a point, {arc: [x, y], through: [x, y]} or \
+           {curve: [x, y], control: [[x, y]]}",
+};
+
+pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<BaseElementDocument> {
+    if reader.is_component(node) {
+        return None;
+    }
+    let fields = reader.fields(node, &BASE_ELEMENT)?;
+    let mut pieces = Vec::new();
+    match fields.take("points") {
+        Some(points) => {
+            let list = reader.list(points, "a list of points", BASE_ELEMENT.hint);
+            pieces.extend(list.iter().filter_map(|entry| read_piece(reader, entry)));
+            if matches!(points.value, Value::Sequence(_)) && list.len() < 2 {
+                let message = "a base element needs two points or more";
+                reader.error_with_hint(&points.place, message, "points: [[0, 0], [1, 0]]");
+            }
+        }
+        None => {
+            let message = "a base element needs `points`";
+            reader.error_with_hint(&first_line(&node.place), message, BASE_ELEMENT.hint);
+        }
+    }
+    Some(BaseElementDocument {
+        pieces,
+        closed: reader.flag(fields.take("closed"), false),
+        from: reader.optional_point(fields.take("from")),
+        to: reader.optional_point(fields.take("to")),
+        place: node.place.clone(),
+    })
+}
+
+fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
+    if let Value::Sequence(_) = node.value {
+        return Some(PieceDocument::Line(reader.point(node)));
+    }
+    let fields = reader.fields(node, &PIECE)?;
+    if let Some(to) = fields.take("arc") {
+        let to = reader.point(to);
+        let Some(through) = reader.optional_point(fields.take("through")) else {
+            let message = "an arc needs a point that it goes through";
+            reader.error_with_hint(&first_line(&node.place), message, PIECE.hint);
+            return None;
+        };
+        Some(PieceDocument::Arc { to, through })
+    } else if let Some(to) = fields.take("curve") {
+        let to = reader.point(to);
+        let control = fields.take("control");
+        let points = control.map_or(&[][..], |node| {
+            reader.list(node, "a list of control points", PIECE.hint)
+        });
+        let is_list = control.is_none_or(|node| matches!(node.value, Value::Sequence(_)));
+        if is_list && !(1..=2).contains(&points.len()) {
+            let place = first_line(control.map_or(&node.place, |control| &control.place));
+            let message = "a curve has one control point or two";
+            reader.error_with_hint(&place, message, PIECE.hint);
+        }
+        let control = points.iter().map(|node| reader.point(node)).collect();
+        Some(PieceDocument::Curve { to, control })
+    } else {
+        let message = "this piece does not say where it ends";
+        reader.error_with_hint(&first_line(&node.place), message, PIECE.hint);
+        None
+    }
+}

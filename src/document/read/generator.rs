@@ -1,0 +1,252 @@
+//! Generators: their parts, drawn variables and moves.
+
+use crate::document::node::{Node, Value};
+use crate::document::reader::{Fields, Reader};
+use crate::document::rule::{GeneratorDocument, MoveDocument, PartDocument, WhichPoints};
+use crate::document::shape::Shape;
+use crate::document::{Number, Written};
+use crate::rule::Placement;
+
+use super::elements::{read_entries, required_entries};
+use super::parameters::written;
+use super::rule::first_line;
+
+const GENERATOR: Shape = Shape {
+    what: "a generator",
+    keys: &["elements", "parts", "random", "move", "connected"],
+    hint: "a name from the library (generator: koch), a list of points, or {elements: [...]} or \
+           {parts: [...]}",
+};
+
+const PART: Shape = Shape {
+    what: "a part",
+    keys: &["seeds", "placed", "closed", "connected", "elements"],
+    hint: "- {seeds: true, elements: [...]}",
+};
+
+const MOVE: Shape = Shape {
+    what: "a move",
+    keys: &["rotate", "scale", "shift", "about", "points"],
+    hint: "move: {rotate: tilt, about: [1/2, 1]}",
+};
+
+const SEVERAL: &str = "generators: {grow: [...], seed: [...]}";
+
+type Named = (Written<String>, GeneratorDocument);
+
+/// The one generator of a rule, or the several.
+pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<Named> {
+    let (one, several) = (fields.take("generator"), fields.take("generators"));
+    let mut generators = Vec::new();
+    match (one, several) {
+        (Some(_), Some(_)) => {
+            reader.error_with_hint(
+                fields.place_of("generator"),
+                "`generator` and `generators` cannot stand together",
+                "`generators` takes any number of generators by name",
+            );
+            // Which of them are meant to be selected cannot be told.
+            reader.names_are_missing = true;
+        }
+        (None, None) => reader.error_with_hint(
+            &first_line(fields.place),
+            "the rule has no generator",
+            "generator: [[0, 0], [1/3, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]",
+        ),
+        _ => {}
+    }
+    if let Some(node) = several {
+        match &node.value {
+            Value::Mapping(entries) if entries.is_empty() => {
+                reader.error_with_hint(&node.place, "there is no generator in it", SEVERAL);
+            }
+            Value::Mapping(entries) => generators.extend(
+                entries
+                    .iter()
+                    .map(|(key, node)| (written(key), read_generator(reader, node))),
+            ),
+            _ => {
+                reader.mismatch(node, "a mapping of generators by name", SEVERAL);
+                reader.names_are_missing = true;
+            }
+        }
+    }
+    if let Some(node) = one {
+        let name = Written {
+            value: "generator".into(),
+            place: fields.place_of("generator").clone(),
+        };
+        generators.push((name, read_generator(reader, node)));
+    }
+    generators
+}
+
+fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
+    let part = PartDocument {
+        placement: Placement::Stays,
+        entries: Vec::new(),
+        closed: false,
+        connected: true,
+        place: node.place.clone(),
+    };
+    let mut generator = GeneratorDocument {
+        random: Vec::new(),
+        moves: Vec::new(),
+        parts: Vec::new(),
+        place: node.place.clone(),
+    };
+    if let Value::Sequence(_) = node.value {
+        let entries = read_entries(reader, node);
+        generator.parts.push(PartDocument { entries, ..part });
+        return generator;
+    }
+    if reader.is_component(node) {
+        return generator;
+    }
+    let Some(fields) = reader.fields(node, &GENERATOR) else {
+        return generator;
+    };
+    generator.random = read_random(reader, fields.take("random"));
+    generator.moves = read_moves(reader, fields.take("move"));
+    let connected = fields.take("connected");
+    match fields.take("parts") {
+        Some(parts) => {
+            if fields.take("elements").is_some() {
+                reader.error_with_hint(
+                    fields.place_of("elements"),
+                    "`parts` and `elements` cannot stand together",
+                    "put the elements into a part of their own: - elements: [...]",
+                );
+            }
+            if let Some(connected) = connected {
+                reader.error_with_hint(
+                    &connected.place,
+                    "`connected` belongs to a part where there are parts",
+                    "- {connected: false, elements: [...]}",
+                );
+            }
+            let hint = "parts: [{elements: [...]}, {seeds: true, elements: [...]}]";
+            let list = reader.list(parts, "a list of parts", hint);
+            if matches!(&parts.value, Value::Sequence(list) if list.is_empty()) {
+                reader.error_with_hint(&parts.place, "there is no part in this list", hint);
+            }
+            let parts = list.iter().filter_map(|part| read_part(reader, part));
+            generator.parts.extend(parts);
+        }
+        None => generator.parts.push(PartDocument {
+            connected: reader.flag(connected, true),
+            entries: required_entries(reader, &fields, GENERATOR.what),
+            ..part
+        }),
+    }
+    generator
+}
+
+fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
+    let fields = reader.fields(node, &PART)?;
+    let seeds = reader.flag(fields.take("seeds"), false);
+    let mut placement = if seeds {
+        Placement::Seeds
+    } else {
+        Placement::Stays
+    };
+    if let Some(placed) = fields.take("placed") {
+        match &placed.value {
+            Value::Text(text) if text == "initiator" && seeds => {
+                placement = Placement::SeedsAsInitiator;
+            }
+            Value::Text(text) if text == "element" => {}
+            Value::Text(text) if text == "initiator" => reader.error_with_hint(
+                &placed.place,
+                "only a part that seeds can be placed as the initiator",
+                "{seeds: true, placed: initiator, elements: [...]}",
+            ),
+            _ => reader.error_with_hint(
+                &first_line(&placed.place),
+                format!("'{}' is no placement", first_line(&placed.place).text()),
+                "placed: initiator, or nothing for the element's own frame",
+            ),
+        }
+    }
+    let closed_node = fields.take("closed");
+    let closed = reader.flag(closed_node, false);
+    if let (true, false, Some(node)) = (closed, seeds, closed_node) {
+        reader.error_with_hint(
+            &node.place,
+            "only a part that seeds can be closed",
+            "a part that takes the element's place goes on with its neighbours",
+        );
+    }
+    Some(PartDocument {
+        placement,
+        entries: required_entries(reader, &fields, PART.what),
+        closed: closed && seeds,
+        connected: reader.flag(fields.take("connected"), true),
+        place: node.place.clone(),
+    })
+}
+
+fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>, Number)> {
+    let Some(node) = node else { return Vec::new() };
+    let Value::Mapping(entries) = &node.value else {
+        let hint = "random: {tilt: \"uniform(-20, 20)\"}";
+        reader.mismatch(node, "a mapping of variables", hint);
+        reader.names_are_missing = true;
+        return Vec::new();
+    };
+    entries
+        .iter()
+        .map(|(key, node)| (written(key), reader.number(node)))
+        .collect()
+}
+
+/// One move, or a list of them.
+fn read_moves(reader: &mut Reader, node: Option<&Node>) -> Vec<MoveDocument> {
+    let Some(node) = node else { return Vec::new() };
+    let moves = match &node.value {
+        Value::Sequence(moves) => moves.as_slice(),
+        _ => std::slice::from_ref(node),
+    };
+    moves
+        .iter()
+        .filter_map(|node| read_move(reader, node))
+        .collect()
+}
+
+fn read_move(reader: &mut Reader, node: &Node) -> Option<MoveDocument> {
+    let fields = reader.fields(node, &MOVE)?;
+    if let Value::Mapping(entries) = &node.value
+        && entries.is_empty()
+    {
+        reader.error_with_hint(&node.place, "this move moves nothing", MOVE.hint);
+    }
+    let scale = fields.take("scale").map(|node| match &node.value {
+        Value::Sequence(_) => {
+            let point = reader.point(node);
+            [point.x, point.y]
+        }
+        _ => {
+            let scale = reader.number(node);
+            [scale.clone(), scale]
+        }
+    });
+    let points = match fields.take("points") {
+        None => WhichPoints::Inner,
+        Some(Node {
+            value: Value::Text(text),
+            ..
+        }) if text == "all" => WhichPoints::All,
+        Some(node) => {
+            let list = reader.list(node, "a list of point numbers, or `all`", "points: [1, 2]");
+            WhichPoints::Numbers(list.iter().map(|entry| reader.number(entry)).collect())
+        }
+    };
+    Some(MoveDocument {
+        rotate: reader.optional_number(fields.take("rotate")),
+        scale,
+        shift: reader.optional_point(fields.take("shift")),
+        about: reader.optional_point(fields.take("about")),
+        points,
+        place: node.place.clone(),
+    })
+}

@@ -1,0 +1,98 @@
+//! The selection.
+
+use crate::document::node::{Node, Value};
+use crate::document::reader::Reader;
+use crate::document::rule::SelectDocument;
+use crate::document::shape::Shape;
+
+use super::parameters::written;
+use super::rule::first_line;
+
+const SELECTION: Shape = Shape {
+    what: "a selection",
+    keys: &["by_index", "at_random"],
+    hint: "a list of {when: CONDITION, use: NAME} that ends with {use: NAME}, or \
+           {by_index: [NAME, NAME]}, or {at_random: {NAME: WEIGHT}}",
+};
+
+const CASE: Shape = Shape {
+    what: "a case of the selection",
+    keys: &["when", "use"],
+    hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
+};
+
+pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
+    if let Value::Sequence(entries) = &node.value {
+        if entries.is_empty() {
+            reader.error_with_hint(
+                &node.place,
+                "this selection selects nothing",
+                SELECTION.hint,
+            );
+            return unknown(node);
+        }
+        let cases = entries.iter().map(|entry| {
+            let Some(fields) = reader.fields(entry, &CASE) else {
+                return (None, None);
+            };
+            let when = reader.optional_number(fields.take("when"));
+            let Some(name) = fields.take("use") else {
+                let place = first_line(&entry.place);
+                reader.error_with_hint(&place, "this case names no generator", CASE.hint);
+                return (when, None);
+            };
+            (when, reader.name(name))
+        });
+        return SelectDocument::Cases(cases.collect(), node.place.clone());
+    }
+    let Some(fields) = reader.fields(node, &SELECTION) else {
+        return unknown(node);
+    };
+    match (fields.take("by_index"), fields.take("at_random")) {
+        (Some(list), None) => by_index(reader, list),
+        (None, Some(weights)) => at_random(reader, weights),
+        (Some(_), Some(_)) => {
+            let message = "a selection goes by index or at random, not both";
+            reader.error_with_hint(&first_line(&node.place), message, SELECTION.hint);
+            unknown(node)
+        }
+        (None, None) => {
+            // A key that means nothing has been reported.
+            if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
+                let message = "this selection selects nothing";
+                reader.error_with_hint(&node.place, message, SELECTION.hint);
+            }
+            unknown(node)
+        }
+    }
+}
+
+fn by_index(reader: &mut Reader, list: &Node) -> SelectDocument {
+    let hint = "by_index: [gen0, gen1]";
+    let entries = reader.list(list, "a list of generators", hint);
+    if matches!(&list.value, Value::Sequence(list) if list.is_empty()) {
+        reader.error_with_hint(&list.place, "there is no generator in this list", hint);
+    }
+    let names: Vec<_> = entries
+        .iter()
+        .filter_map(|entry| reader.name(entry))
+        .collect();
+    SelectDocument::ByIndex(names, list.place.clone())
+}
+
+fn at_random(reader: &mut Reader, weights: &Node) -> SelectDocument {
+    let Value::Mapping(entries) = &weights.value else {
+        let hint = "at_random: {gen0: 3, gen1: 1}";
+        reader.mismatch(weights, "a mapping of weights", hint);
+        return unknown(weights);
+    };
+    let entries = entries
+        .iter()
+        .map(|(key, node)| (written(key), reader.number(node)));
+    SelectDocument::AtRandom(entries.collect(), weights.place.clone())
+}
+
+/// Stands in for a selection that could not be read: a case whose generator is not known.
+fn unknown(node: &Node) -> SelectDocument {
+    SelectDocument::Cases(vec![(None, None)], node.place.clone())
+}

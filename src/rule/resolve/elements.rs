@@ -1,0 +1,170 @@
+//! Lists of elements, and the initiator.
+
+use crate::document::{Entry, Listed, Point, RuleDocument};
+use crate::geometry::{DVec2, Direction};
+
+use super::super::{ListedElement, Part, Placement};
+use super::{Resolver, whole_number};
+
+/// A point of a list, and its number.
+struct ListedPoint {
+    point: Point,
+    number: usize,
+}
+
+impl Resolver {
+    /// The elements of a list; `points` are numbered on from those that are there.
+    pub(super) fn elements(
+        &mut self,
+        entries: &[Entry],
+        closed: bool,
+        connected: bool,
+        points: &mut Vec<Point>,
+        initiator: bool,
+    ) -> Vec<ListedElement> {
+        let mut elements: Vec<ListedElement> = Vec::new();
+        let mut first: Option<ListedPoint> = None;
+        let mut last: Option<ListedPoint> = None;
+        let add = |points: &mut Vec<Point>, point: &Point| {
+            points.push(point.clone());
+            ListedPoint {
+                point: point.clone(),
+                number: points.len() - 1,
+            }
+        };
+        for entry in entries {
+            let (from, to, listed) = match entry {
+                Entry::Point(point) if last.is_none() => {
+                    let start = add(points, point);
+                    first = Some(ListedPoint {
+                        point: point.clone(),
+                        number: start.number,
+                    });
+                    last = Some(start);
+                    continue;
+                }
+                Entry::Point(point) => (None, point, None),
+                Entry::Element(listed) => (listed.from.as_ref(), &listed.to, Some(listed)),
+            };
+            let mut joined = !elements.is_empty();
+            let start = match (from, last.take()) {
+                (Some(from), Some(last)) if from.is_written_like(&last.point) => last,
+                (Some(from), _) => {
+                    joined = false;
+                    add(points, from)
+                }
+                (None, Some(last)) => last,
+                // The reader has said that the list does not say where it starts.
+                (None, None) => add(points, to),
+            };
+            if first.is_none() {
+                first = Some(ListedPoint {
+                    point: start.point.clone(),
+                    number: start.number,
+                });
+            }
+            // A chain that comes back to its first point, as written, ends on that very point.
+            let end = match &first {
+                Some(first) if initiator && to.is_written_like(&first.point) => ListedPoint {
+                    point: to.clone(),
+                    number: first.number,
+                },
+                _ => add(points, to),
+            };
+            let mut element = self.listed_element(listed.map(Box::as_ref));
+            element.from = start.number;
+            element.to = end.number;
+            element.joined = connected && joined && listed.is_none_or(|listed| listed.connected);
+            elements.push(element);
+            last = Some(end);
+        }
+        if let (Some(first), Some(last)) = (first, last) {
+            let returns = initiator && elements.len() > 1 && last.number == first.number;
+            if closed && !returns {
+                let mut element = self.listed_element(None);
+                (element.from, element.to) = (last.number, first.number);
+                element.joined = connected && !elements.is_empty();
+                elements.push(element);
+            }
+            if let Some(element) = elements.first_mut().filter(|_| closed || returns) {
+                element.joined = connected && element.from == first.number;
+            }
+        }
+        elements
+    }
+
+    fn listed_element(&mut self, listed: Option<&Listed>) -> ListedElement {
+        let mut element = ListedElement {
+            from: 0,
+            to: 0,
+            direction: Direction::Normal,
+            fertile: true,
+            visible: true,
+            joined: false,
+            generator: None,
+            base_element: 0,
+        };
+        let Some(listed) = listed else { return element };
+        element.fertile = listed.fertile;
+        element.visible = listed.visible;
+        if let Some(number) = &listed.direction
+            && let Some(value) = self.constant(number)
+        {
+            let direction = whole_number(value, 4).and_then(Direction::from_number);
+            if direction.is_none() {
+                self.error_with_hint(
+                    &number.place,
+                    "a direction is 1, 2, 3 or 4",
+                    "1 normal, 2 y reflected, 3 x reflected, 4 both reflected",
+                );
+            }
+            element.direction = direction.unwrap_or_default();
+        }
+        if let Some(name) = &listed.generator {
+            element.generator = self.generator_named(name);
+            if !listed.fertile {
+                self.error_with_hint(
+                    &name.place,
+                    "an infertile element is not replaced",
+                    "leave out `use`, or `fertile: false`",
+                );
+            }
+        }
+        if let Some(document) = &listed.base_element {
+            element.base_element = self.base_element(document);
+        }
+        element
+    }
+
+    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<DVec2>, Part) {
+        let initiator = &document.initiator;
+        let mut written = Vec::new();
+        let elements = self.elements(
+            &initiator.entries,
+            initiator.closed,
+            initiator.connected,
+            &mut written,
+            true,
+        );
+        let points: Vec<_> = written
+            .iter()
+            .map(|point| self.constant_point(point).unwrap_or(DVec2::NAN))
+            .collect();
+        for element in &elements {
+            if points[element.from] == points[element.to] {
+                let place = &written[element.to].place.clone();
+                self.error_with_hint(
+                    place,
+                    "this element of the initiator has no length",
+                    "it ends where it starts",
+                );
+            }
+        }
+        let part = Part {
+            placement: Placement::Stays,
+            elements,
+            meets_frame: [false; 2],
+        };
+        (points, part)
+    }
+}

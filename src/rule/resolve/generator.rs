@@ -1,0 +1,151 @@
+//! Generators.
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Entry, GeneratorDocument, Number, Point, Written};
+use crate::expression::{Program, Scope};
+use crate::geometry::DVec2;
+
+use super::super::{Generator, ListedElement, Origin, Part, Placement};
+use super::Resolver;
+
+impl Resolver {
+    pub(super) fn generator(
+        &mut self,
+        name: &Written<String>,
+        document: &GeneratorDocument,
+        moment: &Scope,
+    ) -> Generator {
+        let mut scope = moment.clone();
+        let variables = self.variables(document, &mut scope);
+        let mut written = Vec::new();
+        let mut parts = Vec::new();
+        let mut ends = Vec::new();
+        let mut seeding = Vec::new();
+        for part in &document.parts {
+            let before = written.len();
+            let ring = part.placement.seeds();
+            let elements = self.elements(
+                &part.entries,
+                part.closed,
+                part.connected,
+                &mut written,
+                ring,
+            );
+            let meets_frame = if ring || !part.connected {
+                [false; 2]
+            } else {
+                let meets =
+                    |element: Option<&ListedElement>, point: fn(&ListedElement) -> usize, x| {
+                        element.is_some_and(|element| is_written(&written[point(element)], x, 0.0))
+                    };
+                let first = part.entries.first().is_none_or(|entry| match entry {
+                    Entry::Element(listed) => listed.connected,
+                    Entry::Point(_) => true,
+                });
+                [
+                    first && meets(elements.first(), |element| element.from, 0.0),
+                    meets(elements.last(), |element| element.to, 1.0),
+                ]
+            };
+            if ring {
+                seeding.extend(before..written.len());
+            } else {
+                ends.extend(elements.first().map(|element| (element.from, false)));
+                ends.extend(elements.last().map(|element| (element.to, true)));
+            }
+            parts.push(Part {
+                placement: part.placement,
+                elements,
+                meets_frame,
+            });
+        }
+        // The two ends of what takes the element's place: its first and its last point.
+        let first = ends
+            .iter()
+            .find(|(_, last)| !last)
+            .map(|(number, _)| *number);
+        let last = ends
+            .iter()
+            .rfind(|(_, last)| *last)
+            .map(|(number, _)| *number);
+        let inner = (0..written.len()).filter(|number| {
+            seeding.contains(number) || Some(*number) != first && Some(*number) != last
+        });
+        let inner: Vec<_> = inner.collect();
+        let moves = document
+            .moves
+            .iter()
+            .map(|moving| self.moving(moving, &scope, written.len(), &inner))
+            .collect();
+        let points: Vec<_> = written
+            .iter()
+            .map(|point| {
+                [
+                    self.program(&point.x, &scope),
+                    self.program(&point.y, &scope),
+                ]
+            })
+            .collect();
+        self.doubt_growth(&parts, &points, &written);
+        Generator {
+            origin: Origin {
+                name: name.place.clone(),
+                points: written
+                    .iter()
+                    .map(|point| [point.x.place.clone(), point.y.place.clone()])
+                    .collect(),
+            },
+            name: name.value.clone(),
+            variables,
+            points,
+            moves,
+            parts,
+        }
+    }
+
+    /// Warns of fertile elements that are not shorter than what they replace.
+    fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
+        let value = |number: usize| {
+            let [x, y] = &points[number];
+            Some(DVec2::new(x.as_constant()?, y.as_constant()?))
+        };
+        let relative = parts
+            .iter()
+            .filter(|part| part.placement != Placement::SeedsAsInitiator);
+        for element in relative
+            .flat_map(|part| &part.elements)
+            .filter(|element| element.fertile)
+        {
+            let (Some(from), Some(to)) = (value(element.from), value(element.to)) else {
+                continue;
+            };
+            let length = (to - from).length();
+            if length >= 1.0 {
+                let times = if length == 1.0 {
+                    String::new()
+                } else {
+                    format!("{} times ", (length * 1000.0).round() / 1000.0)
+                };
+                let message = format!(
+                    "this element does not shrink: it is {times}as long as what it replaces"
+                );
+                let hint = "finite steps can be drawn, but there is no limit set";
+                let warning = Diagnostic::warning(message)
+                    .at(&written[element.to].place)
+                    .hint(hint);
+                self.diagnostics.push(warning);
+            }
+        }
+    }
+}
+
+/// Whether a point is written as these very numbers.
+fn is_written(point: &Point, x: f64, y: f64) -> bool {
+    let is = |number: &Number, value: f64| {
+        number
+            .value
+            .compile(&Scope::new())
+            .is_ok_and(|program| program.as_constant() == Some(value))
+    };
+    is(&point.x, x) && is(&point.y, y)
+}

@@ -1,0 +1,89 @@
+//! Numbers: expressions in a scope.
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Number, Point};
+use crate::expression::{Expression, ExpressionError, Program, Scope, Type};
+use crate::geometry::DVec2;
+
+use super::{MOST_MISTAKES, Moment, Place, Resolver};
+
+impl Resolver {
+    /// The program of a number in a scope; unknown where it is wrong, which is said.
+    pub(super) fn program(&mut self, number: &Number, scope: &Scope) -> Program {
+        self.part(number, &number.value, Type::Number, scope)
+    }
+
+    /// The program of a condition in a scope.
+    pub(super) fn condition(&mut self, number: &Number, scope: &Scope) -> Program {
+        self.part(number, &number.value, Type::Condition, scope)
+    }
+
+    /// The program of a part of an expression.
+    pub(super) fn part(
+        &mut self,
+        whole: &Number,
+        part: &Expression,
+        result: Type,
+        scope: &Scope,
+    ) -> Program {
+        if part.is_unknown() || self.mistakes >= MOST_MISTAKES {
+            return Program::unknown();
+        }
+        let program = match result {
+            Type::Number => part.compile(scope),
+            Type::Condition => part.compile_condition(scope),
+        };
+        program.unwrap_or_else(|_| {
+            for mistake in part.mistakes(result, scope) {
+                self.mistake(whole, mistake);
+            }
+            Program::unknown()
+        })
+    }
+
+    fn mistake(&mut self, number: &Number, mistake: ExpressionError) {
+        let place = within(number, mistake.range);
+        let diagnostic = Diagnostic::error(mistake.message).at(&place);
+        let hint = if Moment::NAMES.contains(&place.text()) {
+            Some("it is known in generators and in conditions, but not here".into())
+        } else {
+            mistake.hint
+        };
+        self.mistakes += 1;
+        self.diagnostics
+            .push(hint.into_iter().fold(diagnostic, Diagnostic::hint));
+    }
+
+    /// The value of a number that sees parameters only, if it can be told.
+    pub(super) fn constant(&mut self, number: &Number) -> Option<f64> {
+        let scope = std::mem::take(&mut self.constants);
+        let program = self.program(number, &scope);
+        self.constants = scope;
+        program.as_constant()
+    }
+
+    pub(super) fn constant_point(&mut self, point: &Point) -> Option<DVec2> {
+        let (x, y) = (self.constant(&point.x), self.constant(&point.y));
+        Some(DVec2::new(x?, y?))
+    }
+}
+
+/// The place of a part of a number; of all of it where its text is written otherwise than it reads,
+/// with escapes or on several lines.
+pub(super) fn within(number: &Number, range: std::ops::Range<usize>) -> Place {
+    let same = |read: Expression| read == number.value && read.range() == number.value.range();
+    if Expression::parse(number.place.text()).is_ok_and(same) {
+        number.place.within(range)
+    } else {
+        number.place.clone()
+    }
+}
+
+/// `, not 7` for a number that is written as a formula.
+pub(super) fn but(number: &Number, value: f64) -> String {
+    if number.place.text().parse() == Ok(value) {
+        String::new()
+    } else {
+        format!(", this is {value}")
+    }
+}

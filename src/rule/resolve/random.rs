@@ -1,0 +1,119 @@
+//! Random functions: drawn variables and what they move.
+
+use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoints};
+use crate::expression::{Program, Scope, Type, is_reserved};
+
+use super::super::draw::{Distribution, Variable};
+use super::super::{Moment, Move};
+use super::{Resolver, is_name, whole_number};
+
+impl Resolver {
+    pub(super) fn variables(
+        &mut self,
+        document: &GeneratorDocument,
+        scope: &mut Scope,
+    ) -> Vec<Variable> {
+        let mut variables: Vec<Variable> = Vec::new();
+        for (name, number) in &document.random {
+            if !is_name(&name.value) {
+                let message = format!("'{}' cannot be a variable's name", name.value);
+                self.error_with_hint(
+                    &name.place,
+                    message,
+                    "a name has letters, digits and _, and begins with a letter",
+                );
+            } else if is_reserved(&name.value) || scope.contains(&name.value) {
+                let message = format!("'{}' already has a meaning here", name.value);
+                self.error_with_hint(&name.place, message, "give the variable another name");
+            }
+            let distribution = self.distribution(number, scope);
+            scope.variable(&name.value, Moment::NAMES.len() + variables.len());
+            variables.push(Variable::new(&name.value, distribution));
+        }
+        variables
+    }
+
+    fn distribution(&mut self, number: &Number, scope: &Scope) -> Distribution {
+        let hint = "uniform(a, b), normal(mean, deviation) or choice(a, b, ...)";
+        if number.value.is_unknown() {
+            return Distribution::Choice(vec![Program::unknown()]);
+        }
+        let Some((name, arguments)) = number.value.as_call() else {
+            self.error_with_hint(&number.place, "a distribution is needed here", hint);
+            return Distribution::Choice(vec![Program::unknown()]);
+        };
+        let programs: Vec<_> = arguments
+            .iter()
+            .map(|argument| self.part(number, argument, Type::Number, scope))
+            .collect();
+        match (name, programs.as_slice()) {
+            ("uniform", [low, high]) => Distribution::Uniform(low.clone(), high.clone()),
+            ("normal", [mean, deviation]) => {
+                if deviation.as_constant().is_some_and(|value| value < 0.0) {
+                    self.error(&number.place, "a standard deviation cannot be negative");
+                }
+                Distribution::Normal(mean.clone(), deviation.clone())
+            }
+            ("choice", [_, ..]) => Distribution::Choice(programs),
+            _ => {
+                let message = format!("{name} does not take {} values", programs.len());
+                self.error_with_hint(&number.place, message, hint);
+                Distribution::Choice(vec![Program::constant(0.0)])
+            }
+        }
+    }
+
+    pub(super) fn moving(
+        &mut self,
+        document: &MoveDocument,
+        scope: &Scope,
+        count: usize,
+        inner: &[usize],
+    ) -> Move {
+        let zero = || Program::constant(0.0);
+        let mut pair = |point: &Option<Point>| {
+            point.as_ref().map_or([zero(), zero()], |point| {
+                [self.program(&point.x, scope), self.program(&point.y, scope)]
+            })
+        };
+        let (shift, about) = (pair(&document.shift), pair(&document.about));
+        let scale = match &document.scale {
+            Some([x, y]) => [self.program(x, scope), self.program(y, scope)],
+            None => [Program::constant(1.0), Program::constant(1.0)],
+        };
+        let rotate = document
+            .rotate
+            .as_ref()
+            .map_or_else(zero, |number| self.program(number, scope));
+        let points = match &document.points {
+            WhichPoints::All => (0..count).collect(),
+            WhichPoints::Inner => inner.to_vec(),
+            WhichPoints::Numbers(numbers) => {
+                let mut points = Vec::new();
+                for number in numbers {
+                    let Some(value) = self.constant(number) else {
+                        continue;
+                    };
+                    let largest = u32::try_from(count.saturating_sub(1)).unwrap_or(u32::MAX);
+                    match whole_number(value, largest) {
+                        Some(point) => points.push(point as usize),
+                        None => {
+                            let message = format!(
+                                "there is no point {value}: points are numbered 0 to {largest}"
+                            );
+                            self.error(&number.place, message);
+                        }
+                    }
+                }
+                points
+            }
+        };
+        Move {
+            rotate,
+            scale,
+            shift,
+            about,
+            points,
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The selection.
+
+use crate::diagnostic::{did_you_mean, listed};
+use crate::document::{Entry, Number, RuleDocument, SelectDocument, Written};
+use crate::expression::Scope;
+
+use super::super::Selection;
+use super::{MOST_MISTAKES, Place, Resolver};
+
+/// A condition, if there is one, and a generator, if it could be read.
+type Case = (Option<Number>, Option<Written<String>>);
+
+impl Resolver {
+    pub(super) fn generator_named(&mut self, name: &Written<String>) -> Option<usize> {
+        let found = self.generator_numbers.get(&name.value).copied();
+        if found.is_none()
+            && !self.incomplete
+            && !self.generator_names.is_empty()
+            && self.mistakes < MOST_MISTAKES
+        {
+            let known = self.generator_names.iter().map(String::as_str);
+            let hint = did_you_mean(&name.value, known.clone())
+                .unwrap_or_else(|| format!("the generators are: {}", listed(known)));
+            let message = format!("there is no generator '{}'", name.value);
+            self.error_with_hint(&name.place, message, hint);
+        }
+        found
+    }
+
+    pub(super) fn selection(
+        &mut self,
+        document: &RuleDocument,
+        moment: &Scope,
+    ) -> Option<Selection> {
+        match document.select.as_ref() {
+            None => Some(Selection::Always(0)),
+            Some(SelectDocument::ByIndex(names, _)) => {
+                let entries = names.iter().map(|name| self.generator_named(name));
+                let entries: Vec<_> = entries.collect();
+                entries
+                    .into_iter()
+                    .collect::<Option<_>>()
+                    .map(Selection::ByIndex)
+            }
+            Some(SelectDocument::AtRandom(weights, place)) => self.at_random(weights, place),
+            Some(SelectDocument::Cases(cases, _)) => self.cases(cases, moment),
+        }
+    }
+
+    fn at_random(
+        &mut self,
+        weights: &[(Written<String>, Number)],
+        place: &Place,
+    ) -> Option<Selection> {
+        let mut entries = Vec::new();
+        let mut none = true;
+        for (name, number) in weights {
+            let (generator, weight) = (self.generator_named(name), self.constant(number));
+            none &= weight == Some(0.0);
+            if weight.is_some_and(|weight| weight < 0.0) {
+                let hint = "0 is the least: such a generator is never selected";
+                self.error_with_hint(&number.place, "a weight cannot be negative", hint);
+            }
+            entries.extend(weight.zip(generator));
+        }
+        if none {
+            let message = "no generator has a weight above 0";
+            self.error_with_hint(place, message, "at_random: {gen0: 3, gen1: 1}");
+        }
+        (entries.len() == weights.len()).then_some(Selection::AtRandom(entries))
+    }
+
+    fn cases(&mut self, written: &[Case], moment: &Scope) -> Option<Selection> {
+        let mut cases = Vec::new();
+        let mut otherwise = None;
+        for (when, name) in written {
+            let generator = name.as_ref().and_then(|name| self.generator_named(name));
+            let condition = when.as_ref().map(|when| self.condition(when, moment));
+            match (condition, otherwise) {
+                (condition, None) => match condition {
+                    Some(condition) => cases.extend(generator.map(|it| (condition, it))),
+                    None => otherwise = Some(generator),
+                },
+                (_, Some(_)) => {
+                    if let Some(name) = name {
+                        let message = "this case is never reached: the one before has no condition";
+                        let hint = "put the case without a condition last";
+                        self.error_with_hint(&name.place, message, hint);
+                    }
+                }
+            }
+        }
+        let last = written.last().and_then(|(when, _)| when.as_ref());
+        if let (None, Some(when)) = (otherwise, last) {
+            let message = "the selection can fall through: its last case has a condition";
+            let hint = "end with a case that has none: - {use: NAME}";
+            self.error_with_hint(&when.place, message, hint);
+        }
+        Some(Selection::ByCondition {
+            cases,
+            otherwise: otherwise??,
+        })
+    }
+
+    /// Every fertile element needs a generator: one that it names, the selection's, or the only one.
+    pub(super) fn check_generators_are_selected(&mut self, document: &RuleDocument) {
+        let [_, (second, _), ..] = document.generators.as_slice() else {
+            return;
+        };
+        if document.select.is_some() || self.incomplete {
+            return;
+        }
+        let parts = document
+            .generators
+            .iter()
+            .flat_map(|(_, generator)| &generator.parts)
+            .map(|part| (&part.entries, part.closed, &part.place));
+        let initiator = &document.initiator;
+        let lists = parts.chain([(&initiator.entries, initiator.closed, &initiator.place)]);
+        let mut undecided: Option<Place> = None;
+        let mut some_decide = false;
+        for (entries, closed, place) in lists {
+            for (number, entry) in entries.iter().enumerate() {
+                let place = match entry {
+                    Entry::Element(listed) => {
+                        some_decide |= listed.generator.is_some();
+                        let open = listed.fertile && listed.generator.is_none();
+                        open.then_some(&listed.place)
+                    }
+                    Entry::Point(point) => (number > 0).then_some(&point.place),
+                };
+                undecided = undecided.or_else(|| place.cloned());
+            }
+            undecided = undecided.or_else(|| closed.then(|| place.clone()));
+        }
+        let Some(undecided) = undecided else { return };
+        let hint = "select: {by_index: [...]}, select: {at_random: {...}}, \
+                    select: [{when: ..., use: ...}, {use: ...}], or `use: NAME` on every fertile \
+                    element";
+        if some_decide {
+            let message = "nothing says which of the generators replaces this element";
+            self.error_with_hint(&undecided, message, hint);
+        } else {
+            let message =
+                "the rule has several generators but does not say which one replaces an element";
+            self.error_with_hint(&second.place, message, hint);
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The library's files with random mistakes in them.
+
+use std::fs;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::{Diagnostics, Source};
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// Pieces that mistakes are made of: those that mean something in a rule file.
+const PIECES: [&str; 48] = [
+    "",
+    " ",
+    "\n",
+    "\n  ",
+    "\n- ",
+    "\t",
+    ":",
+    ": ",
+    ",",
+    "[",
+    "]",
+    "{",
+    "}",
+    "(",
+    ")",
+    "&a ",
+    "*a",
+    "!t ",
+    "#",
+    " #",
+    "\"",
+    "'",
+    "-",
+    "+",
+    "*",
+    "/",
+    "^",
+    "%",
+    "0",
+    "1",
+    "-1",
+    "1e9",
+    "1e308",
+    "0.5",
+    "i",
+    "age",
+    "step",
+    "length",
+    "sqrt",
+    "generator",
+    "initiator",
+    "select",
+    "use",
+    "from",
+    "to",
+    "closed",
+    "true",
+    "null",
+];
+
+/// A text cut into words, signs and white space.
+fn tokens(text: &str) -> Vec<String> {
+    let class = |c: char| {
+        if c.is_alphanumeric() || "_.".contains(c) {
+            0
+        } else if c == ' ' {
+            1
+        } else {
+            2
+        }
+    };
+    let mut tokens: Vec<String> = Vec::new();
+    for character in text.chars() {
+        match tokens.last_mut() {
+            Some(last)
+                if class(character) < 2 && last.chars().all(|c| class(c) == class(character)) =>
+            {
+                last.push(character);
+            }
+            _ => tokens.push(character.into()),
+        }
+    }
+    tokens
+}
+
+#[derive(Clone, Debug)]
+enum Mistake {
+    Delete,
+    Duplicate,
+    Replace(&'static str),
+    Insert(&'static str),
+    Move(Index),
+    Byte(u8),
+}
+
+fn mistake() -> impl Strategy<Value = Mistake> {
+    let piece = || proptest::sample::select(PIECES.to_vec());
+    prop_oneof![
+        Just(Mistake::Delete),
+        Just(Mistake::Duplicate),
+        piece().prop_map(Mistake::Replace),
+        piece().prop_map(Mistake::Insert),
+        any::<Index>().prop_map(Mistake::Move),
+        (32_u8..128).prop_map(Mistake::Byte),
+    ]
+}
+
+fn rules() -> Vec<String> {
+    let mut paths: Vec<_> = fs::read_dir("library/rules")
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
+    paths.sort();
+    paths
+        .iter()
+        .map(|path| fs::read_to_string(path).unwrap())
+        .collect()
+}
+
+fn with_mistakes(text: &str, mistakes: &[(Index, Mistake)]) -> String {
+    let mut tokens = tokens(text);
+    for (at, mistake) in mistakes {
+        if tokens.is_empty() {
+            break;
+        }
+        let at = at.index(tokens.len());
+        match mistake {
+            Mistake::Delete => drop(tokens.remove(at)),
+            Mistake::Duplicate => tokens.insert(at, tokens[at].clone()),
+            Mistake::Replace(piece) => tokens[at] = (*piece).into(),
+            Mistake::Insert(piece) => tokens.insert(at, (*piece).into()),
+            Mistake::Move(to) => {
+                let token = tokens.remove(at);
+                tokens.insert(to.index(tokens.len() + 1), token);
+            }
+            Mistake::Byte(byte) => {
+                let mut token: Vec<char> = tokens[at].chars().collect();
+                if let Some(last) = token.last_mut() {
+                    *last = char::from(*byte);
+                }
+                tokens[at] = token.into_iter().collect();
+            }
+        }
+    }
+    tokens.concat()
+}
+
+/// Reads, resolves and compiles a text; what comes of it is said in lines of bounded length.
+fn digest(text: &str) -> Result<(), Diagnostics> {
+    let catalogue = Catalogue::embedded();
+    let source = Source::new("mutated.yaml", text);
+    let (rule, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
+    let rule = Arc::new(rule);
+    Graph::compile(&rule, 2).map_err(|error| error.diagnostic(&rule))?;
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_mistake_panics_or_hangs(
+        file in any::<Index>(),
+        mistakes in proptest::collection::vec((any::<Index>(), mistake()), 1..4),
+    ) {
+        let rules = rules();
+        let text = with_mistakes(&rules[file.index(rules.len())], &mistakes);
+        let start = Instant::now();
+        if let Err(found) = digest(&text) {
+            prop_assert!(found.has_errors());
+            let said = found.to_string();
+            prop_assert!(said.len() < 1 << 20, "{}", said);
+            // A place is in the file, or in the library.
+            prop_assert!(found.iter().all(|one| one.place().is_some()), "{}\n{}", text, said);
+            let mut places: Vec<_> = found.iter().map(|one| format!("{one:?}")).collect();
+            places.sort();
+            places.dedup();
+            prop_assert_eq!(places.len(), found.len(), "{}\n{}", text, said);
+        }
+        prop_assert!(start.elapsed() < Duration::from_secs(20));
+    }
+}
