@@ -26,7 +26,7 @@ impl Similarity {
 /// The similarity dimension of what a graph's fertile elements become.
 ///
 /// Infertile elements do not count: the trunk of a tree adds nothing. The value is exact to some
-/// 14 digits; copies that overlap are counted as often as they occur.
+/// 12 digits; copies that overlap are counted as often as they occur.
 #[must_use]
 pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if graph.draws() {
@@ -42,50 +42,20 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     let Some(edges) = edges else {
         return Similarity::none("there is no limit set: seeds are placed as the initiator");
     };
-    let size = graph.objects().len();
     if edges.iter().any(|edge| edge.ratio >= 1.0) {
         return Similarity::none("there is no limit set: a generator does not shrink");
     }
-    let moran = moran_ratios(size, &edges);
-    let radius = |dimension: f64| match &moran {
-        Some(ratios) => ratios
-            .iter()
-            .map(|&ratio| libm::pow(ratio, dimension))
-            .sum(),
-        None => spectral_radius(size, &edges, dimension),
-    };
-    let at_zero = radius(0.0);
-    if at_zero < 1.0 - 1e-9 {
+    // The spectral radius of the whole is the largest of those of its strongly connected parts.
+    let parts = parts(graph.objects().len(), &edges);
+    if parts.is_empty() {
         return Similarity::none("nothing stays fertile");
     }
-    if at_zero <= 1.0 + 1e-9 {
-        let note = "the limit set of the fertile elements is made of single points";
-        return Similarity {
-            value: Some(0.0),
-            note: Some(note.into()),
-        };
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    while radius(high) > 1.0 {
-        (low, high) = (high, 2.0 * high);
-        if high > 1e6 {
-            return Similarity::none("the ratios are too close to 1");
-        }
-    }
-    while high - low > 1e-15 * high {
-        let middle = low + (high - low) / 2.0;
-        if middle <= low || middle >= high {
-            break;
-        }
-        if radius(middle) > 1.0 {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
+    let value = parts.iter().map(Part::dimension).fold(0.0, f64::max);
+    let note = (value == 0.0)
+        .then(|| "the limit set of the fertile elements is made of single points".into());
     Similarity {
-        value: Some(low + (high - low) / 2.0),
-        note: None,
+        value: Some(value),
+        note,
     }
 }
 
@@ -123,43 +93,171 @@ fn edges(graph: &Graph) -> Option<Vec<Edge>> {
     Some(edges)
 }
 
-/// The ratios of Moran's equation, if all objects that are replaced have the same ones.
-fn moran_ratios(size: usize, edges: &[Edge]) -> Option<Vec<f64>> {
-    let mut ratios = vec![Vec::new(); size];
-    for edge in edges {
-        ratios[edge.from].push(edge.ratio);
-    }
-    ratios
-        .iter_mut()
-        .for_each(|ratios| ratios.sort_by(f64::total_cmp));
-    // An object that nothing fertile comes from leads nowhere.
-    let mut rows = ratios.into_iter().filter(|ratios| !ratios.is_empty());
-    let first = rows.next()?;
-    rows.all(|row| row == first).then_some(first)
+/// A strongly connected part of the graph: objects that lead to each other.
+struct Part {
+    size: usize,
+    /// Between the part's objects, numbered from 0.
+    edges: Vec<Edge>,
 }
 
-/// The spectral radius of the matrix of Σ ratio^D, by power iteration on the matrix plus the
-/// identity, which has one dominant eigenvalue even where the graph is periodic.
-fn spectral_radius(size: usize, edges: &[Edge], dimension: f64) -> f64 {
-    let weights: Vec<f64> = edges
-        .iter()
-        .map(|edge| libm::pow(edge.ratio, dimension))
-        .collect();
-    #[expect(clippy::cast_precision_loss, reason = "a number of objects")]
-    let mut vector = vec![1.0 / size as f64; size];
-    let mut last = 0.0;
-    for round in 0..10_000 {
-        let mut next = vector.clone();
-        for (edge, weight) in edges.iter().zip(&weights) {
-            next[edge.from] += weight * vector[edge.to];
-        }
-        let norm: f64 = next.iter().sum();
-        next.iter_mut().for_each(|entry| *entry /= norm);
-        vector = next;
-        if round > 3 && (norm - last).abs() <= 1e-16 * norm {
-            return norm - 1.0;
-        }
-        last = norm;
+/// The strongly connected parts that have an edge inside (Tarjan 1972).
+fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
+    let mut targets = vec![Vec::new(); size];
+    for edge in edges {
+        targets[edge.from].push(edge.to);
     }
-    last - 1.0
+    let component = components(&targets);
+    let mut numbers = vec![0; size];
+    let mut parts: Vec<Part> = Vec::new();
+    for object in 0..size {
+        let of = component[object];
+        if parts.len() <= of {
+            parts.resize_with(of + 1, || Part {
+                size: 0,
+                edges: Vec::new(),
+            });
+        }
+        numbers[object] = parts[of].size;
+        parts[of].size += 1;
+    }
+    for edge in edges
+        .iter()
+        .filter(|edge| component[edge.from] == component[edge.to])
+    {
+        parts[component[edge.from]].edges.push(Edge {
+            from: numbers[edge.from],
+            to: numbers[edge.to],
+            ratio: edge.ratio,
+        });
+    }
+    parts.retain(|part| !part.edges.is_empty());
+    parts
+}
+
+/// The number of each object's strongly connected component.
+fn components(targets: &[Vec<usize>]) -> Vec<usize> {
+    const NONE: usize = usize::MAX;
+    let size = targets.len();
+    let (mut order, mut low, mut component) = (vec![NONE; size], vec![0; size], vec![NONE; size]);
+    let (mut visited, mut count) = (0, 0);
+    let mut open = Vec::new();
+    for root in 0..size {
+        if order[root] != NONE {
+            continue;
+        }
+        // Objects on the way from the root, each with the number of its targets that were taken.
+        let mut way = vec![(root, 0)];
+        while let Some((object, taken)) = way.last_mut() {
+            let object = *object;
+            if *taken == 0 {
+                (order[object], low[object]) = (visited, visited);
+                visited += 1;
+                open.push(object);
+            }
+            if let Some(&target) = targets[object].get(*taken) {
+                *taken += 1;
+                if order[target] == NONE {
+                    way.push((target, 0));
+                } else if component[target] == NONE {
+                    low[object] = low[object].min(order[target]);
+                }
+                continue;
+            }
+            way.pop();
+            if let Some((parent, _)) = way.last() {
+                low[*parent] = low[*parent].min(low[object]);
+            }
+            if low[object] == order[object] {
+                while let Some(member) = open.pop() {
+                    component[member] = count;
+                    if member == object {
+                        break;
+                    }
+                }
+                count += 1;
+            }
+        }
+    }
+    component
+}
+
+impl Part {
+    /// The D for which the part's matrix has spectral radius 1.
+    fn dimension(&self) -> f64 {
+        let moran = self.moran_ratios();
+        let radius = |dimension: f64| match &moran {
+            Some(ratios) => ratios
+                .iter()
+                .map(|&ratio| libm::pow(ratio, dimension))
+                .sum(),
+            None => self.spectral_radius(dimension),
+        };
+        // A cycle without branches leads to a point.
+        if self.edges.len() == self.size {
+            return 0.0;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        while radius(high) > 1.0 {
+            (low, high) = (high, 2.0 * high);
+        }
+        loop {
+            let middle = low + (high - low) / 2.0;
+            if middle <= low || middle >= high {
+                return high;
+            }
+            if radius(middle) > 1.0 {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+    }
+
+    /// The ratios of Moran's equation, if all objects have the same ones.
+    fn moran_ratios(&self) -> Option<Vec<f64>> {
+        let mut ratios = vec![Vec::new(); self.size];
+        for edge in &self.edges {
+            ratios[edge.from].push(edge.ratio);
+        }
+        ratios
+            .iter_mut()
+            .for_each(|ratios| ratios.sort_by(f64::total_cmp));
+        let first = ratios.first()?.clone();
+        ratios
+            .iter()
+            .all(|ratios| *ratios == first)
+            .then_some(first)
+    }
+
+    /// The spectral radius of the matrix of Σ ratio^D, by power iteration on the matrix plus the
+    /// identity, which has one dominant eigenvalue even where the part is periodic. The quotients of
+    /// successive vectors enclose it (Collatz 1942, Wielandt 1950).
+    fn spectral_radius(&self, dimension: f64) -> f64 {
+        let weights: Vec<f64> = self
+            .edges
+            .iter()
+            .map(|edge| libm::pow(edge.ratio, dimension))
+            .collect();
+        let mut vector = vec![1.0; self.size];
+        let mut enclosed = (0.0, f64::INFINITY);
+        for _ in 0..100_000 {
+            let mut next = vector.clone();
+            for (edge, weight) in self.edges.iter().zip(&weights) {
+                next[edge.from] += weight * vector[edge.to];
+            }
+            let quotients = next.iter().zip(&vector).map(|(next, entry)| next / entry);
+            enclosed = quotients.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), quotient| {
+                (low.min(quotient), high.max(quotient))
+            });
+            // Enough to decide on which side of 1 the radius lies, or to all digits.
+            if enclosed.1 - enclosed.0 <= 4e-16 * enclosed.1 || enclosed.0 > 2.0 || enclosed.1 < 2.0
+            {
+                break;
+            }
+            let largest = next.iter().copied().fold(0.0, f64::max);
+            next.iter_mut().for_each(|entry| *entry /= largest);
+            vector = next;
+        }
+        f64::midpoint(enclosed.0, enclosed.1) - 1.0
+    }
 }
