@@ -63,19 +63,4 @@ impl Bounds {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
-
-    /// The box with `by` more on every side.
-    #[must_use]
-    pub fn grown(&self, by: f64) -> Self {
-        Self {
-            min: self.min - DVec2::splat(by),
-            max: self.max + DVec2::splat(by),
-        }
-    }
-}
-
-impl Extend<DVec2> for Bounds {
-    fn extend<I: IntoIterator<Item = DVec2>>(&mut self, points: I) {
-        points.into_iter().for_each(|point| self.add(point));
-    }
 }

@@ -13,8 +13,9 @@ use crate::rule::Placement;
 
 use super::{Graph, Instance, Replacement};
 
-/// More states than this at one level are given up.
-const MOST_STATES: usize = 100_000;
+/// More states than this, at one level and at all of them, are given up.
+const MOST_STATES: usize = 20_000;
+const MOST_WORK: usize = 1_000_000;
 
 /// More levels than this are given up.
 const MOST_LEVELS: u32 = 20_000;
@@ -32,18 +33,33 @@ struct State {
 
 /// What the search needs to know of the graph.
 struct Reach {
-    /// The radius around its origin, in its own unit frame, of all that an object ever draws.
-    radius: f64,
+    spread: f64,
+    ratio: f64,
     /// Objects that surely draw something.
     alive: Vec<bool>,
+}
+
+impl Reach {
+    /// The radius around its origin, in its own unit frame, of all that an object draws within a
+    /// number of levels, or ever: the sum of a geometric series.
+    fn radius(&self, levels: Option<u32>) -> f64 {
+        if self.ratio < 1.0 {
+            return self.spread / (1.0 - self.ratio);
+        }
+        let Some(levels) = levels else {
+            return f64::INFINITY;
+        };
+        let longest = libm::pow(self.ratio, f64::from(levels));
+        self.spread * (f64::from(levels) + 1.0) * longest
+    }
 }
 
 impl Graph {
     /// The box of what approximant `steps` draws, without stroke width.
     ///
     /// Exact to some 15 digits. `None` where nothing is drawn, where the graph does not tell (random
-    /// and irregular rules, seeds placed as the initiator, generators that do not shrink), or where
-    /// the graph was compiled for fewer steps.
+    /// and irregular rules, seeds placed as the initiator, too many directions), or where the graph
+    /// was compiled for fewer steps.
     #[must_use]
     pub fn bounds(&self, steps: u32) -> Option<Bounds> {
         if self.depth.is_some_and(|depth| depth < steps) {
@@ -72,7 +88,8 @@ impl Graph {
             return None;
         }
         let reach = Reach {
-            radius: self.radius()?,
+            spread: self.spread(),
+            ratio: self.longest_ratio(),
             alive: self.alive(steps.is_none()),
         };
         let support = |direction| self.support(direction, steps, &reach);
@@ -104,12 +121,6 @@ impl Graph {
         })
     }
 
-    /// Whether a replacement makes copies that are not smaller: there is no limit set then.
-    #[must_use]
-    pub fn shrinks(&self) -> bool {
-        self.longest_ratio() < 1.0
-    }
-
     /// The largest ratio of a fertile instance.
     fn longest_ratio(&self) -> f64 {
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
@@ -121,13 +132,8 @@ impl Graph {
             .fold(0.0, f64::max)
     }
 
-    /// The radius of all that is ever drawn from any object: the solution of
-    /// R = max(shapes, |t| + ratio·R), from above.
-    fn radius(&self) -> Option<f64> {
-        let ratio = self.longest_ratio();
-        if ratio >= 1.0 {
-            return None;
-        }
+    /// How far what an object draws, or where its instances stand, may lie from its origin.
+    fn spread(&self) -> f64 {
         let shape = |object: usize| {
             let base_element = &self.base_elements()[self.objects[object].base_element];
             let axes = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y];
@@ -148,43 +154,42 @@ impl Graph {
             };
             constant = constant.max(shift + own);
         }
-        let radius = constant / (1.0 - ratio);
-        radius.is_finite().then_some(radius)
+        constant
     }
 
-    /// Objects that draw something at every later level (or, for the limit, in it).
+    /// Objects that surely draw something at every later level or, for the limit, that are drawn
+    /// again and again: those that lead to a visible kept object, or for ever to visible ones.
     fn alive(&self, limit: bool) -> Vec<bool> {
-        let mut alive: Vec<bool> = self
-            .objects
-            .iter()
-            .map(|object| object.visible || limit)
-            .collect();
+        let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
+            Replacement::Fixed(production) => {
+                let seeds = production
+                    .seeds
+                    .iter()
+                    .flat_map(|seed| &seed.chain.instances);
+                let mut all = production.body.instances.iter().chain(seeds);
+                all.any(|instance| to[instance.object])
+            }
+            _ => false,
+        };
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let ends = |object: usize| {
+            kept(object) || matches!(self.objects[object].replacement, Replacement::Beyond)
+        };
+        let drawn = |object: usize, set: &[bool]| {
+            self.objects[object].visible && (ends(object) || leads(object, set))
+        };
+        let mut set = vec![true; self.objects.len()];
         loop {
-            let mut changed = false;
-            for (number, object) in self.objects.iter().enumerate() {
-                if !alive[number] {
-                    continue;
-                }
-                let stays = match &object.replacement {
-                    Replacement::Kept => object.visible,
-                    Replacement::Fixed(production) => {
-                        let seeds = production
-                            .seeds
-                            .iter()
-                            .flat_map(|seed| &seed.chain.instances);
-                        let mut all = production.body.instances.iter().chain(seeds);
-                        all.any(|instance| alive[instance.object])
-                    }
-                    _ => object.visible,
-                };
-                if !stays {
-                    alive[number] = false;
-                    changed = true;
-                }
+            let start: Vec<bool> = (0..set.len()).map(|object| drawn(object, &set)).collect();
+            let next = if limit {
+                closure(start, |object, set| set[object] || leads(object, set))
+            } else {
+                start
+            };
+            if next == set {
+                return set;
             }
-            if !changed {
-                return alive;
-            }
+            set = next;
         }
     }
 
@@ -192,8 +197,10 @@ impl Graph {
         let start = self.initiator.instances.iter();
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
+        let mut work = 0;
         for level in 0..=MOST_LEVELS {
             let last = steps == Some(level);
+            let radius = reach.radius(steps.map(|steps| steps - level));
             let mut next = Vec::new();
             let mut certain = best;
             for state in &states {
@@ -204,7 +211,7 @@ impl Graph {
                     let reached = base_element.support(state.vector) + state.lost;
                     best = best.max(state.offset + reached);
                 }
-                let size = state.vector.length() * reach.radius;
+                let size = state.vector.length() * radius;
                 if reach.alive[state.object] {
                     certain = certain.max(state.offset - size);
                 }
@@ -214,7 +221,7 @@ impl Graph {
             }
             certain = certain.max(best);
             for state in states {
-                let size = state.vector.length() * reach.radius;
+                let size = state.vector.length() * radius;
                 let hopeless = state.offset + size < certain;
                 let dead = steps.is_none() && !reach.alive[state.object];
                 if hopeless || dead {
@@ -241,11 +248,23 @@ impl Graph {
                 return best.is_finite().then_some(best);
             }
             states = merged(next.into_iter());
-            if states.len() > MOST_STATES {
+            work += states.len();
+            if states.len() > MOST_STATES || work > MOST_WORK {
                 return None;
             }
         }
         None
+    }
+}
+
+/// Applies a rule to every member of a set until nothing changes.
+fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<bool> {
+    loop {
+        let next: Vec<bool> = (0..set.len()).map(|object| member(object, &set)).collect();
+        if next == set {
+            return set;
+        }
+        set = next;
     }
 }
 

@@ -14,6 +14,9 @@ use super::{Alternative, Chain, Graph, Object, Production, Replacement};
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;
 
+/// A graph that is not asked for more steps is resolved further only up to this many objects.
+const SOON: usize = 4_096;
+
 /// A rule that cannot be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CompileError {
@@ -104,6 +107,7 @@ impl Graph {
             length: false,
             modulus: 1,
             index_is_free: true,
+            counts_index: true,
         };
         match Compiler::new(rule, counted, steps).run() {
             Ok(graph) => Ok(graph),
@@ -181,12 +185,23 @@ impl<'r> Compiler<'r> {
         // Objects are reached breadth first, so that those of one number of steps follow each other.
         let mut resolved = 0;
         let mut depth = 0;
-        while resolved < self.objects.len() && depth < self.steps {
+        while resolved < self.objects.len() {
+            // What does not depend on the time is soon closed: resolved for any number of steps.
+            let needed = depth < self.steps;
+            if !needed && (self.depends.on_time() || self.objects.len() > SOON) {
+                break;
+            }
             let reached = self.objects.len();
             while resolved < reached {
-                let replacement = self.replacement(resolved)?;
+                let replacement = match self.replacement(resolved) {
+                    Err(Stop::Error(_)) if !needed => break,
+                    replacement => replacement?,
+                };
                 self.objects[resolved].replacement = replacement;
                 resolved += 1;
+            }
+            if resolved < reached {
+                break;
             }
             depth += 1;
         }
@@ -204,7 +219,8 @@ impl<'r> Compiler<'r> {
             objects: self.objects,
             initiator: whole.body,
             depth: beyond.then_some(self.steps),
-            counts_index: self.depends.index_is_free,
+            regular: !self.depends.index_is_free,
+            counts_index: self.depends.counts_index,
             draws: rule.is_random(),
             seeds,
         })
@@ -403,7 +419,7 @@ impl<'r> Compiler<'r> {
                 (self.depends.age || none(Moment::AGE))
                     && (self.depends.step || none(Moment::STEP))
                     && (self.depends.length || none(Moment::LENGTH))
-                    && (!self.depends.index_is_free || none(Moment::INDEX))
+                    && (!self.depends.counts_index || none(Moment::INDEX))
             })
     }
 

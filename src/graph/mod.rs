@@ -110,6 +110,7 @@ pub struct Graph {
     pub(crate) objects: Vec<Object>,
     pub(crate) initiator: Chain,
     pub(crate) depth: Option<u32>,
+    pub(crate) regular: bool,
     pub(crate) counts_index: bool,
     pub(crate) draws: bool,
     pub(crate) seeds: bool,
@@ -146,10 +147,17 @@ impl Graph {
         self.depth
     }
 
-    /// Whether the structure is known without a walk: no index is left to be counted.
+    /// Whether the structure is known without a walk: which generator replaces an element does not
+    /// hang on an index that has to be counted.
     #[must_use]
     pub fn is_regular(&self) -> bool {
-        !self.counts_index
+        self.regular
+    }
+
+    /// Whether a walk counts indices, for the selection or for points that depend on them.
+    #[must_use]
+    pub fn counts_index(&self) -> bool {
+        self.counts_index
     }
 
     /// Whether numbers are drawn.

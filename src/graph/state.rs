@@ -48,8 +48,10 @@ pub(super) struct Dependences {
     pub(super) length: bool,
     /// The index counts modulo this; 1 if it does not matter.
     pub(super) modulus: u32,
-    /// The index has to be counted while walking.
+    /// Which generator replaces an element is known only where its index is counted.
     pub(super) index_is_free: bool,
+    /// Indices are counted while walking: for the selection, or for points that depend on them.
+    pub(super) counts_index: bool,
 }
 
 /// Indices are resolved modulo m up to this m.
@@ -63,33 +65,33 @@ impl Dependences {
             length: false,
             modulus: 1,
             index_is_free: false,
+            counts_index: false,
         };
         if let Selection::ByIndex(entries) = rule.selection() {
             all.count_modulo(u32::try_from(entries.len()).unwrap_or(u32::MAX));
         }
-        for program in rule.programs() {
-            let depends = |slot| program.dependence(slot) != Dependence::None;
-            all.age |= depends(Moment::AGE);
-            all.step |= depends(Moment::STEP);
-            all.length |= depends(Moment::LENGTH);
+        for program in rule.selection().programs() {
+            all.add(program);
             match program.dependence(Moment::INDEX) {
                 Dependence::None => {}
                 Dependence::Modulo(modulus) => all.count_modulo(modulus),
                 Dependence::Free => all.index_is_free = true,
             }
         }
-        if rule.is_random() {
-            // A drawn length is known only where the element stands, and what is worked out there
-            // needs the index there.
-            let needs_index =
-                |program: &Program| program.dependence(Moment::INDEX) != Dependence::None;
-            all.index_is_free |= all.length && rule.selection().programs().any(needs_index);
-            all.index_is_free |= rule
-                .generators()
-                .iter()
-                .flat_map(Generator::programs)
-                .any(needs_index);
+        let selects_by_length = all.length;
+        for program in rule.generators().iter().flat_map(Generator::programs) {
+            all.add(program);
+            match program.dependence(Moment::INDEX) {
+                Dependence::None => {}
+                // Where points are drawn, they are worked out where the element stands.
+                Dependence::Modulo(modulus) if !rule.is_random() => all.count_modulo(modulus),
+                _ => all.counts_index = true,
+            }
+        }
+        if rule.is_random() || all.counts_index {
+            // A length that is not fixed is known only where the element stands.
             all.length = false;
+            all.index_is_free |= selects_by_length && all.modulus > 1;
         }
         // A seed that stands as the initiator may run backwards or not, depending on its root.
         let resets = rule
@@ -105,7 +107,20 @@ impl Dependences {
         if all.modulus > 1 && (all.length || resets && reversed) {
             all.index_is_free = true;
         }
+        all.counts_index |= all.index_is_free;
         all
+    }
+
+    fn add(&mut self, program: &Program) {
+        let depends = |slot| program.dependence(slot) != Dependence::None;
+        self.age |= depends(Moment::AGE);
+        self.step |= depends(Moment::STEP);
+        self.length |= depends(Moment::LENGTH);
+    }
+
+    /// Whether the number of states may grow with the number of steps.
+    pub(super) fn on_time(&self) -> bool {
+        self.age || self.step || self.length
     }
 
     fn count_modulo(&mut self, modulus: u32) {

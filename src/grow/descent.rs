@@ -138,10 +138,10 @@ impl Ranks {
 impl<'g> Descent<'g> {
     pub(super) fn new(graph: &'g Graph, start: &Start<'g>, target: u32) -> Self {
         let chain = start.chain(graph);
-        let levels = if graph.is_regular() {
-            0
-        } else {
+        let levels = if graph.counts_index() {
             (target - start.born) as usize + 1
+        } else {
+            0
         };
         Self {
             graph,
@@ -230,10 +230,10 @@ impl<'g> Descent<'g> {
 
             let replacement = &self.graph.objects()[object].replacement;
             let kept = matches!(replacement, Replacement::Kept);
-            let rank = if self.graph.is_regular() {
-                0
-            } else {
+            let rank = if self.graph.counts_index() {
                 self.ranks.count((level - self.born) as usize, kept)
+            } else {
+                0
             };
             if kept || level == self.target {
                 let joined = self.joined;
@@ -293,7 +293,7 @@ impl<'g> Descent<'g> {
             (first, end) = (end, first);
         }
         self.joined &= first;
-        if !self.graph.is_regular() {
+        if self.graph.counts_index() {
             self.ranks.enter((level + 1 - self.born) as usize);
         }
         self.stack.push(Entry {
@@ -383,12 +383,8 @@ fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing
     if placement != Placement::SeedsAsInitiator {
         return *standing;
     }
-    let root = graph
-        .initiator()
-        .instances
-        .iter()
-        .find(|instance| instance.position == standing.root)
-        .map_or(Frame::UNIT, |instance| instance.frame);
+    // Positions in the initiator count from 0 in the order of listing.
+    let root = graph.initiator().instances[standing.root as usize].frame;
     let [origin, _] = standing.frame.ends();
     Standing {
         frame: Frame {

@@ -35,8 +35,11 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if !graph.is_regular() {
         return Similarity::none("the rule is irregular");
     }
+    if !graph.is_plain() {
+        return Similarity::none("the ratios depend on the index");
+    }
     if graph.depth().is_some() {
-        return Similarity::none("the selection does not come back to what it was");
+        return Similarity::none("what replaces an element changes from step to step without end");
     }
     let edges = edges(graph);
     let Some(edges) = edges else {
