@@ -162,7 +162,7 @@ proptest! {
     fn the_bounds_converge_to_those_of_the_limit(text in rules::rule(Features::REGULAR)) {
         let graph = Graph::compile(&read(&text), 0).unwrap();
         let Some(limit) = graph.limit_bounds() else { return Ok(()) };
-        // 300 levels of ratios up to 0.95 leave 2e-7.
+        // 60 levels of ratios up to 3/4 leave 3e-8.
         let ratios = graph.objects().iter().filter_map(|object| match &object.replacement {
             kfrac::graph::Replacement::Fixed(production) => Some(production),
             _ => None,
@@ -172,12 +172,12 @@ proptest! {
             .filter(|instance| !matches!(graph.objects()[instance.object].replacement, kfrac::graph::Replacement::Kept))
             .map(|instance| instance.length)
             .fold(0.0, f64::max);
-        prop_assume!(longest < 0.95);
+        prop_assume!(longest < 0.75);
         let near = |bounds: &Bounds| {
             bounds.min().distance(limit.min()) < 1e-5 && bounds.max().distance(limit.max()) < 1e-5
         };
         // A rule that alternates draws its limit again and again, not at every step.
-        let boxes: Vec<_> = (300..312).map(|steps| graph.bounds(steps)).collect();
+        let boxes: Vec<_> = (60..66).map(|steps| graph.bounds(steps)).collect();
         prop_assert!(boxes.iter().flatten().any(near), "{:?} {:?}", limit, boxes);
     }
 

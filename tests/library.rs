@@ -311,7 +311,7 @@ fn pictures_of_lines_have_the_length_that_is_forecast() {
                 .iter()
                 .map(|v| v.map(|c| c as f64).into())
                 .collect();
-            drawn.extend(points.iter().copied());
+            points.iter().for_each(|point| drawn.add(*point));
             if subpath.is_closed {
                 points.push(points[0]);
             }

@@ -123,13 +123,13 @@ fn walk_forecast_bounds_and_reference_agree() {
             let mut ends = Bounds::EMPTY;
             let mut drawn = Bounds::EMPTY;
             for element in elements(&fractals) {
-                ends.extend(element.frame.ends());
+                element.frame.ends().into_iter().for_each(|end| ends.add(end));
                 let points = entry
                     .base_element
                     .points
                     .iter()
                     .map(|&point| DVec2::from(point));
-                drawn.extend(points.map(|point| element.frame.map.transform_point2(point)));
+                points.for_each(|point| drawn.add(element.frame.map.transform_point2(point)));
             }
             let base_bbox = step.base_bbox.unwrap_or(step.bbox);
             assert_same_box(&format!("{what}: end points"), &ends, step.bbox);

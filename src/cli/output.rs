@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use tempfile::TempPath;
 
+use super::stop;
+
 /// Where a command writes.
 pub(super) enum Output {
     /// Standard output, which cannot promise to be whole.
@@ -55,8 +57,7 @@ impl Output {
                 path: path.to_path_buf(),
             });
         }
-        // A link stays one: what it points to is replaced.
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let path = behind_links(path);
         let folder = match path.parent() {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
@@ -71,8 +72,16 @@ impl Output {
         }
         let (file, part) = builder
             .tempfile_in(folder)
+            // The name of the temporary file would only confuse.
+            .map_err(|error| io::Error::from(error.kind()))
             .with_context(failed)?
             .into_parts();
+        if let Some(metadata) = metadata {
+            // Who could not read the old file cannot read the new one.
+            file.set_permissions(metadata.permissions())
+                .with_context(failed)?;
+        }
+        stop::remove_at_exit(Some(&part));
         Ok(Self::File {
             file: BufWriter::with_capacity(BUFFER, file),
             part,
@@ -97,10 +106,25 @@ impl Output {
                 part.persist(&path)
                     .map_err(|error| error.error)
                     .with_context(failed)?;
+                stop::remove_at_exit(None);
             }
         }
         Ok(())
     }
+}
+
+/// The file that a link leads to, whether it is there or not: the link stays one.
+fn behind_links(path: &Path) -> PathBuf {
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        let Ok(target) = path.read_link() else { break };
+        // A relative target starts from the link's folder.
+        path = path
+            .parent()
+            .map_or_else(|| target.clone(), |folder| folder.join(&target));
+    }
+    path
 }
 
 impl Write for Output {

@@ -33,7 +33,7 @@ const COLUMNS: [&str; 10] = [
 ///
 /// # Errors
 ///
-/// If growing ends early, or if `out` fails.
+/// If growing ends early, if an element has no finite coordinates, or if `out` fails.
 pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -46,7 +46,7 @@ pub fn write(
     let mut rows = Rows {
         graph,
         format,
-        fractal: Fractal { number: 0, age: 0 },
+        fractal: Fractal::default(),
         row: Vec::new(),
         out,
     };
@@ -101,6 +101,10 @@ impl<W: Write> Visitor for Rows<'_, W> {
 
     fn element(&mut self, element: &Element) -> io::Result<()> {
         let [from, to] = element.frame.ends();
+        if !(from.is_finite() && to.is_finite()) {
+            let message = "an element lies beyond the range of numbers";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
         self.row.clear();
         self.whole(0, self.fractal.number);
         self.whole(1, u64::from(self.fractal.age));

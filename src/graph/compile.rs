@@ -316,8 +316,11 @@ impl<'r> Compiler<'r> {
 
     /// The generators that may replace an element.
     fn candidates(&self, generator: Option<usize>, moment: &Moment) -> Vec<usize> {
-        let selection = self.rule.selection_of(generator);
-        let undecided = match &selection {
+        if let Some(named) = generator {
+            return vec![named];
+        }
+        let selection = self.rule.selection();
+        let undecided = match selection {
             Selection::AtRandom(_) => true,
             Selection::ByCondition { .. } => {
                 self.depends.index_is_free

@@ -151,6 +151,12 @@ impl Graph {
             .all(|pair| census(&pair[0]) == census(&pair[1]))
     }
 
+    /// Whether every fractal is one closed path of stroked elements at every step.
+    #[must_use]
+    pub fn draws_closed_paths(&self) -> bool {
+        self.outlines() == Outlines::ClosedPaths
+    }
+
     fn outlines(&self) -> Outlines {
         let mut visible = self.objects.iter().filter(|object| object.visible);
         if visible.all(|object| self.base_elements()[object.base_element].is_closed()) {

@@ -47,7 +47,7 @@ impl<'g> Start<'g> {
         }
     }
 
-    fn chain<'a>(&'a self, graph: &'a Graph) -> &'a Chain {
+    pub(super) fn chain<'a>(&'a self, graph: &'a Graph) -> &'a Chain {
         match &self.chain {
             StartChain::Initiator => graph.initiator(),
             StartChain::Fixed(chain) => chain,

@@ -33,12 +33,14 @@ pub struct Element {
 }
 
 /// A fractal of an approximant: a list of elements of one age.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fractal {
     /// Its number in the order of the walk, from 0.
     pub number: u64,
     /// Its age: the number of times that it has been replaced.
     pub age: u32,
+    /// Whether it began as a closed chain.
+    pub is_ring: bool,
 }
 
 /// What receives the elements of a walk.

@@ -40,10 +40,6 @@ pub struct Walked {
     pub fractals: u64,
 }
 
-/// A walk may visit this many elements of earlier approximants for each element that is allowed,
-/// so that it ends even where all of them vanish.
-const VISITS_AN_ELEMENT: u64 = 16;
-
 /// Visits between two looks at the flag that cancels.
 const PATIENCE: u64 = 1 << 12;
 
@@ -155,6 +151,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         let fractal = Fractal {
             number: self.walked.fractals,
             age: self.growth.steps - start.born,
+            is_ring: start.chain(self.graph).is_ring(),
         };
         self.walked.fractals += 1;
         self.visitor.begin(fractal).map_err(WalkError::Visitor)?;
@@ -196,9 +193,6 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             return Ok(());
         }
         self.next_look = self.visited + PATIENCE;
-        if self.visited / VISITS_AN_ELEMENT > self.growth.most_elements {
-            return Err(self.too_many());
-        }
         match self.growth.cancel {
             Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
             _ => Ok(()),

@@ -9,6 +9,9 @@ pub enum Size {
     Exactly(u32, u32),
 }
 
+/// Positions farther away than this many pixels are not drawn.
+const MOST_PIXELS: f64 = 1e9;
+
 /// How the plane is laid on a picture: pixels run right and down from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canvas {
@@ -33,6 +36,11 @@ pub enum NoRoom {
     /// Nothing is drawn.
     #[error("there is nothing to draw: no element is visible")]
     Nothing,
+    /// The window shows so little of what is drawn that the rest lies too far away.
+    #[error(
+        "the window is too small: what is drawn would be more than {MOST_PIXELS} pixels wide as a whole"
+    )]
+    TooClose,
     /// What is drawn is larger than numbers can tell.
     #[error("what is to be drawn has no finite size")]
     Infinite,
@@ -85,6 +93,15 @@ impl Canvas {
             scale,
             corner: centre - half,
         })
+    }
+
+    /// Whether all of a box lies near enough to be drawn.
+    #[must_use]
+    pub fn holds(&self, bounds: &Bounds) -> bool {
+        let corners = [bounds.min(), bounds.max()].map(|corner| self.pixel(corner));
+        corners
+            .iter()
+            .all(|corner| corner.abs().max_element() <= MOST_PIXELS)
     }
 
     /// Width and height in pixels.

@@ -6,14 +6,19 @@
 mod canvas;
 mod classes;
 mod path;
+mod survey;
 pub mod svg;
 
 pub use canvas::{Canvas, NoRoom, Size};
-pub use classes::{Classes, Survey};
+pub use classes::Classes;
+pub use survey::Survey;
 
 use std::io;
 
 use crate::grow::WalkError;
+
+/// Widths of strokes that are relative to their elements are rounded to so many steps an octave.
+const WIDTHS_AN_OCTAVE: f64 = 8.0;
 
 /// Why a picture is not made.
 #[derive(Debug, thiserror::Error)]

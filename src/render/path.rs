@@ -68,7 +68,7 @@ impl PathData {
     /// Closes the subpath; `returned` tells that its last vertex is its first, which is then not
     /// written twice.
     pub(super) fn close(&mut self, returned: bool) {
-        if returned {
+        if returned || self.held == Some(self.start) {
             self.held = None;
         }
         self.flush_held();
@@ -130,21 +130,8 @@ impl PathData {
                 self.text.push(b' ');
             }
         }
-        let mut digits = [0; 20];
-        let mut at = digits.len();
-        let mut rest = value.unsigned_abs();
-        loop {
-            at -= 1;
-            digits[at] = b"0123456789"[usize::try_from(rest % 10).unwrap_or(0)];
-            rest /= 10;
-            if rest == 0 {
-                break;
-            }
-        }
-        if value < 0 {
-            self.text.push(b'-');
-        }
-        self.text.extend_from_slice(&digits[at..]);
+        let mut buffer = itoa::Buffer::new();
+        self.text.extend_from_slice(buffer.format(value).as_bytes());
         self.after_number = true;
     }
 }

@@ -12,8 +12,8 @@ use crate::graph::Graph;
 use crate::grow::{Growth, walk};
 use crate::style::{Cap, Colour, Join, Named, Style, View, Width};
 
-use super::{Canvas, RenderError, Size, Survey};
-use painter::{Painter, Scene};
+use super::{Canvas, NoRoom, RenderError, Size, Survey};
+use painter::{Painter, Pass, Scene};
 
 /// Units of the file's coordinates to a pixel.
 const FINE: f64 = 100.0;
@@ -64,6 +64,9 @@ pub fn write(
         None => (survey.bounds, survey.overhang()),
     };
     let canvas = Canvas::fit(&bounds, size, view.margin + pad)?;
+    if !survey.bounds.is_empty() && !canvas.holds(&survey.bounds) {
+        return Err(NoRoom::TooClose.into());
+    }
     let (classes, painted) = survey.classes();
 
     write_head(out, &canvas, style, labels)?;
@@ -73,8 +76,9 @@ pub fn write(
         canvas: &canvas,
         classes: &classes,
     };
-    for class in painted {
-        let mut painter = Painter::new(scene, class, out);
+    let (passes, together) = Pass::all(&scene, painted);
+    for pass in passes {
+        let mut painter = Painter::new(scene, pass, together, out);
         walk(graph, growth, &mut painter)?;
         painter.close_group()?;
     }

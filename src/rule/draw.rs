@@ -135,11 +135,14 @@ fn pick_index(stream: &mut Pcg64Mcg, count: usize) -> usize {
     ((unit(stream) * count as f64) as usize).min(count - 1)
 }
 
+/// What stands for selection at random where variables have their names; no name has a space.
+const SELECTION: &str = "the selection";
+
 /// Picks an entry by weight: the index, for weights that are not negative and not all zero.
 #[must_use]
 pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
     let total: f64 = weights.clone().sum();
-    let mut left = unit(&mut path.stream(hash_of_name("select"))) * total;
+    let mut left = unit(&mut path.stream(hash_of_name(SELECTION))) * total;
     let mut last = 0;
     for (index, weight) in weights.enumerate() {
         if weight > 0.0 {
@@ -199,10 +202,15 @@ mod tests {
         ]));
         assert_eq!(choice, [1.0, 3.0, 3.0, 1.0]);
         let root = Path::of_seed(7).child(0);
-        let picks: Vec<_> = (0..12)
+        let picks: Vec<_> = (0..24)
             .map(|p| pick_by_weight(root.child(p), [3.0, 0.0, 1.0].into_iter()))
             .collect();
-        assert_eq!(picks, [0, 0, 0, 2, 0, 0, 0, 0, 0, 2, 0, 2]);
+        assert_eq!(
+            picks,
+            [
+                0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 2, 0
+            ]
+        );
     }
 
     /// Means and variances of many draws are those of the distributions, within four standard errors.

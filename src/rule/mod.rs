@@ -16,7 +16,6 @@ pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
 pub use selection::Selection;
 
-use crate::expression::Program;
 use crate::geometry::DVec2;
 use crate::style::{Style, View};
 
@@ -141,20 +140,7 @@ impl Rule {
     /// Whether anything depends on draws: a random function, or selection at random.
     #[must_use]
     pub fn is_random(&self) -> bool {
-        matches!(self.selection, Selection::AtRandom(_))
+        matches!(self.selection, Selection::AtRandom(_)) && self.selection.candidates().len() > 1
             || self.generators.iter().any(Generator::is_random)
-    }
-
-    /// The generator of a listed element: the one that it names, else the selection's.
-    pub(crate) fn selection_of(&self, generator: Option<usize>) -> Selection {
-        generator.map_or_else(|| self.selection.clone(), Selection::Always)
-    }
-
-    /// All expressions that are evaluated while the rule grows.
-    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
-        self.generators
-            .iter()
-            .flat_map(Generator::programs)
-            .chain(self.selection.programs())
     }
 }

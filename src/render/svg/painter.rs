@@ -9,6 +9,7 @@ use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Style, Width};
 
 use super::{FINE, opacity};
+use crate::render::WIDTHS_AN_OCTAVE;
 
 /// Path data is handed on in pieces of about this many bytes.
 const CHUNK: usize = 1 << 16;
@@ -17,7 +18,7 @@ const CHUNK: usize = 1 << 16;
 #[derive(Clone, Copy, PartialEq)]
 struct Paint {
     kind: Kind,
-    /// The width of a relative stroke, in steps of a quarter octave.
+    /// The width of a relative stroke, in steps of an eighth of an octave.
     width: i32,
 }
 
@@ -26,15 +27,21 @@ struct Paint {
 enum Kind {
     /// Open lines.
     Line,
-    /// A closed path of lines that is filled.
+    /// Closed paths of lines, stroked and filled.
     Ring,
+    /// Fractals that are closed chains, filled without a stroke.
+    Area,
     /// Closed base elements.
     Polygon,
 }
 
 impl Paint {
     fn strokes(self, style: &Style) -> bool {
-        self.kind != Kind::Polygon || style.outlines_polygons()
+        match self.kind {
+            Kind::Line | Kind::Ring => true,
+            Kind::Polygon => style.outlines_polygons(),
+            Kind::Area => false,
+        }
     }
 }
 
@@ -77,10 +84,36 @@ pub(super) struct Scene<'a> {
     pub(super) classes: &'a Classes,
 }
 
+/// What one walk paints.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Pass {
+    /// The areas of fractals that are closed chains, under everything else.
+    Areas,
+    /// The elements of a class.
+    Class(u64),
+}
+
+impl Pass {
+    /// The walks that a picture takes, and whether strokes bring their fills with them.
+    pub(super) fn all(scene: &Scene<'_>, classes: Vec<u64>) -> (Vec<Self>, bool) {
+        let Scene { graph, style, .. } = scene;
+        let mut passes = Vec::new();
+        // One path for both, where stroke and colour never change along a fractal.
+        let together = graph.draws_closed_paths()
+            && matches!(style.width, Width::Pixels(_))
+            && scene.classes.keep_fractals_whole();
+        if style.fill.is_some() && !together {
+            passes.push(Self::Areas);
+        }
+        passes.extend(classes.into_iter().map(Self::Class));
+        (passes, together)
+    }
+}
+
 /// Writes the elements of one class.
 pub(super) struct Painter<'a, W: Write> {
     scene: Scene<'a>,
-    class: u64,
+    pass: Pass,
     /// The class's colour, where colours tell something.
     colour: Option<Colour>,
     out: &'a mut W,
@@ -93,26 +126,29 @@ pub(super) struct Painter<'a, W: Write> {
     /// For a ring that has not been broken: whether its first element starts where its frame does.
     ring: Option<bool>,
     is_first: bool,
-    /// Whether the fractal is a closed path that is filled.
+    /// Whether closed paths are filled as they are stroked.
     fills: bool,
 }
 
 impl<'a, W: Write> Painter<'a, W> {
-    pub(super) fn new(scene: Scene<'a>, class: u64, out: &'a mut W) -> Self {
+    pub(super) fn new(scene: Scene<'a>, pass: Pass, together: bool, out: &'a mut W) -> Self {
         Self {
             scene,
-            class,
-            colour: scene.classes.colour(class, scene.style),
+            pass,
+            colour: match pass {
+                Pass::Areas => None,
+                Pass::Class(class) => scene.classes.colour(class, scene.style),
+            },
+            fills: together && scene.style.fill.is_some(),
             out,
             buffer: Vec::with_capacity(2 * CHUNK),
             path: PathData::default(),
             paint: None,
             group_is_open: false,
-            fractal: Fractal { number: 0, age: 0 },
+            fractal: Fractal::default(),
             previous: None,
             ring: None,
             is_first: true,
-            fills: false,
         }
     }
 
@@ -145,6 +181,10 @@ impl<'a, W: Write> Painter<'a, W> {
         match paint.kind {
             Kind::Line => {}
             Kind::Ring => self.attribute("fill", self.scene.style.fill)?,
+            Kind::Area => {
+                self.attribute("fill", self.scene.style.fill)?;
+                self.buffer.extend_from_slice(br#" stroke="none""#);
+            }
             Kind::Polygon => {
                 self.attribute(
                     "fill",
@@ -160,7 +200,7 @@ impl<'a, W: Write> Painter<'a, W> {
         if let (Width::Relative(_), true) =
             (self.scene.style.width, paint.strokes(self.scene.style))
         {
-            let width = libm::exp2(f64::from(paint.width) / 4.0);
+            let width = libm::exp2(f64::from(paint.width) / WIDTHS_AN_OCTAVE);
             write!(self.buffer, r#" stroke-width="{width:.1}""#)?;
         }
         self.buffer.extend_from_slice(b" d=\"");
@@ -234,13 +274,29 @@ impl<'a, W: Write> Painter<'a, W> {
         Ok(())
     }
 
+    /// Goes on along the outline of a fractal that is filled, whether it is drawn there or not.
+    fn area(&mut self, element: &Element, base_element: &BaseElement) -> io::Result<()> {
+        self.begin_path(Paint {
+            kind: Kind::Area,
+            width: 0,
+        })?;
+        let map = element.frame.map;
+        let (start, pieces) = base_element.outline(element.frame.direction.is_reversed());
+        let start = self.position(map.transform_point2(start));
+        if self.is_first {
+            self.path.move_to(start);
+        } else {
+            self.path.line_to(start);
+        }
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+        Ok(())
+    }
+
     fn line(&mut self, element: &Element, base_element: &BaseElement) -> io::Result<()> {
         let reversed = element.frame.direction.is_reversed();
         let map = element.frame.map;
-        if self.is_first {
-            let whole = self.scene.classes.keep_fractals_whole();
-            self.fills = element.joined && self.scene.style.fill.is_some() && whole;
-        }
         self.begin_path(Paint {
             kind: if self.fills { Kind::Ring } else { Kind::Line },
             width: self.width_class(element),
@@ -298,7 +354,7 @@ impl<'a, W: Write> Painter<'a, W> {
             Width::Pixels(_) => 0,
             Width::Relative(width) => {
                 let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
-                (4.0 * libm::log2(fine.max(1.0))).round() as i32
+                (WIDTHS_AN_OCTAVE * libm::log2(fine.max(1.0))).round() as i32
             }
         }
     }
@@ -312,7 +368,6 @@ impl<W: Write> Visitor for Painter<'_, W> {
         self.previous = None;
         self.ring = None;
         self.is_first = true;
-        self.fills = false;
         Ok(())
     }
 
@@ -321,13 +376,17 @@ impl<W: Write> Visitor for Painter<'_, W> {
         let Scene { graph, classes, .. } = self.scene;
         let object = &graph.objects()[element.object];
         let base_element = &graph.base_elements()[object.base_element];
-        let is_mine = classes.of(element, &self.fractal, graph) == self.class;
-        if !object.visible || base_element.is_closed() {
+        let class = classes.of(element, &self.fractal, graph);
+        if self.pass == Pass::Areas {
+            if self.fractal.is_ring && !base_element.is_closed() {
+                self.area(element, base_element)?;
+            }
+        } else if !object.visible || base_element.is_closed() {
             self.previous = None;
-            if object.visible && is_mine {
+            if object.visible && self.pass == Pass::Class(class) {
                 self.polygon(element, base_element)?;
             }
-        } else if is_mine {
+        } else if self.pass == Pass::Class(class) {
             self.line(element, base_element)?;
         } else {
             self.previous = Some(Previous::at_end(element, base_element));
@@ -341,7 +400,9 @@ impl<W: Write> Visitor for Painter<'_, W> {
     }
 
     fn end(&mut self, joined: bool) -> io::Result<()> {
-        if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
+        if self.pass == Pass::Areas && self.paint.is_some() {
+            self.path.close(false);
+        } else if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
             && previous.drawn
         {
             self.path.close(meets_start && previous.meets_frame);

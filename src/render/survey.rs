@@ -1,0 +1,125 @@
+use std::convert::Infallible;
+
+use crate::geometry::Bounds;
+use crate::graph::Graph;
+use crate::grow::{Element, Fractal, Visitor};
+use crate::style::{Cap, Join, Style, Width};
+
+use super::{Classes, WIDTHS_AN_OCTAVE};
+
+/// What a walk over an approximant learns before anything is drawn.
+#[derive(Clone, Debug)]
+pub struct Survey<'g> {
+    graph: &'g Graph,
+    style: &'g Style,
+    /// What is drawn, without strokes of a width in pixels.
+    pub bounds: Bounds,
+    /// Whether any outline is stroked.
+    pub strokes: bool,
+    /// The number of elements.
+    pub elements: u64,
+    /// The number of fractals.
+    pub fractals: u64,
+    /// The largest rank of an element in its fractal.
+    pub largest_index: u64,
+    fractal: Fractal,
+    classes: Classes,
+    /// The classes that something visible is in.
+    used: Vec<bool>,
+}
+
+impl<'g> Survey<'g> {
+    /// A survey that has seen nothing yet.
+    #[must_use]
+    pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
+        let classes = Classes::before_survey(style.color_by, graph, steps);
+        Self {
+            graph,
+            style,
+            bounds: Bounds::EMPTY,
+            strokes: false,
+            elements: 0,
+            fractals: 0,
+            largest_index: 0,
+            fractal: Fractal::default(),
+            used: classes.all().map(|_| false).collect(),
+            classes,
+        }
+    }
+
+    /// The classes of colour, now that everything has been seen, and those that are to be painted.
+    #[must_use]
+    pub fn classes(&self) -> (Classes, Vec<u64>) {
+        let classes = self.classes.after_survey(self.fractals, self.largest_index);
+        if classes.need_no_survey() {
+            let used = classes.all().zip(&self.used).filter(|(_, used)| **used);
+            return (classes, used.map(|(class, _)| class).collect());
+        }
+        (classes, classes.all().collect())
+    }
+
+    /// The pixels by which strokes of a width in pixels reach beyond their paths.
+    #[must_use]
+    pub fn overhang(&self) -> f64 {
+        match self.style.width {
+            Width::Pixels(width) if self.strokes => width * overhang(self.style),
+            _ => 0.0,
+        }
+    }
+}
+
+/// How far strokes may reach beyond their paths, as a multiple of their width.
+fn overhang(style: &Style) -> f64 {
+    let cap = if style.cap == Cap::Square {
+        std::f64::consts::FRAC_1_SQRT_2
+    } else {
+        0.5
+    };
+    // SVG's limit of a mitre's length is four times the width.
+    let join = if style.join == Join::Miter { 2.0 } else { 0.5 };
+    f64::max(cap, join)
+}
+
+impl Visitor for Survey<'_> {
+    type Error = Infallible;
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        self.fractal = fractal;
+        self.fractals += 1;
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.elements += 1;
+        self.largest_index = self.largest_index.max(element.index);
+        let object = &self.graph.objects()[element.object];
+        if object.visible {
+            if self.classes.need_no_survey() {
+                let class = self.classes.of(element, &self.fractal, self.graph);
+                if let Some(used) = usize::try_from(class)
+                    .ok()
+                    .and_then(|class| self.used.get_mut(class))
+                {
+                    *used = true;
+                }
+            }
+            let base_element = &self.graph.base_elements()[object.base_element];
+            let stroked = !base_element.is_closed() || self.style.outlines_polygons();
+            let pad = match self.style.width {
+                Width::Relative(width) if stroked => {
+                    // The width that is drawn may be a little larger than that.
+                    let rounding = libm::exp2(0.5 / WIDTHS_AN_OCTAVE);
+                    width * rounding * element.frame.length() * overhang(self.style)
+                }
+                _ => 0.0,
+            };
+            self.strokes |= stroked;
+            base_element.add_to(&mut self.bounds, &element.frame.map, pad);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
