@@ -123,6 +123,37 @@ impl Catalogue {
         self.component(Shelf::Rules, argument)
     }
 
+    /// The rule that the last one of a chain extends: a file beside it or by path, or a rule by name.
+    ///
+    /// A name passes over the files of the chain, so that a rule can extend the one that it hides.
+    pub(crate) fn parent(
+        &self,
+        name: &str,
+        chain: &[Arc<Source>],
+    ) -> Result<Arc<Source>, Diagnostic> {
+        if without_extension(name) != name || name.contains(['/', '\\']) {
+            let folder = chain
+                .last()
+                .and_then(|rule| Path::new(rule.name()).parent());
+            let beside = folder.unwrap_or(Path::new("")).join(name);
+            if beside.is_file() {
+                return read_file(&beside, &beside.display().to_string());
+            }
+            return self.rule(name);
+        }
+        let first = self.rule(name)?;
+        if !chain.iter().any(|rule| is_same_file(rule, &first)) {
+            return Ok(first);
+        }
+        for entry in self.candidates(Shelf::Rules, name) {
+            let next = self.open(&entry)?;
+            if !chain.iter().any(|rule| is_same_file(rule, &next)) {
+                return Ok(next);
+            }
+        }
+        Ok(first)
+    }
+
     /// A rule or component by name.
     ///
     /// # Errors
@@ -165,29 +196,33 @@ impl Catalogue {
     }
 
     fn find(&self, shelf: Shelf, name: &str) -> Option<Entry> {
+        self.candidates(shelf, name).into_iter().next()
+    }
+
+    /// All files of a name; the first hides the others.
+    fn candidates(&self, shelf: Shelf, name: &str) -> Vec<Entry> {
         let name = without_extension(name);
         let is_name = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
         if name.is_empty() || name.starts_with('.') || !name.chars().all(is_name) {
-            return None;
+            return Vec::new();
         }
-        let file = format!("{name}.yaml");
-        let in_folders = self.folders.iter().flat_map(|folder| {
-            let own = (shelf == Shelf::Rules).then(|| folder.join(&file));
-            [folder.join(shelf.folder()).join(&file)]
-                .into_iter()
-                .chain(own)
-        });
-        let path = in_folders.into_iter().find(|path| path.is_file());
-        let embedded = || {
-            EMBEDDED
-                .get_file(format!("{}/{file}", shelf.folder()))
-                .is_some()
-        };
-        (path.is_some() || embedded()).then(|| Entry {
+        let entry = |path| Entry {
             name: name.into(),
             shelf,
             path,
-        })
+        };
+        let mut found = Vec::new();
+        for folder in &self.folders {
+            let own = (shelf == Shelf::Rules).then(|| folder.clone());
+            for folder in [folder.join(shelf.folder())].into_iter().chain(own) {
+                let files = EXTENSIONS.map(|extension| folder.join(format!("{name}{extension}")));
+                let files = files.into_iter().filter(|path| path.is_file());
+                found.extend(files.map(|path| entry(Some(path))));
+            }
+        }
+        let embedded = EMBEDDED.get_file(format!("{}/{name}.yaml", shelf.folder()));
+        found.extend(embedded.map(|_| entry(None)));
+        found
     }
 
     /// Everything in the library, by shelf and name; what comes first hides what comes later.
@@ -206,7 +241,11 @@ impl Catalogue {
                 let own = (shelf == Shelf::Rules).then(|| folder.clone());
                 for folder in own.into_iter().chain([folder.join(shelf.folder())]) {
                     let files = fs::read_dir(folder).into_iter().flatten().flatten();
-                    for path in files.map(|file| file.path()).filter(|path| path.is_file()) {
+                    let files = files.map(|file| file.path()).filter(|path| path.is_file());
+                    let mut files: Vec<_> = files.collect();
+                    // Backwards, so that of two extensions the first is added last and stays.
+                    files.sort_by(|a, b| b.cmp(a));
+                    for path in files {
                         add(&mut entries, shelf, &path, Some(&path));
                     }
                 }
@@ -222,12 +261,11 @@ fn add(
     file: &Path,
     path: Option<&PathBuf>,
 ) {
-    let stem = file.file_stem().and_then(|stem| stem.to_str());
-    if let (Some(name), true) = (
-        stem,
-        file.extension()
-            .is_some_and(|extension| extension == "yaml"),
-    ) {
+    let Some(file) = file.file_name().and_then(|file| file.to_str()) else {
+        return;
+    };
+    let name = without_extension(file);
+    if name != file && !name.is_empty() && !name.starts_with('.') {
         let entry = Entry {
             name: name.into(),
             shelf,
@@ -237,8 +275,18 @@ fn add(
     }
 }
 
+/// What the names of library files end in; the first comes before the second.
+const EXTENSIONS: [&str; 2] = [".yaml", ".yml"];
+
 fn without_extension(name: &str) -> &str {
-    name.strip_suffix(".yaml").unwrap_or(name)
+    let stems = EXTENSIONS.map(|extension| name.strip_suffix(extension));
+    stems.into_iter().flatten().next().unwrap_or(name)
+}
+
+/// Whether two texts come from one file, by whatever paths.
+pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
+    let file = |source: &Source| fs::canonicalize(source.name()).ok();
+    a.text() == b.text() && (a.name() == b.name() || file(a).is_some() && file(a) == file(b))
 }
 
 fn read_file(path: &Path, name: &str) -> Result<Arc<Source>, Diagnostic> {

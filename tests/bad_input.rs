@@ -16,9 +16,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
-use kfrac::diagnostic::Diagnostics;
+use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::graph::Graph;
+use kfrac::rule::Parameter;
 
 /// All that `kfrac check` says of a rule.
 fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnostics> {
@@ -67,4 +68,118 @@ fn every_mistake_has_its_message() {
 fn errors_of_one_file_come_together() {
     let (Ok(found) | Err(found)) = check("tests/bad/several-stages.yaml", &Catalogue::embedded());
     assert_eq!(found.len(), 8, "{found}");
+}
+
+#[test]
+fn round_outlines_may_end_where_they_start() {
+    for (outline, pieces) in [
+        // A circle, a leaf and a loop. An arc of 180 degrees is drawn in eight pieces.
+        (
+            "[[0, 0], {arc: [1, 0], through: [1/2, 1/2]}, {arc: [0, 0], through: [1/2, -1/2]}]",
+            16,
+        ),
+        (
+            "[[0, 0], {curve: [1, 0], control: [[1/2, 1/2]]}, {curve: [0, 0], control: [[1/2, -1/2]]}]",
+            2,
+        ),
+        ("[[0, 0], {curve: [0, 0], control: [[1, 1], [-1, 1]]}]", 1),
+    ] {
+        let text = format!(
+            "initiator: segment\ngenerator: koch\nbase_element:\n  closed: true\n  points: {outline}\n"
+        );
+        let source = Source::new("round.yaml", text);
+        let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+        let (rule, doubts) = document.resolve(&[]).unwrap();
+        assert!(doubts.is_empty(), "{doubts}");
+        let base_element = &rule.base_elements()[0];
+        assert!(base_element.is_closed());
+        assert_eq!(base_element.pieces().len(), pieces, "{outline}");
+        assert_eq!(
+            base_element.pieces()[pieces - 1].end(),
+            base_element.start()
+        );
+    }
+}
+
+/// A folder with these files.
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+fn read(path: &Path, catalogue: &Catalogue) -> Document {
+    let source = catalogue.rule(path.to_str().unwrap()).unwrap();
+    Document::read(&source, catalogue).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+#[test]
+fn a_rule_sets_the_parameters_of_its_parents_components() {
+    let folder = folder(&[
+        ("tree.yaml", "extends: random-tree\nparams: {sway: 5}\n"),
+        (
+            "sub/tree.yaml",
+            "extends: ../tree.yaml\nparams: {spread: {max: 20}}\n",
+        ),
+        ("other.yaml", "extends: random-tree\ngenerator: koch\n"),
+    ]);
+    let catalogue = Catalogue::embedded();
+    let parameters = |name: &str| {
+        let (rule, _) = read(&folder.path().join(name), &catalogue)
+            .resolve(&[])
+            .unwrap();
+        let of = |parameter: &Parameter| {
+            (
+                parameter.name.clone(),
+                parameter.value,
+                parameter.min,
+                parameter.max,
+            )
+        };
+        rule.parameters().iter().map(of).collect::<Vec<_>>()
+    };
+    let sway = ("sway".to_owned(), 5.0, Some(0.0), Some(60.0));
+    let spread = |most| ("spread".to_owned(), 10.0, Some(0.0), Some(most));
+    assert_eq!(parameters("tree.yaml"), [sway.clone(), spread(40.0)]);
+    assert_eq!(parameters("sub/tree.yaml"), [spread(20.0), sway]);
+    assert!(parameters("other.yaml").is_empty());
+}
+
+#[test]
+fn a_rule_extends_a_file_beside_it_and_the_rule_that_it_hides() {
+    let folder = folder(&[
+        (
+            "rules/koch.yaml",
+            "extends: koch\ngenerator: koch\ntitle: Mine\n",
+        ),
+        ("rules/other.yml", "extends: koch.yaml\ntitle: Other\n"),
+        ("generators/koch.yml", "elements: [[0, 0], [1/2, 0]]\n"),
+    ]);
+    let catalogue = Catalogue::with_folders(vec![folder.path().into()]);
+    for name in ["koch", "koch.yml", "other", "other.yaml"] {
+        let document = read(Path::new(name), &catalogue);
+        let (rule, _) = document.resolve(&[]).unwrap();
+        // The embedded rule with a generator of this library.
+        assert_eq!(rule.generators()[0].parts()[0].elements.len(), 1);
+        assert_eq!(
+            rule.description().source.as_deref(),
+            Some("H. von Koch 1904")
+        );
+        let title = if name.starts_with("koch") {
+            "Mine"
+        } else {
+            "Other"
+        };
+        assert_eq!(rule.description().title.as_deref(), Some(title));
+    }
+    let own = catalogue
+        .entries()
+        .into_iter()
+        .filter(|entry| entry.path.is_some());
+    let names: Vec<_> = own.map(|entry| entry.name).collect();
+    assert_eq!(names, ["koch", "other", "koch"]);
 }

@@ -342,11 +342,12 @@ fn a_picture_tells_how_to_make_it_again() {
         .to_owned();
     fs::write(folder.path().join("random-tree.yaml"), text).unwrap();
     fs::remove_file(&path).unwrap();
-    let words = command
+    let words: Vec<_> = command
         .split_whitespace()
         .skip(2)
-        .map(|word| word.trim_matches('\''));
-    let words: Vec<_> = words.collect();
+        .map(|word| word.replace('\'', ""))
+        .collect();
+    let words: Vec<_> = words.iter().map(String::as_str).collect();
     run(folder.path(), &words).success();
     assert_eq!(fs::read_to_string(&path).unwrap(), first);
 }
@@ -428,7 +429,128 @@ fn a_closed_pipe_is_no_failure() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_leaves_nothing_behind() {
+fn a_file_that_is_replaced_keeps_its_mode_and_a_link_stays_one() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("private.svg"), "old").unwrap();
+    fs::set_permissions(path("private.svg"), fs::Permissions::from_mode(0o600)).unwrap();
+    run(folder.path(), &["grow", "koch", "-o", "private.svg"]).success();
+    assert_eq!(
+        fs::metadata(path("private.svg"))
+            .unwrap()
+            .permissions()
+            .mode()
+            & 0o777,
+        0o600
+    );
+    symlink("target.svg", path("link.svg")).unwrap();
+    run(folder.path(), &["grow", "koch", "-o", "link.svg"]).success();
+    assert!(path("link.svg").symlink_metadata().unwrap().is_symlink());
+    assert!(path("target.svg").metadata().unwrap().is_file());
+}
+
+#[test]
+fn what_numbers_cannot_tell_is_an_error_and_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let far = "initiator: segment\ngenerator: [[0, 0], [1e200, 0], [1e200, 1e200]]\n";
+    fs::write(folder.path().join("far.yaml"), far).unwrap();
+    for format in ["svg", "csv", "json"] {
+        let far = run(
+            folder.path(),
+            &["grow", "far.yaml", "--steps", "3", "--format", format],
+        )
+        .code(1);
+        assert!(!stderr(&far).is_empty());
+    }
+    let close = run(
+        folder.path(),
+        &["grow", "koch", "--view", "0.5,0,1e-17,1e-17"],
+    )
+    .code(1);
+    assert!(
+        stderr(&close).contains("the window is too small"),
+        "{}",
+        stderr(&close)
+    );
+    let infinite = "initiator: segment\ngenerator: [[0, 0], [1/2, 1/(step - 2)], [1, 0]]\n";
+    fs::write(folder.path().join("infinite.yaml"), infinite).unwrap();
+    run(
+        folder.path(),
+        &["info", "infinite.yaml", "--steps", "2", "--json"],
+    )
+    .success();
+    let infinite = run(folder.path(), &["grow", "infinite.yaml", "--steps", "3"]).code(1);
+    assert!(
+        stderr(&infinite).contains("infinite.yaml:2:27"),
+        "{}",
+        stderr(&infinite)
+    );
+    assert_eq!(files(folder.path()), ["far.yaml", "infinite.yaml"]);
+}
+
+#[test]
+fn a_limit_is_met_by_elements_and_by_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    // One element at every step, and one more seed at every step.
+    fs::write(
+        folder.path().join("one.yaml"),
+        "initiator: segment\ngenerator: [[0, 0], [0.99, 0]]\n",
+    )
+    .unwrap();
+    run(
+        folder.path(),
+        &["grow", "one.yaml", "--steps", "3000", "--max-elements", "1"],
+    )
+    .success();
+    let seeding = "initiator: segment\ngenerator:\n  parts:\n    - elements: [[0, 0], [0.99, 0]]\n    \
+                   - {seeds: true, elements: [{from: [0, 0], to: [0, 0.5], fertile: false}]}\n";
+    fs::write(folder.path().join("seeding.yaml"), seeding).unwrap();
+    run(
+        folder.path(),
+        &[
+            "grow",
+            "seeding.yaml",
+            "--steps",
+            "300",
+            "--max-elements",
+            "301",
+        ],
+    )
+    .success();
+    run(
+        folder.path(),
+        &[
+            "grow",
+            "seeding.yaml",
+            "--steps",
+            "300",
+            "--max-elements",
+            "300",
+        ],
+    )
+    .code(1);
+    // Counts are known where only points depend on the index.
+    let by_index = "initiator: segment\ngenerator: [[0, 0], [0.5, i/1000], [1, 0]]\n";
+    fs::write(folder.path().join("by_index.yaml"), by_index).unwrap();
+    let refused = run(folder.path(), &["grow", "by_index.yaml", "--steps", "30"]).code(1);
+    assert!(
+        stderr(&refused).contains("1,073,741,824 elements; 25 is the deepest"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn who_ends_the_program_leaves_nothing_behind() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        interrupt(signal);
+    }
+}
+
+#[cfg(unix)]
+fn interrupt(signal: &str) {
     let folder = tempfile::tempdir().unwrap();
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
         .current_dir(folder.path())
@@ -445,7 +567,7 @@ fn ctrl_c_leaves_nothing_behind() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     let killed = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args([signal, &child.id().to_string()])
         .status()
         .unwrap();
     assert!(killed.success());

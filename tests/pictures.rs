@@ -246,3 +246,64 @@ fn round_pieces_are_curves() {
     assert!(svg.contains("viewBox=\"0 0 10000 5000\""), "{svg}");
     assert_eq!(paths(&half_circle, 0)[0].matches('c').count(), 1);
 }
+
+#[test]
+fn relative_strokes_stay_inside_the_picture() {
+    for percent in 20..60 {
+        let text = format!(
+            "initiator: segment\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\nstyle: {{width: {{relative: {percent}/100}}}}"
+        );
+        let svg = picture(&text, 0, "");
+        let width: f64 = svg
+            .split("<path stroke-width=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        let height: f64 = svg
+            .split("viewBox=\"0 0 10000 ")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert!(
+            width <= height + 0.1 && width > 0.85 * height - 100.0,
+            "{percent}: {width} in {height}"
+        );
+    }
+}
+
+#[test]
+fn a_closed_chain_is_filled_whatever_strokes_it() {
+    let text = |style: &str| {
+        format!(
+            "initiator: {{closed: true, elements: [[0, 0], [0, 1], {{to: [1, 1], visible: false}}, [1, 0]]}}\n\
+             generator: [[0, 0], [1/2, 0], [1, 0]]\nstyle: {{fill: teal, {style}}}"
+        )
+    };
+    let area = "fill=\"#008080\" stroke=\"none\" d=\"M0 10000l0-10000 10000 0 0 10000z\"";
+    for style in [
+        "width: 0",
+        "width: 0, color_by: index",
+        "width: 0, color_by: direction",
+    ] {
+        let found = paths(&text(style), 0);
+        assert_eq!(found[0], area);
+        assert!(
+            found[1..].iter().all(|path| !path.contains("fill")),
+            "{found:?}"
+        );
+    }
+    // Strokes that vary in width are paths of their own.
+    let varied = "initiator: {closed: true, elements: [[0, 0], [1/2, 1], [1, 0]]}\n\
+                  generator: [[0, 0], [1/2, 0], [1, 0]]\nstyle: {fill: teal, width: {relative: 0.01}}";
+    let found = paths(varied, 1);
+    assert_eq!(found.iter().filter(|path| path.contains("fill")).count(), 1);
+    assert!(found.len() > 2, "{found:?}");
+}

@@ -123,7 +123,11 @@ fn walk_forecast_bounds_and_reference_agree() {
             let mut ends = Bounds::EMPTY;
             let mut drawn = Bounds::EMPTY;
             for element in elements(&fractals) {
-                element.frame.ends().into_iter().for_each(|end| ends.add(end));
+                element
+                    .frame
+                    .ends()
+                    .into_iter()
+                    .for_each(|end| ends.add(end));
                 let points = entry
                     .base_element
                     .points

@@ -72,10 +72,11 @@ fn check(file: &str, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let source = rule::open(file, catalogue)?;
     let document = Document::read(&source, catalogue)?;
     let (rule, mut diagnostics) = document.resolve(&[])?;
+    let rule = Arc::new(rule);
     let steps = rule.steps().unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
-    if let Err(error) = Graph::compile(&Arc::new(rule), steps) {
-        diagnostics.push(Diagnostic::error(error.to_string()));
+    if let Err(error) = Graph::compile(&rule, steps) {
+        diagnostics.push(error.diagnostic(&rule));
     }
     Ok(diagnostics)
 }

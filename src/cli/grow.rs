@@ -1,23 +1,24 @@
 //! `kfrac grow`: from a rule to a picture or a table.
 
+mod picture;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context, anyhow};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use anyhow::anyhow;
 use num_bigint::BigUint;
 
 use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::{Graph, TooLarge};
 use crate::grow::{Growth, WalkError};
-use crate::render::{RenderError, Size, svg};
-use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Width};
+use crate::render::{RenderError, svg};
 
 use super::output::{Counted, Output};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, stop, text};
+use super::{Failure, steps, stop, text};
+use picture::PictureArguments;
 
 /// Grows a rule and draws it
 #[derive(clap::Args)]
@@ -33,42 +34,11 @@ pub(super) struct Arguments {
     /// The format [default: from the extension of the file]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// The picture's long side in pixels, or WIDTHxHEIGHT
-    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = size)]
-    size: Size,
-    /// A window in the rule's units: lower left corner, width, height
-    #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
-    view: Option<[f64; 4]>,
+    #[command(flatten)]
+    picture: PictureArguments,
     /// What random draws depend on
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// The colour of strokes, as CSS writes it
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    stroke: Option<Colour>,
-    /// The width of strokes in pixels, or, with a % sign, relative to the element
-    #[arg(long, value_name = "W", value_parser = width)]
-    stroke_width: Option<Width>,
-    /// The colour of areas
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    fill: Option<Colour>,
-    /// The ends of lines
-    #[arg(long, value_parser = named::<Cap>())]
-    cap: Option<Cap>,
-    /// The corners of lines
-    #[arg(long, value_parser = named::<Join>())]
-    join: Option<Join>,
-    /// Pixels left free around the picture
-    #[arg(long, value_name = "PX", value_parser = length)]
-    margin: Option<f64>,
-    /// The colour behind the picture
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    background: Option<Colour>,
-    /// What colours tell
-    #[arg(long, value_parser = named::<ColorBy>())]
-    color_by: Option<ColorBy>,
-    /// The colours
-    #[arg(long, value_name = "NAME", value_parser = palette())]
-    palette: Option<Palette>,
     /// Refuses to grow more elements than this
     #[arg(long, value_name = "N", default_value_t = 50_000_000)]
     max_elements: u64,
@@ -113,116 +83,6 @@ impl Format {
     }
 }
 
-impl Arguments {
-    /// The command that makes the picture again from the rule as resolved.
-    fn command(&self, name: &str, growth: &Growth<'_>) -> String {
-        let mut command = format!(
-            "kfrac grow {name}.yaml --steps {} --seed {}",
-            growth.steps, growth.seed
-        );
-        let mut option = |name: &str, value: Option<String>| {
-            if let Some(value) = value {
-                command.push_str(&format!(" --{name} '{value}'"));
-            }
-        };
-        for setting in &self.rule.set {
-            option("set", Some(format!("{}={}", setting.name, setting.value)));
-        }
-        let colour = |colour: Option<Colour>| colour.map(|colour| format!("{colour:#}"));
-        option(
-            "size",
-            Some(match self.size {
-                Size::Long(side) => side.to_string(),
-                Size::Exactly(width, height) => format!("{width}x{height}"),
-            }),
-        );
-        option(
-            "view",
-            self.view
-                .map(|view| view.map(|number| number.to_string()).join(",")),
-        );
-        option("stroke", colour(self.stroke));
-        option(
-            "stroke-width",
-            self.stroke_width.map(|width| match width {
-                Width::Pixels(width) => width.to_string(),
-                Width::Relative(width) => format!("{}%", width * 100.0),
-            }),
-        );
-        option("fill", colour(self.fill));
-        option("cap", self.cap.map(|cap| cap.name().into()));
-        option("join", self.join.map(|join| join.name().into()));
-        option("margin", self.margin.map(|margin| margin.to_string()));
-        option("background", colour(self.background));
-        option("color-by", self.color_by.map(|by| by.name().into()));
-        option(
-            "palette",
-            self.palette.as_ref().map(|palette| palette.name().into()),
-        );
-        command
-    }
-}
-
-const MOST_PIXELS: u32 = 1_000_000;
-
-fn size(text: &str) -> Result<Size, String> {
-    let side = |text: &str| match text.parse::<u32>() {
-        Ok(side) if (1..=MOST_PIXELS).contains(&side) => Ok(side),
-        _ => Err(format!(
-            "a side is a whole number of pixels from 1 to {MOST_PIXELS}"
-        )),
-    };
-    match text.split_once('x') {
-        Some((width, height)) => Ok(Size::Exactly(side(width)?, side(height)?)),
-        None => Ok(Size::Long(side(text)?)),
-    }
-}
-
-fn window(text: &str) -> Result<[f64; 4], String> {
-    let numbers: Result<Vec<f64>, _> = text
-        .split(',')
-        .map(|number| number.trim().parse())
-        .collect();
-    match numbers.map(<[f64; 4]>::try_from) {
-        Ok(Ok(window))
-            if window.iter().all(|number| number.is_finite())
-                && window[2] > 0.0
-                && window[3] > 0.0 =>
-        {
-            Ok(window)
-        }
-        _ => Err("a window is X,Y,W,H: lower left corner, width and height above 0".into()),
-    }
-}
-
-fn colour(text: &str) -> Result<Colour, String> {
-    Colour::parse(text)
-        .ok_or_else(|| "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161)".into())
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
-        _ => Err("this is a number that is not negative".into()),
-    }
-}
-
-fn width(text: &str) -> Result<Width, String> {
-    match text.strip_suffix('%') {
-        Some(percent) => Ok(Width::Relative(length(percent)? / 100.0)),
-        None => Ok(Width::Pixels(length(text)?)),
-    }
-}
-
-fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name))
-        .try_map(|name| T::from_name(&name).ok_or("unknown"))
-}
-
-fn palette() -> impl TypedValueParser<Value = Palette> {
-    PossibleValuesParser::new(Palette::names()).try_map(|name| Palette::named(&name))
-}
-
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     let format = match (arguments.format, &arguments.output) {
@@ -231,11 +91,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         (None, _) => Format::Svg,
     };
     let loaded = arguments.rule.load(catalogue, arguments.quiet)?;
-    let steps = match arguments.steps.or(loaded.rule.steps()) {
-        Some(steps) => steps,
-        None => sensible_steps(&loaded)?,
-    };
-    let graph = Graph::compile(&loaded.rule, steps).map_err(anyhow::Error::from)?;
+    let steps = steps::choose(arguments.steps, &loaded)?;
+    let graph = loaded.compile(steps)?;
     graph
         .check_size(steps, arguments.max_elements)
         .map_err(|error| anyhow!(too_large(&error, &loaded.name, steps)))?;
@@ -253,8 +110,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         Format::Csv => write_table(export::Format::Csv, &graph, &growth, &mut out),
         Format::Json => write_table(export::Format::JsonLines, &graph, &growth, &mut out),
     };
-    let wrote =
-        wrote.map_err(|failure| explain(failure, &loaded.name, path, arguments.max_elements))?;
+    let wrote = wrote.map_err(|failure| explain(failure, &loaded, path, arguments.max_elements))?;
     let (file, bytes) = out.into_parts();
     file.finish()?;
     if !arguments.quiet {
@@ -296,31 +152,21 @@ impl Wrote {
     }
 }
 
-/// Why nothing has been written.
-enum Stopped {
-    Render(RenderError),
-    Table(WalkError<std::io::Error>),
-}
-
 fn write_svg(
     arguments: &Arguments,
     loaded: &Loaded,
     graph: &Graph,
     growth: &Growth<'_>,
     out: &mut impl Write,
-) -> Result<Wrote, Stopped> {
+) -> Result<Wrote, RenderError> {
     let labels = labels(arguments, loaded, growth);
-    let (style, view) = (
-        style(arguments, &loaded.rule),
-        view(arguments, &loaded.rule),
-    );
-    svg::write(graph, growth, &style, &view, arguments.size, &labels, out)
-        .map(|picture| Wrote {
-            elements: picture.elements,
-            fractals: picture.fractals,
-            pixels: Some(picture.size),
-        })
-        .map_err(Stopped::Render)
+    let picture = &arguments.picture;
+    let (style, view) = (picture.style(&loaded.rule), picture.view(&loaded.rule));
+    svg::write(graph, growth, &style, &view, picture.size, &labels, out).map(|picture| Wrote {
+        elements: picture.elements,
+        fractals: picture.fractals,
+        pixels: Some(picture.size),
+    })
 }
 
 fn write_table(
@@ -328,43 +174,14 @@ fn write_table(
     graph: &Graph,
     growth: &Growth<'_>,
     out: &mut impl Write,
-) -> Result<Wrote, Stopped> {
+) -> Result<Wrote, RenderError> {
     export::write(graph, growth, format, out)
         .map(|walked| Wrote {
             elements: walked.elements,
             fractals: walked.fractals,
             pixels: None,
         })
-        .map_err(Stopped::Table)
-}
-
-fn style(arguments: &Arguments, rule: &crate::rule::Rule) -> Style {
-    let own = rule.style();
-    Style {
-        stroke: arguments.stroke.or(own.stroke),
-        width: arguments.stroke_width.unwrap_or(own.width),
-        cap: arguments.cap.unwrap_or(own.cap),
-        join: arguments.join.unwrap_or(own.join),
-        fill: arguments.fill.or(own.fill),
-        background: arguments.background.or(own.background),
-        color_by: match arguments.color_by {
-            Some(color_by) => color_by,
-            // A colour that is asked for is not covered by a palette that is not.
-            None if arguments.stroke.is_some() || arguments.fill.is_some() => ColorBy::None,
-            None => own.color_by,
-        },
-        palette: arguments
-            .palette
-            .clone()
-            .unwrap_or_else(|| own.palette.clone()),
-    }
-}
-
-fn view(arguments: &Arguments, rule: &crate::rule::Rule) -> View {
-    View {
-        window: arguments.view.or(rule.view().window),
-        margin: arguments.margin.unwrap_or(rule.view().margin),
-    }
+        .map_err(RenderError::from)
 }
 
 /// Title, description, and all that it takes to make the file again.
@@ -377,7 +194,7 @@ fn labels(arguments: &Arguments, loaded: &Loaded, growth: &Growth<'_>) -> svg::L
     let mut provenance = format!(
         "# kfrac {}\n# {}\n",
         env!("CARGO_PKG_VERSION"),
-        arguments.command(&loaded.name, growth)
+        command(arguments, loaded, growth)
     );
     for parameter in loaded.rule.parameters() {
         provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
@@ -395,17 +212,27 @@ fn labels(arguments: &Arguments, loaded: &Loaded, growth: &Growth<'_>) -> svg::L
     }
 }
 
-/// The deepest step, up to 12, that has no more than 20,000 elements; 6 where that is not known.
-fn sensible_steps(loaded: &Loaded) -> Result<u32, Failure> {
-    const DEEPEST: u32 = 12;
-    let graph = Graph::compile(&loaded.rule, DEEPEST).map_err(anyhow::Error::from)?;
-    if graph.forecast().is_none() {
-        return Ok(DEEPEST / 2);
+/// The command that makes the picture again from the rule as resolved.
+fn command(arguments: &Arguments, loaded: &Loaded, growth: &Growth<'_>) -> String {
+    let Growth { steps, seed, .. } = growth;
+    let file = quoted(&format!("{}.yaml", loaded.name));
+    let mut command = format!("kfrac grow {file} --steps {steps} --seed {seed}");
+    let settings = arguments.rule.set.iter();
+    let settings = settings.map(|setting| ("set", format!("{}={}", setting.name, setting.value)));
+    for (name, value) in settings.chain(arguments.picture.options()) {
+        // Joined by a sign of equality, so that a value may begin with a minus.
+        command.push_str(&format!(" --{name}={}", quoted(&value)));
     }
-    Ok(match graph.check_size(DEEPEST, 20_000) {
-        Ok(()) => DEEPEST,
-        Err(error) => error.deepest.unwrap_or(0),
-    })
+    command
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
+    if word.chars().all(plain) {
+        return word.into();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 fn too_large(error: &TooLarge, name: &str, steps: u32) -> String {
@@ -420,28 +247,21 @@ fn too_large(error: &TooLarge, name: &str, steps: u32) -> String {
     format!("step {steps} of {name} has {count}; {deepest}")
 }
 
-fn explain(stopped: Stopped, name: &str, path: &Path, limit: u64) -> Failure {
-    let walk = match stopped {
-        Stopped::Render(RenderError::Io(error)) => return unwritten(error, path),
-        Stopped::Table(WalkError::Visitor(error)) => return unwritten(error, path),
-        Stopped::Render(RenderError::Walk(WalkError::Cancelled)) => return Failure::Interrupted,
-        Stopped::Table(WalkError::Cancelled) => return Failure::Interrupted,
-        Stopped::Render(RenderError::Walk(WalkError::TooManyElements { .. }))
-        | Stopped::Table(WalkError::TooManyElements { .. }) => {
+fn explain(error: RenderError, loaded: &Loaded, path: &Path, limit: u64) -> Failure {
+    match error {
+        RenderError::Io(error) => anyhow::Error::new(error)
+            .context(format!("'{}' cannot be written", path.display()))
+            .into(),
+        RenderError::Walk(WalkError::Cancelled) => Failure::Interrupted,
+        RenderError::Walk(WalkError::NotFinite(error)) => error.diagnostic(&loaded.rule).into(),
+        RenderError::Walk(WalkError::TooManyElements { .. }) => {
             let limit = text::counted(&BigUint::from(limit), "element");
-            anyhow!("{name} has more than {limit}; --max-elements allows more")
+            anyhow!(
+                "{} has more than {limit}; --max-elements allows more",
+                loaded.name
+            )
+            .into()
         }
-        Stopped::Render(error) => error.into(),
-        Stopped::Table(error) => error.into(),
-    };
-    walk.into()
-}
-
-fn unwritten(error: std::io::Error, path: &Path) -> Failure {
-    let result: anyhow::Result<()> =
-        Err(error).with_context(|| format!("'{}' cannot be written", path.display()));
-    match result {
-        Err(error) => error.into(),
-        Ok(()) => Failure::Said,
+        other => anyhow::Error::new(other).into(),
     }
 }

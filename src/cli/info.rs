@@ -7,11 +7,12 @@ use serde::Serialize;
 use crate::catalogue::Catalogue;
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Level};
+use crate::grow::{Growth, extent};
 use crate::measure::similarity_dimension;
 use crate::rule::Parameter;
 
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, output, text};
+use super::{Failure, output, steps, text};
 
 /// Says what a rule is: parameters, sizes of its steps, bounds, dimension
 #[derive(clap::Args)]
@@ -76,9 +77,9 @@ fn number(value: f64) -> serde_json::Value {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
-    let steps = arguments.steps.or(loaded.rule.steps()).unwrap_or(6);
-    let graph = Graph::compile(&loaded.rule, steps).map_err(anyhow::Error::from)?;
-    let info = info(&loaded, &graph, steps)?;
+    let steps = steps::choose(arguments.steps, &loaded)?;
+    let graph = loaded.compile(steps)?;
+    let info = info(&loaded, &graph, steps);
     let text = if arguments.json {
         format!(
             "{}\n",
@@ -90,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(output::print(&text)?)
 }
 
-fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Result<Info<'a>, Failure> {
+fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
     let levels = levels(graph, steps);
     let counts = |count: fn(&Level) -> String| {
         levels
@@ -110,11 +111,9 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Result<Info<'a>, F
                     .collect()
             })
     };
-    // The graph of the limit is resolved as far as it goes.
-    let limit = Graph::compile(&loaded.rule, steps.max(64)).map_err(anyhow::Error::from)?;
-    let similarity = similarity_dimension(&limit);
+    let similarity = similarity_dimension(graph);
     let params = loaded.rule.parameters().iter();
-    Ok(Info {
+    Info {
         name: &loaded.name,
         kind: "rule",
         space: 2,
@@ -130,13 +129,28 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Result<Info<'a>, F
         fractals: counts(|level| level.fractals.to_string()),
         length: measures(|level| level.length),
         area: measures(|level| level.area),
-        bounds: graph.bounds(steps).as_ref().map(corners),
-        limit_bounds: limit.limit_bounds().as_ref().map(corners),
+        bounds: bounds(graph, steps).as_ref().map(corners),
+        limit_bounds: graph.limit_bounds().as_ref().map(corners),
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,
         },
-    })
+    }
+}
+
+/// The box of an approximant: from the graph, or else by a walk that is not too long.
+fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
+    const MOST_ELEMENTS: u64 = 1_000_000;
+    let growth = Growth {
+        most_elements: MOST_ELEMENTS,
+        ..Growth::steps(steps)
+    };
+    let walked = || {
+        let small = !graph.draws() && graph.check_size(steps, MOST_ELEMENTS).is_ok();
+        let bounds = small.then(|| extent(graph, &growth).ok()).flatten();
+        bounds.filter(Bounds::is_finite)
+    };
+    graph.bounds(steps).or_else(walked)
 }
 
 fn levels(graph: &Graph, steps: u32) -> Option<Vec<Level>> {
@@ -249,9 +263,10 @@ fn parameter_line(parameter: &Parameter) -> String {
 
 /// The forecast, a row a step; long numbers are given by their size.
 fn table(info: &Info<'_>, elements: &[String]) -> String {
-    let short = |digits: &str| match digits.parse() {
-        Ok(number) if digits.len() <= 18 => text::grouped(&number),
-        _ => format!("{}.{}e{}", &digits[..1], &digits[1..4], digits.len() - 1),
+    let short = |digits: &str| {
+        digits
+            .parse()
+            .map_or_else(|_| digits.into(), |number| text::grouped(&number))
     };
     let mut rows = vec![["step", "elements", "fertile", "fractals", "length"].map(String::from)];
     for step in 0..elements.len() {

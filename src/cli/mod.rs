@@ -7,6 +7,7 @@ mod info;
 mod list;
 mod output;
 mod rule;
+mod steps;
 mod stop;
 mod text;
 
@@ -95,7 +96,10 @@ pub fn run() -> ExitCode {
             };
         }
     };
-    let catalogue = rule::catalogue(&arguments.library);
+    let catalogue = match rule::catalogue(&arguments.library) {
+        Ok(catalogue) => catalogue,
+        Err(failure) => return report(&failure),
+    };
     let result = match &arguments.command {
         Command::Grow(arguments) => grow::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),

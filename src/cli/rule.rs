@@ -7,16 +7,21 @@ use std::sync::Arc;
 use etcetera::BaseStrategy;
 
 use crate::catalogue::Catalogue;
-use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+use crate::diagnostic::{Diagnostic, Severity, Source, did_you_mean};
 use crate::document::{Document, Setting};
 use crate::expression::{Expression, Scope};
+use crate::graph::Graph;
 use crate::rule::Rule;
 
 use super::{Failure, text};
 
 /// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
-/// and of the embedded library, in this order.
-pub(super) fn catalogue(given: &[PathBuf]) -> Catalogue {
+/// and of the embedded library, in this order. Only those that were given must be there.
+pub(super) fn catalogue(given: &[PathBuf]) -> Result<Catalogue, Failure> {
+    if let Some(missing) = given.iter().find(|folder| !folder.is_dir()) {
+        let message = format!("--library: there is no folder '{}'", missing.display());
+        return Err(Failure::Usage(message));
+    }
     let mut folders = given.to_vec();
     if let Some(path) = std::env::var_os("KFRAC_LIBRARY") {
         folders.extend(std::env::split_paths(&path).filter(|path| path != Path::new("")));
@@ -24,7 +29,7 @@ pub(super) fn catalogue(given: &[PathBuf]) -> Catalogue {
     if let Ok(strategy) = etcetera::choose_base_strategy() {
         folders.push(strategy.data_dir().join("kfrac"));
     }
-    Catalogue::with_folders(folders)
+    Ok(Catalogue::with_folders(folders))
 }
 
 /// A rule, and how its parameters are set.
@@ -63,6 +68,13 @@ pub(super) struct Loaded {
     pub(super) rule: Arc<Rule>,
 }
 
+impl Loaded {
+    /// The rule's graph, resolved for a number of steps.
+    pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
+        Graph::compile(&self.rule, steps).map_err(|error| error.diagnostic(&self.rule).into())
+    }
+}
+
 /// Standard input, to the most that a rule file may have.
 fn standard_input() -> Result<Arc<Source>, Failure> {
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
@@ -81,12 +93,17 @@ pub(super) fn open(argument: &str, catalogue: &Catalogue) -> Result<Arc<Source>,
 
 /// The name of a rule, without folder and extension.
 pub(super) fn name_of(argument: &str) -> String {
-    let stem = Path::new(argument)
-        .file_stem()
-        .and_then(|stem| stem.to_str());
-    match stem {
+    let file = Path::new(argument)
+        .file_name()
+        .and_then(|file| file.to_str());
+    match file {
         Some("-") | None => "stdin".into(),
-        Some(stem) => stem.into(),
+        Some(file) => {
+            let stem = [".yaml", ".yml", ".json"]
+                .into_iter()
+                .find_map(|extension| file.strip_suffix(extension));
+            stem.filter(|stem| !stem.is_empty()).unwrap_or(file).into()
+        }
     }
 }
 
@@ -138,7 +155,10 @@ impl RuleArguments {
         match document.resolve(&others) {
             // The file is right with its own values, so it is this one that is not.
             Err(diagnostics) if unset.is_ok() => {
-                let said: Vec<_> = diagnostics.iter().map(Diagnostic::message).collect();
+                let errors = diagnostics
+                    .iter()
+                    .filter(|diagnostic| diagnostic.severity() == Severity::Error);
+                let said: Vec<_> = errors.map(Diagnostic::message).collect();
                 let message = format!(
                     "--set {}={}: {}",
                     setting.name,
@@ -148,6 +168,27 @@ impl RuleArguments {
                 Err(Failure::Usage(message))
             }
             _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::name_of;
+
+    #[test]
+    fn a_name_has_no_folder_and_no_extension_of_a_rule_file() {
+        for (argument, name) in [
+            ("koch", "koch"),
+            ("rules/koch.yaml", "koch"),
+            ("koch.yml", "koch"),
+            ("koch.json", "koch"),
+            ("my.rule", "my.rule"),
+            ("my.rule.yaml", "my.rule"),
+            (".yaml", ".yaml"),
+            ("-", "stdin"),
+        ] {
+            assert_eq!(name_of(argument), name);
         }
     }
 }

@@ -19,9 +19,13 @@ pub(super) fn say(line: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 
-/// A whole number with commas between thousands.
+/// A whole number with commas between thousands; a very long one by its first digits and its size.
 pub(super) fn grouped(number: &BigUint) -> String {
+    const LONG: usize = 60;
     let digits = number.to_string();
+    if digits.len() > LONG {
+        return format!("{}.{}e{}", &digits[..1], &digits[1..4], digits.len() - 1);
+    }
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (index, digit) in digits.chars().enumerate() {
         if index > 0 && (digits.len() - index).is_multiple_of(3) {

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::catalogue::{Catalogue, Shelf};
+use crate::catalogue::{Catalogue, Shelf, is_same_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, nearest};
 
-use super::merge::{Entries, merge};
+use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, RULE};
 
@@ -22,11 +22,13 @@ pub(super) fn assemble(
     let mut assembly = Assembly {
         catalogue,
         diagnostics,
+        chain: vec![Arc::clone(source)],
+        parameters: Vec::new(),
         components: Vec::new(),
-        known: Vec::new(),
+        generation: 0,
         complete: true,
     };
-    let (place, mut entries) = assembly.extended(source, &mut vec![Arc::clone(source)])?;
+    let (place, mut entries) = assembly.extended(source)?;
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
     let complete = assembly.complete;
@@ -37,12 +39,29 @@ pub(super) fn assemble(
 struct Assembly<'a> {
     catalogue: &'a Catalogue,
     diagnostics: &'a mut Diagnostics,
-    /// The parameters of the components that have been put in, with the file they come from.
-    components: Vec<(Arc<Source>, Entries)>,
+    /// The rule, its parent, and so on. A rule's number in it is its generation.
+    chain: Vec<Arc<Source>>,
+    /// The parameters that the rules have of their own, with the generation.
+    parameters: Vec<(usize, Key)>,
     /// The components that have been looked for.
-    known: Vec<(Shelf, String, Option<Node>)>,
+    components: Vec<Component>,
+    /// The generation of the rule whose components are being put in.
+    generation: usize,
     /// Whether everything that is named has been found.
     complete: bool,
+}
+
+/// A component that a rule names.
+struct Component {
+    shelf: Shelf,
+    name: String,
+    /// Where it is named.
+    place: Place,
+    /// The generation of the rule that names it; of the oldest, if several do.
+    generation: usize,
+    /// What it stands for, without its parameters; `None` if it was not found.
+    node: Option<Node>,
+    parameters: Entries,
 }
 
 impl Assembly<'_> {
@@ -77,6 +96,11 @@ impl Assembly<'_> {
         let mut known = Vec::new();
         for (name, (mut key, value)) in meant.into_iter().zip(entries) {
             if let Some(name) = name {
+                if let ("params", Value::Mapping(params)) = (name, &value.value) {
+                    let generation = self.chain.len() - 1;
+                    let keys = params.iter().map(|(key, _)| (generation, key.clone()));
+                    self.parameters.extend(keys);
+                }
                 key.name = name.into();
                 known.push((key, value));
             } else if matches!(value.value, Value::Mapping(_)) {
@@ -87,17 +111,13 @@ impl Assembly<'_> {
     }
 
     /// A rule with its parents' keys where it names none of its own.
-    fn extended(
-        &mut self,
-        source: &Arc<Source>,
-        chain: &mut Vec<Arc<Source>>,
-    ) -> Option<(Place, Entries)> {
+    fn extended(&mut self, source: &Arc<Source>) -> Option<(Place, Entries)> {
         let (place, mut entries) = self.entries(source)?;
         let Some(index) = entries.iter().position(|(key, _)| key.name == "extends") else {
             return Some((place, entries));
         };
         let (_, parent) = entries.remove(index);
-        let parents = self.parent(&parent, chain).unwrap_or_else(|| {
+        let parents = self.parent(&parent).unwrap_or_else(|| {
             self.complete = false;
             harmless_parent(&parent.place)
         });
@@ -106,7 +126,7 @@ impl Assembly<'_> {
     }
 
     /// The entries of the rule that a node names.
-    fn parent(&mut self, parent: &Node, chain: &mut Vec<Arc<Source>>) -> Option<Entries> {
+    fn parent(&mut self, parent: &Node) -> Option<Entries> {
         let Value::Text(name) = &parent.value else {
             let message = format!(
                 "the name of a rule is needed here, this is {}",
@@ -115,35 +135,34 @@ impl Assembly<'_> {
             self.error(&parent.place, message, "extends: koch");
             return None;
         };
-        let found = match self.catalogue.rule(name) {
+        let found = match self.catalogue.parent(name, &self.chain) {
             Ok(found) => found,
             Err(error) => {
                 self.diagnostics.push(error.at(&parent.place));
                 return None;
             }
         };
-        let in_chain = chain
-            .iter()
-            .any(|source| source.name() == found.name() && source.text() == found.text());
-        if in_chain {
-            let names = chain.iter().map(|source| source.name());
+        if self.chain.iter().any(|source| is_same_file(source, &found)) {
+            let names = self.chain.iter().map(|source| source.name());
             let names: Vec<_> = names.chain([found.name()]).collect();
             let hint = format!("each extends the next: {}", names.join(", "));
             self.error(&parent.place, format!("'{name}' extends itself"), &hint);
             return None;
         }
-        if chain.len() > MOST_PARENTS {
+        if self.chain.len() > MOST_PARENTS {
             let message = format!("more than {MOST_PARENTS} rules extend each other");
             self.error(&parent.place, message, "write the rule out");
             return None;
         }
-        chain.push(Arc::clone(&found));
-        Some(self.extended(&found, chain)?.1)
+        self.chain.push(Arc::clone(&found));
+        Some(self.extended(&found)?.1)
     }
 
     /// Replaces the names of components by what they stand for.
     fn inline(&mut self, entries: &mut Entries) {
         for (key, node) in entries {
+            let written_in = |rule: &Arc<Source>| Arc::ptr_eq(rule, key.place.source());
+            self.generation = self.chain.iter().position(written_in).unwrap_or(0);
             match key.name.as_str() {
                 "initiator" => {
                     self.component(node, Shelf::Initiators);
@@ -214,15 +233,27 @@ impl Assembly<'_> {
         let Value::Text(name) = &node.value else {
             return;
         };
+        let generation = self.generation;
         let known = self
-            .known
-            .iter()
-            .find(|(at, known, _)| *at == shelf && known == name);
+            .components
+            .iter_mut()
+            .find(|known| known.shelf == shelf && known.name == *name);
         let component = match known {
-            Some((.., component)) => component.clone(),
+            Some(known) => {
+                known.generation = known.generation.max(generation);
+                known.node.clone()
+            }
             None => {
-                let component = self.find(name, shelf, &node.place);
-                self.known.push((shelf, name.clone(), component.clone()));
+                let found = self.find(name, shelf, &node.place);
+                let (component, parameters) = found.unzip();
+                self.components.push(Component {
+                    shelf,
+                    name: name.clone(),
+                    place: node.place.clone(),
+                    generation,
+                    node: component.clone(),
+                    parameters: parameters.unwrap_or_default(),
+                });
                 component
             }
         };
@@ -232,8 +263,8 @@ impl Assembly<'_> {
         });
     }
 
-    /// A component by name, without its description and its parameters.
-    fn find(&mut self, name: &str, shelf: Shelf, place: &Place) -> Option<Node> {
+    /// A component by name, without its description, and its parameters.
+    fn find(&mut self, name: &str, shelf: Shelf, place: &Place) -> Option<(Node, Entries)> {
         let source = match self.catalogue.component(shelf, name) {
             Ok(source) => source,
             Err(error) => {
@@ -242,10 +273,11 @@ impl Assembly<'_> {
             }
         };
         let mut component = self.parse(&source)?;
+        let mut parameters = Vec::new();
         match &mut component.value {
             Value::Mapping(entries) => {
                 if let Some(index) = entries.iter().position(|(key, _)| key.name == "params") {
-                    self.take_parameters(source, entries.remove(index).1);
+                    parameters = self.component_parameters(entries.remove(index).1);
                 }
                 entries.retain(|(key, _)| !DESCRIPTION.contains(&key.name.as_str()));
             }
@@ -257,30 +289,33 @@ impl Assembly<'_> {
                 return None;
             }
         }
-        Some(component)
+        Some((component, parameters))
     }
 
-    fn take_parameters(&mut self, source: Arc<Source>, params: Node) {
+    fn component_parameters(&mut self, params: Node) -> Entries {
         let kind = params.kind();
         if let Value::Mapping(params) = params.value {
-            self.components.push((source, params));
-        } else {
-            self.complete = false;
-            let message = format!("a mapping of parameters is needed here, this is {kind}");
-            self.error(&params.place, message, "params: {angle: 45}");
+            return params;
         }
+        self.complete = false;
+        let message = format!("a mapping of parameters is needed here, this is {kind}");
+        self.error(&params.place, message, "params: {angle: 45}");
+        Vec::new()
     }
 
     /// Lets the components' parameters join the rule's.
     fn hoist_parameters(&mut self, entries: &mut Entries) {
-        let mut joined: Vec<(Arc<Source>, Key, Node)> = Vec::new();
-        for (source, params) in std::mem::take(&mut self.components) {
-            for (key, node) in params {
-                match joined.iter().find(|(_, known, _)| known.name == key.name) {
+        let mut joined = Entries::new();
+        for component in std::mem::take(&mut self.components) {
+            for (key, node) in component.parameters {
+                match joined.iter().find(|(known, _)| known.name == key.name) {
                     // A component that is used twice has its parameters once.
-                    Some((known, ..)) if known.name() == source.name() => {}
-                    Some((_, other, _)) => self.collision(&key, &other.place),
-                    None => joined.push((Arc::clone(&source), key, node)),
+                    Some((known, _)) if known.place == key.place => {}
+                    Some((other, _)) => self.collision(&component.place, &key, Some(other)),
+                    None if self.is_free(&key, component.generation, &component.place) => {
+                        joined.push((key, node));
+                    }
+                    None => {}
                 }
             }
         }
@@ -315,19 +350,39 @@ impl Assembly<'_> {
         let Value::Mapping(own) = &mut params.value else {
             return;
         };
-        for (_, key, node) in joined {
-            match own.iter().find(|(known, _)| known.name == key.name) {
-                Some((known, _)) => self.collision(known, &key.place),
-                None => own.push((key, node)),
-            }
-        }
+        merge_entries(own, joined, true);
     }
 
-    fn collision(&mut self, key: &Key, other: &Place) {
+    /// Whether no rule has a parameter of its own that collides with one of a component.
+    ///
+    /// A rule sets the parameters that its parents have from their components; a rule that names a
+    /// component, and the parents of that rule, cannot have one of the same name.
+    fn is_free(&mut self, key: &Key, generation: usize, named: &Place) -> bool {
+        let other = self
+            .parameters
+            .iter()
+            .find(|(of, other)| *of >= generation && other.name == key.name);
+        let Some((of, other)) = other.cloned() else {
+            return true;
+        };
+        if of == generation {
+            self.collision(&other.place, key, None);
+        } else {
+            self.collision(named, key, Some(&other));
+        }
+        false
+    }
+
+    /// Reports, in the line that brings it in, a parameter that a component has and something else
+    /// has too: that line, or another file.
+    fn collision(&mut self, place: &Place, key: &Key, other: Option<&Key>) {
+        let at = |key: &Key| format!("{}, line {}", key.place.source().name(), key.place.line());
+        let hint = match other {
+            None => format!("the other is in {}: rename one of them", at(key)),
+            Some(other) => format!("in {}, and in {}: rename one of them", at(other), at(key)),
+        };
         let message = format!("the rule has two parameters named '{}'", key.name);
-        let (name, line) = (other.source().name(), other.line());
-        let hint = format!("the other is in {name}, line {line}: rename one of them");
-        self.error(&key.place, message, &hint);
+        self.error(place, message, &hint);
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn merge(own: &mut Entries, parents: Entries) {
 }
 
 /// Merges entry by entry; a parameter's value replaces the parent's and keeps its limits.
-fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
+pub(super) fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
     for (key, inherited) in parents {
         match own.iter_mut().find(|(known, _)| known.name == key.name) {
             None => own.push((key, inherited)),

@@ -52,7 +52,7 @@ pub struct Point {
 
 impl Point {
     /// Stands in for a point that could not be read.
-    fn unknown(place: &Place) -> Self {
+    pub(crate) fn unknown(place: &Place) -> Self {
         let unknown = || Written {
             value: Expression::unknown(),
             place: place.clone(),

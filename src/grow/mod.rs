@@ -5,8 +5,10 @@
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds.
 
 mod descent;
+mod extent;
 mod walk;
 
+pub use extent::extent;
 pub use walk::{Growth, Walked, walk};
 
 use crate::geometry::Frame;

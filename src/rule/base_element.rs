@@ -58,7 +58,12 @@ impl BaseElement {
         if closed && end != start {
             pieces.push(Piece::Line(start));
         }
-        if !closed && end == start || pieces.iter().all(|piece| piece.end() == start) {
+        let stays = |piece: &Piece| match *piece {
+            Piece::Line(end) => end == start,
+            // A loop has an extent, though it ends where it starts.
+            Piece::Cubic(a, b, end) => [a, b, end] == [start; 3],
+        };
+        if !closed && end == start || pieces.iter().all(stays) {
             return None;
         }
         let finite = |piece: &Piece| match piece {

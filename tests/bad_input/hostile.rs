@@ -126,18 +126,11 @@ fn long_lists_are_read_or_refused_soon() {
         kfrac(folder.path(), &["check", "many.yaml"]).status,
         Some(0)
     );
-    let keys: String = (0..100_000).map(|i| format!("k{i}: 0\n")).collect();
+    let keys: String = (0..10_000).map(|i| format!("k{i}: 0\n")).collect();
     refused((KOCH.to_owned() + &keys).as_bytes(), "more");
     let params: String = (0..20_000).map(|i| format!("  a{i}: {i}\n")).collect();
     let params = format!("{KOCH}params:\n{params}  last: a1 + missing\n");
     refused(params.as_bytes(), "unknown name 'missing'");
-    let named: String = (0..20_000)
-        .map(|i| format!("  g{i}: [[0, 0], [1, 0]]\n"))
-        .collect();
-    let select = "nothing, ".repeat(50_000);
-    let named =
-        format!("initiator: segment\ngenerators:\n{named}select: {{by_index: [{select}]}}\n");
-    refused(named.as_bytes(), "there is no generator 'nothing'");
     let line = "x".repeat(3 << 20);
     refused(
         format!("{KOCH}title: Koch\n{line}: 3\n").as_bytes(),
@@ -150,16 +143,30 @@ fn long_lists_are_read_or_refused_soon() {
 }
 
 #[test]
+fn names_are_compared_with_few_others() {
+    // Mistakes beyond the most that are looked for, then generators beyond the most that are near.
+    for (generators, uses) in [(100, 50_000), (5_000, 20)] {
+        let named: String = (0..generators)
+            .map(|i| format!("  g{i}: [[0, 0], [1/2, 0]]\n"))
+            .collect();
+        let select = "nothing, ".repeat(uses);
+        let text =
+            format!("initiator: segment\ngenerators:\n{named}select: {{by_index: [{select}]}}\n");
+        refused(text.as_bytes(), "there is no generator 'nothing'");
+    }
+}
+
+#[test]
 fn of_many_mistakes_the_first_are_said() {
-    let wrong = format!("{KOCH}generators:\n  a:\n{}", "  - [1]\n".repeat(50_000));
+    let wrong = format!("{KOCH}generators:\n  a:\n{}", "  - [1]\n".repeat(20_000));
     refused(wrong.as_bytes(), "more");
     let wrong = format!(
         "initiator: segment\ngenerator:\n{}",
-        "- [x, y]\n".repeat(30_000)
+        "- [x, y]\n".repeat(20_000)
     );
     refused(wrong.as_bytes(), "\nand 900 more");
-    let wrong = format!("{KOCH}tags: [{}]\n", "max(1, 2), ".repeat(50_000));
-    refused(wrong.as_bytes(), "\nand 49900 more");
+    let wrong = format!("{KOCH}tags: [{}]\n", "max(1, 2), ".repeat(20_000));
+    refused(wrong.as_bytes(), "\nand 19900 more");
 }
 
 #[test]
@@ -217,6 +224,28 @@ fn a_wrong_setting_is_a_wrong_command_line() {
     let outcome = kfrac(folder.path(), &["grow", "pythagoras", "--set", &huge]);
     assert_eq!(outcome.status, Some(2));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn of_a_setting_only_errors_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "params: {a: {value: 1, max: 2}}\ninitiator: segment\ngenerator: [[0, 0], [2, 0]]\n";
+    fs::write(folder.path().join("long.yaml"), long).unwrap();
+    let outcome = kfrac(folder.path(), &["grow", "long.yaml", "--set", "a=3"]);
+    assert_eq!(outcome.status, Some(2));
+    let said = "error: --set a=3: 'a' is 3, above its largest value 2\n";
+    assert_eq!(outcome.said, said);
+}
+
+#[test]
+fn a_library_that_is_given_must_be_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = kfrac(folder.path(), &["--library", "lib", "list"]);
+    assert_eq!(outcome.status, Some(2));
+    assert_eq!(outcome.said, "error: --library: there is no folder 'lib'\n");
+    fs::create_dir(folder.path().join("lib")).unwrap();
+    let outcome = kfrac(folder.path(), &["--library", "lib", "check", "koch.yml"]);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.said);
 }
 
 #[test]

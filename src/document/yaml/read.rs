@@ -105,7 +105,14 @@ impl Reader<'_> {
     fn event(&mut self, event: Event<'_>, span: &Span) -> Result<(), Diagnostic> {
         let range = span.byte_range().unwrap_or_default();
         if let (Some(tag), Some(token)) = (event.tag(), span.tag_span()) {
-            let place = self.place(token.byte_range().unwrap_or_else(|| range.clone()));
+            let token = token.byte_range().unwrap_or_else(|| range.clone());
+            if matches!(event, Event::Scalar(_, ScalarStyle::Plain, ..)) && self.awaits_condition()
+            {
+                let end = range.end.max(token.end);
+                let place = self.place(self.without_trailing_space(token.start..end));
+                return self.negation(place);
+            }
+            let place = self.place(token);
             self.found.push(trouble::tag(&tag.original(), &place));
         }
         match event {
@@ -166,6 +173,14 @@ impl Reader<'_> {
         }
         self.anchor(anchor, &node)?;
         self.value(node, plain)
+    }
+
+    /// A condition such as `!odd(i)`, whose '!' YAML reads as a tag.
+    fn negation(&mut self, place: Place) -> Result<(), Diagnostic> {
+        self.last_scalar = place.range();
+        self.found.push(trouble::negation(&place));
+        let value = Value::Text(place.text().to_owned());
+        self.value(Node { place, value }, true)
     }
 
     fn start(
@@ -256,6 +271,11 @@ impl Reader<'_> {
         self.open
             .last()
             .is_some_and(|collection| collection.mapping && matches!(collection.key, Pending::None))
+    }
+
+    fn awaits_condition(&self) -> bool {
+        let key = self.open.last().map(|collection| &collection.key);
+        matches!(key, Some(Pending::Key { key, .. }) if key.name == "when")
     }
 
     /// Takes the key of the next entry; none if what stands there cannot be one.

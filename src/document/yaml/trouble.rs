@@ -58,6 +58,17 @@ pub(super) fn tag(tag: &str, place: &Place) -> Diagnostic {
     .hint("leave it out, or put text that starts with '!' in quotes")
 }
 
+/// A condition that begins with a '!'.
+pub(super) fn negation(place: &Place) -> Diagnostic {
+    let text = place.text();
+    let condition = super::repair::short(text.strip_prefix('!').unwrap_or(text).trim_start());
+    Diagnostic::error("YAML reads a '!' at the beginning as a tag")
+        .at(place)
+        .hint(format!(
+            "write not {condition}, or quote it: \"!{condition}\""
+        ))
+}
+
 /// An alias in what it stands for.
 pub(super) fn alias_inside_itself(place: &Place) -> Diagnostic {
     Diagnostic::error(format!(
@@ -163,10 +174,15 @@ pub(super) fn translate(
             "start it on the next line, or write it as [a, b]; text that starts with '- ' needs \
              quotes",
         ),
-        ErrorKind::UnexpectedCharacter { character } => (
-            format!("text cannot start with '{character}'"),
-            "put the text in quotes",
-        ),
+        ErrorKind::UnexpectedCharacter { character } => {
+            if let Some(condition) = cut_negation(source, at) {
+                return negation(&condition);
+            }
+            (
+                format!("text cannot start with '{character}'"),
+                "put the text in quotes",
+            )
+        }
         ErrorKind::SimpleKeyExpected | ErrorKind::InvalidSimpleKey => (
             "this line has no ':'".into(),
             "a key ends with ': ' on its own line",
@@ -194,6 +210,19 @@ pub(super) fn translate(
         ),
     };
     Diagnostic::error(message).at(&place).hint(hint)
+}
+
+/// A condition such as `!(i % 2 == 0)`, where what follows the "tag" cannot be read either.
+fn cut_negation(source: &Arc<Source>, at: usize) -> Option<Place> {
+    let before = source.text().get(..at)?;
+    let line = before.rfind(['\n', '\r']).map_or(0, |end| end + 1);
+    let start = line + before[line..].rfind("when: !")? + "when: ".len();
+    let rest = source.text()[start..].lines().next()?;
+    let end = rest.find([',', '}']).unwrap_or(rest.len());
+    Some(Place::new(
+        source,
+        start..start + rest[..end].trim_end().len(),
+    ))
 }
 
 const COMMENT_HINT: &str =

@@ -91,10 +91,15 @@ impl Resolver {
             }
             from = outline.last().map_or(from, Piece::end);
         }
+        // A straight last side is drawn by `closed: true`, a round one is written.
+        let round = !matches!(document.pieces.last(), Some(PieceDocument::Line(_)));
         if from == start
+            && !(document.closed && round)
             && let Some(last) = document.pieces.last()
         {
-            let hint = if outline.len() == 1 {
+            let hint = if round {
+                "write `closed: true`"
+            } else if outline.len() == 1 {
                 "a base element needs an extent: points: [[0, 0], [1, 0]]"
             } else if document.closed {
                 "leave out the last point: `closed: true` goes back to the first"

@@ -55,7 +55,7 @@ impl Resolver {
                 }
                 (None, Some(last)) => last,
                 // The reader has said that the list does not say where it starts.
-                (None, None) => add(points, to),
+                (None, None) => add(points, &Point::unknown(&to.place)),
             };
             if first.is_none() {
                 first = Some(ListedPoint {

@@ -87,6 +87,10 @@ impl Resolver {
             })
             .collect();
         self.doubt_growth(&parts, &points, &written);
+        // Where points are moved, what is written on one place need not stay there.
+        if document.moves.is_empty() {
+            self.doubt_length(&parts, &points, &written);
+        }
         Generator {
             origin: Origin {
                 name: name.place.clone(),
@@ -103,12 +107,22 @@ impl Resolver {
         }
     }
 
+    /// Warns of elements that end where they start.
+    fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
+        for element in parts.iter().flat_map(|part| &part.elements) {
+            let from = constant_point(&points[element.from]);
+            if from.is_some() && from == constant_point(&points[element.to]) {
+                let warning = Diagnostic::warning("this element has no length")
+                    .at(&written[element.to].place)
+                    .hint("it ends where it starts");
+                self.diagnostics.push(warning);
+            }
+        }
+    }
+
     /// Warns of fertile elements that are not shorter than what they replace.
     fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
-        let value = |number: usize| {
-            let [x, y] = &points[number];
-            Some(DVec2::new(x.as_constant()?, y.as_constant()?))
-        };
+        let value = |number: usize| constant_point(&points[number]);
         let relative = parts
             .iter()
             .filter(|part| part.placement != Placement::SeedsAsInitiator);
@@ -137,6 +151,10 @@ impl Resolver {
             }
         }
     }
+}
+
+fn constant_point([x, y]: &[Program; 2]) -> Option<DVec2> {
+    Some(DVec2::new(x.as_constant()?, y.as_constant()?))
 }
 
 /// Whether a point is written as these very numbers.

@@ -1,0 +1,175 @@
+//! How a picture is to be drawn: what the command line says, over what the rule says.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+use crate::render::Size;
+use crate::rule::Rule;
+use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Width};
+
+/// Options of pictures.
+#[derive(clap::Args)]
+pub(crate) struct PictureArguments {
+    /// The picture's long side in pixels, or WIDTHxHEIGHT
+    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = size)]
+    pub(crate) size: Size,
+    /// A window in the rule's units: lower left corner, width, height
+    #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
+    view: Option<[f64; 4]>,
+    /// The colour of strokes, as CSS writes it
+    #[arg(long, value_name = "COLOR", value_parser = colour)]
+    stroke: Option<Colour>,
+    /// The width of strokes in pixels, or, with a % sign, relative to the element
+    #[arg(long, value_name = "W", value_parser = width)]
+    stroke_width: Option<Width>,
+    /// The colour of areas
+    #[arg(long, value_name = "COLOR", value_parser = colour)]
+    fill: Option<Colour>,
+    /// The ends of lines
+    #[arg(long, value_parser = named::<Cap>())]
+    cap: Option<Cap>,
+    /// The corners of lines
+    #[arg(long, value_parser = named::<Join>())]
+    join: Option<Join>,
+    /// Pixels left free around the picture
+    #[arg(long, value_name = "PX", value_parser = length)]
+    margin: Option<f64>,
+    /// The colour behind the picture
+    #[arg(long, value_name = "COLOR", value_parser = colour)]
+    background: Option<Colour>,
+    /// What colours tell
+    #[arg(long, value_parser = named::<ColorBy>())]
+    color_by: Option<ColorBy>,
+    /// The colours
+    #[arg(long, value_name = "NAME", value_parser = palette())]
+    palette: Option<Palette>,
+}
+
+impl PictureArguments {
+    /// The rule's style with what is asked for.
+    pub(crate) fn style(&self, rule: &Rule) -> Style {
+        let own = rule.style();
+        Style {
+            stroke: self.stroke.or(own.stroke),
+            width: self.stroke_width.unwrap_or(own.width),
+            cap: self.cap.unwrap_or(own.cap),
+            join: self.join.unwrap_or(own.join),
+            fill: self.fill.or(own.fill),
+            background: self.background.or(own.background),
+            color_by: match self.color_by {
+                Some(color_by) => color_by,
+                // A colour that is asked for is not covered by a palette that is not.
+                None if self.stroke.is_some() || self.fill.is_some() => ColorBy::None,
+                None => own.color_by,
+            },
+            palette: self.palette.clone().unwrap_or_else(|| own.palette.clone()),
+        }
+    }
+
+    /// The rule's view with what is asked for.
+    pub(crate) fn view(&self, rule: &Rule) -> View {
+        View {
+            window: self.view.or(rule.view().window),
+            margin: self.margin.unwrap_or(rule.view().margin),
+        }
+    }
+
+    /// The options as the command line has them, each with its value.
+    pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
+        let mut options = Vec::new();
+        let mut option = |name: &'static str, value: Option<String>| {
+            options.extend(value.map(|value| (name, value)));
+        };
+        let colour = |colour: Option<Colour>| colour.map(|colour| format!("{colour:#}"));
+        option(
+            "size",
+            Some(match self.size {
+                Size::Long(side) => side.to_string(),
+                Size::Exactly(width, height) => format!("{width}x{height}"),
+            }),
+        );
+        option(
+            "view",
+            self.view
+                .map(|view| view.map(|number| number.to_string()).join(",")),
+        );
+        option("stroke", colour(self.stroke));
+        option(
+            "stroke-width",
+            self.stroke_width.map(|width| match width {
+                Width::Pixels(width) => width.to_string(),
+                Width::Relative(width) => format!("{}%", width * 100.0),
+            }),
+        );
+        option("fill", colour(self.fill));
+        option("cap", self.cap.map(|cap| cap.name().into()));
+        option("join", self.join.map(|join| join.name().into()));
+        option("margin", self.margin.map(|margin| margin.to_string()));
+        option("background", colour(self.background));
+        option("color-by", self.color_by.map(|by| by.name().into()));
+        option(
+            "palette",
+            self.palette.as_ref().map(|palette| palette.name().into()),
+        );
+        options
+    }
+}
+
+const MOST_PIXELS: u32 = 1_000_000;
+
+fn size(text: &str) -> Result<Size, String> {
+    let side = |text: &str| match text.parse::<u32>() {
+        Ok(side) if (1..=MOST_PIXELS).contains(&side) => Ok(side),
+        _ => Err(format!(
+            "a side is a whole number of pixels from 1 to {MOST_PIXELS}"
+        )),
+    };
+    match text.split_once('x') {
+        Some((width, height)) => Ok(Size::Exactly(side(width)?, side(height)?)),
+        None => Ok(Size::Long(side(text)?)),
+    }
+}
+
+fn window(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|number| number.trim().parse())
+        .collect();
+    match numbers.map(<[f64; 4]>::try_from) {
+        Ok(Ok(window))
+            if window.iter().all(|number| number.is_finite())
+                && window[2] > 0.0
+                && window[3] > 0.0 =>
+        {
+            Ok(window)
+        }
+        _ => Err("a window is X,Y,W,H: lower left corner, width and height above 0".into()),
+    }
+}
+
+fn colour(text: &str) -> Result<Colour, String> {
+    Colour::parse(text)
+        .ok_or_else(|| "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161)".into())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
+        _ => Err("this is a number that is not negative".into()),
+    }
+}
+
+fn width(text: &str) -> Result<Width, String> {
+    match text.strip_suffix('%') {
+        Some(percent) => Ok(Width::Relative(length(percent)? / 100.0)),
+        None => Ok(Width::Pixels(length(text)?)),
+    }
+}
+
+fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name))
+        .try_map(|name| T::from_name(&name).ok_or("unknown"))
+}
+
+fn palette() -> impl TypedValueParser<Value = Palette> {
+    PossibleValuesParser::new(Palette::names()).try_map(|name| Palette::named(&name))
+}

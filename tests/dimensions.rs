@@ -1,0 +1,90 @@
+//! Similarity dimensions of graphs with several objects, against what can be worked out by hand.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use kfrac::graph::Graph;
+use kfrac::measure::{Similarity, similarity_dimension};
+
+fn dimension(text: &str) -> Similarity {
+    let document = common::document_of(text);
+    let (rule, _) = document.resolve(&[]).unwrap();
+    similarity_dimension(&Graph::compile(&std::sync::Arc::new(rule), 3).unwrap())
+}
+
+fn value(text: &str) -> f64 {
+    dimension(text).value.unwrap()
+}
+
+#[test]
+fn what_leads_nowhere_does_not_count() {
+    let text = "initiator: segment\ngenerators:\n  grow: [[0, 0], [1/3, 0], {from: [1/3, 0], to: [2/3, 0]}, \
+                {to: [1, 0], use: leaf}]\n  leaf: [[0, 0], {to: [1, 0], fertile: false}]\nselect: [{use: grow}]\n";
+    assert!((value(text) - 2f64.ln() / 3f64.ln()).abs() < 1e-12);
+    let dead = "initiator: segment\ngenerators:\n  a: [[0, 0], {to: [0.2, 0], use: b}, {to: [0.7, 0], use: b}]\n  \
+                b: [[0, 0], {to: [1/2, 0], fertile: false}]\nselect: [{use: a}]\n";
+    assert_eq!(dimension(dead).note.unwrap(), "nothing stays fertile");
+}
+
+#[test]
+fn the_largest_part_decides_also_where_parts_are_alike() {
+    // Two parts of dimension 1, one leading to the other.
+    let alike = "initiator: segment\ngenerators:\n  a: [[0, 0], [1/2, 0], [1, 0], {from: [0, 0], to: [0, 1/3], \
+                 use: b}]\n  b: [[0, 0], {to: [1/2, 0], use: b}, {to: [1, 0], use: b}]\nselect: [{use: a}]\n";
+    assert!((value(alike) - 1.0).abs() < 1e-12);
+    let points = "initiator: segment\ngenerators:\n  a: [[0, 0], [1/2, 0], {to: [1, 0], use: b}]\n  \
+                  b: [[0, 0], {to: [1/2, 0], use: b}]\nselect: [{use: a}]\n";
+    assert_eq!(value(points), 0.0);
+}
+
+/// The root of det(I − M(D)) = 0 for a 2 × 2 matrix, by bisection on its largest eigenvalue.
+#[test]
+fn two_objects_have_the_root_of_their_determinant() {
+    let text = "initiator: segment\ngenerators:\n  a: [[0, 0], {to: [1/2, 1/5], use: b}, {to: [1, 0], use: a}]\n  \
+                b: [[0, 0], {to: [1/3, 0], use: b}, {to: [1/2, 0], use: a}, {to: [1, 0], use: b}]\n\
+                select: [{use: a}]\n";
+    let side = (0.25f64 + 0.04).sqrt();
+    let excess = |d: f64| {
+        let [[p, q], [r, s]] = [
+            [side.powf(d), side.powf(d)],
+            [
+                (1.0 / 6.0f64).powf(d),
+                (1.0 / 3.0f64).powf(d) + 0.5f64.powf(d),
+            ],
+        ];
+        (p + s) / 2.0 + (((p - s) / 2.0).powi(2) + q * r).sqrt() - 1.0
+    };
+    let (mut low, mut high) = (0.5, 3.0);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        if excess(middle) > 0.0 {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    assert!((value(text) - low).abs() < 1e-12, "{} {low}", value(text));
+}
+
+#[test]
+fn a_long_cycle_of_generators_is_one_object_after_another() {
+    // g0 makes three copies of a third, the 99 others hand on half of what they get.
+    let mut text =
+        String::from("initiator: {elements: [[0, 0], {to: [1, 0], use: g0}]}\ngenerators:\n");
+    text.push_str(
+        "  g0: [[0, 0], {to: [1/3, 0], use: g1}, {to: [2/3, 0], use: g1}, {to: [1, 0], use: g1}]\n",
+    );
+    for number in 1..100 {
+        text.push_str(&format!(
+            "  g{number}: [[0, 0], {{to: [1/2, 0], use: g{}}}]\n",
+            (number + 1) % 100
+        ));
+    }
+    let expected = 3f64.ln() / (3f64.ln() + 99.0 * 2f64.ln());
+    assert!(
+        (value(&text) - expected).abs() < 1e-12,
+        "{} {expected}",
+        value(&text)
+    );
+}
