@@ -3,88 +3,18 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use crate::diagnostic::Diagnostic;
 use crate::geometry::DVec2;
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, Chain, Graph, Object, Production, Replacement};
+use super::{Alternative, Chain, CompileError, Graph, Object, Production, Replacement};
 
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;
 
 /// A graph that is not asked for more steps is resolved further only up to this many objects.
 const SOON: usize = 4_096;
-
-/// A rule that cannot be grown.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CompileError {
-    /// A generator has a point that is not finite.
-    #[error(
-        "generator '{generator}' has a point that is not finite where i = {index}, age = {age}, \
-         step = {step}, length = {length}"
-    )]
-    NotFinite {
-        /// The generator's name.
-        generator: String,
-        /// The element's rank in its fractal (modulo m, where only that matters).
-        index: f64,
-        /// The age of its fractal.
-        age: f64,
-        /// The number of the approximant that was being replaced.
-        step: f64,
-        /// Its length relative to the initiator's.
-        length: f64,
-    },
-}
-
-impl CompileError {
-    pub(crate) fn not_finite(generator: &str, moment: &Moment) -> Self {
-        Self::NotFinite {
-            generator: generator.into(),
-            index: moment.index,
-            age: moment.age,
-            step: moment.step,
-            length: moment.length,
-        }
-    }
-
-    /// The error as a mistake in the file that the rule was read from.
-    #[must_use]
-    pub fn diagnostic(&self, rule: &Rule) -> Diagnostic {
-        let Self::NotFinite {
-            generator,
-            index,
-            age,
-            step,
-            length,
-        } = self;
-        let moment = Moment {
-            index: *index,
-            age: *age,
-            step: *step,
-            length: *length,
-        };
-        let diagnostic = Diagnostic::error(self.to_string());
-        let mut generators = rule.generators().iter();
-        let Some(generator) = generators.find(|known| known.name() == generator) else {
-            return diagnostic;
-        };
-        match generator.infinite_coordinate(&moment) {
-            Some((place, values)) => {
-                let values = values
-                    .iter()
-                    .map(|(name, value)| format!("{name} = {value}"));
-                let values = values.collect::<Vec<_>>().join(", ");
-                Diagnostic::error(format!("this is not finite where {values}"))
-                    .at(place)
-                    .hint("if(CONDITION, THIS, OTHERWISE) chooses between two values")
-            }
-            None => diagnostic.at(&generator.origin.name),
-        }
-    }
-}
 
 impl Graph {
     /// Compiles a rule to its graph, resolved for at least `steps` steps.

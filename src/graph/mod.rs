@@ -12,10 +12,11 @@
 
 mod bounds;
 mod compile;
+mod error;
 mod forecast;
 mod state;
 
-pub use compile::CompileError;
+pub use error::CompileError;
 pub use forecast::{Forecast, Level, TooLarge};
 
 use std::sync::Arc;

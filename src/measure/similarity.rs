@@ -2,6 +2,8 @@
 //! Σ ratio^D over the instances has spectral radius 1. For one object this is Moran's equation
 //! (Moran 1946), Σ ratio^D = 1.
 
+use std::collections::BTreeSet;
+
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
 
@@ -53,7 +55,8 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if parts.is_empty() {
         return Similarity::none("nothing stays fertile");
     }
-    let value = parts.iter().map(Part::dimension).fold(0.0, f64::max);
+    let parts = parts.into_iter().map(Part::contracted);
+    let value = parts.map(|part| part.dimension()).fold(0.0, f64::max);
     let note = (value == 0.0)
         .then(|| "the limit set of the fertile elements is made of single points".into());
     Similarity {
@@ -185,6 +188,35 @@ fn components(targets: &[Vec<usize>]) -> Vec<usize> {
 }
 
 impl Part {
+    /// The part without the objects that have one instance only: whoever instances such an object
+    /// instances what it leads to, by the product of the ratios. The D stays the same.
+    fn contracted(mut self) -> Self {
+        for object in 0..self.size {
+            let mut leaving = self.edges.iter().filter(|edge| edge.from == object);
+            let (Some(only), None) = (leaving.next(), leaving.next()) else {
+                continue;
+            };
+            let (to, ratio) = (only.to, only.ratio);
+            if to == object {
+                continue;
+            }
+            self.edges.retain(|edge| edge.from != object);
+            for edge in self.edges.iter_mut().filter(|edge| edge.to == object) {
+                edge.to = to;
+                edge.ratio *= ratio;
+            }
+        }
+        let left: BTreeSet<usize> = self.edges.iter().map(|edge| edge.from).collect();
+        let number = |object: usize| left.iter().position(|&known| known == object).unwrap_or(0);
+        for edge in &mut self.edges {
+            (edge.from, edge.to) = (number(edge.from), number(edge.to));
+        }
+        Self {
+            size: left.len(),
+            edges: self.edges,
+        }
+    }
+
     /// The D for which the part's matrix has spectral radius 1.
     fn dimension(&self) -> f64 {
         let moran = self.moran_ratios();
