@@ -1,6 +1,8 @@
 //! Parameters.
 
-use crate::document::{ParameterDocument, RuleDocument, Setting};
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::document::{Number, ParameterDocument, RuleDocument, Setting};
 use crate::expression::is_reserved;
 
 use super::super::{Moment, Parameter};
@@ -13,12 +15,20 @@ impl Resolver {
         document: &RuleDocument,
         settings: &[Setting],
     ) -> Vec<Parameter> {
-        // A value may be computed from the parameters before it.
         if !document.complete {
             self.constants.accept_any_name();
         }
-        let mut parameters: Vec<Parameter> = Vec::new();
-        for written in &document.params {
+        let count = document.params.len();
+        let mut parameters: Vec<Option<Parameter>> = vec![None; count];
+        let (order, cyclic) = order(&document.params);
+        for &index in &cyclic {
+            let ParameterDocument { name, value, .. } = &document.params[index];
+            let message = format!("the value of '{}' depends on itself", name.value);
+            self.error(&value.place, message);
+            self.constants.unknown_value(&name.value);
+        }
+        for index in order {
+            let written = &document.params[index];
             self.check_name(written);
             let name = &written.name.value;
             let set = settings.iter().rfind(|setting| setting.name == *name);
@@ -27,7 +37,7 @@ impl Resolver {
                 Some(value) => self.constants.constant(name, value),
                 None => self.constants.unknown_value(name),
             }
-            parameters.push(Parameter {
+            parameters[index] = Some(Parameter {
                 name: name.clone(),
                 value: parameter.value.unwrap_or(f64::NAN),
                 min: parameter.min,
@@ -35,7 +45,7 @@ impl Resolver {
                 about: written.about.clone(),
             });
         }
-        parameters
+        parameters.into_iter().flatten().collect()
     }
 
     fn check_name(&mut self, written: &ParameterDocument) {
@@ -75,6 +85,71 @@ impl Resolver {
         }
         Values { value, min, max }
     }
+}
+
+/// The numbers of the parameters in an order in which each comes after those that its value and
+/// limits are computed from, and those that are computed from themselves.
+fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
+    let names = params.iter().enumerate();
+    let numbers: BTreeMap<&str, usize> = names
+        .map(|(index, param)| (param.name.value.as_str(), index))
+        .collect();
+    let mut waits_for = vec![0; params.len()];
+    let mut needed_by = vec![Vec::new(); params.len()];
+    let mut needs = vec![Vec::new(); params.len()];
+    for (index, param) in params.iter().enumerate() {
+        let numbers_of = |number: &Number| -> Vec<usize> {
+            let names = number.value.names().into_iter();
+            names
+                .filter_map(|(name, _)| numbers.get(name).copied())
+                .collect()
+        };
+        let written = [Some(&param.value), param.min.as_ref(), param.max.as_ref()];
+        for needed in written.into_iter().flatten().flat_map(numbers_of) {
+            waits_for[index] += 1;
+            needed_by[needed].push(index);
+            needs[index].push(needed);
+        }
+    }
+    let mut ready: BTreeSet<usize> = (0..params.len())
+        .filter(|&index| waits_for[index] == 0)
+        .collect();
+    let mut order = Vec::new();
+    while let Some(index) = ready.pop_first() {
+        order.push(index);
+        for &waiting in &needed_by[index] {
+            waits_for[waiting] -= 1;
+            if waits_for[waiting] == 0 {
+                ready.insert(waiting);
+            }
+        }
+    }
+    let waiting = |index: usize| waits_for[index] > 0;
+    let mut left: BTreeSet<usize> = (0..params.len()).filter(|&index| waiting(index)).collect();
+    // Those that only wait for a circle are no part of it: nothing in it needs them.
+    let mut needed: Vec<usize> = needed_by
+        .iter()
+        .map(|others| others.iter().filter(|&&other| waiting(other)).count())
+        .collect();
+    let mut outside: Vec<usize> = left
+        .iter()
+        .copied()
+        .filter(|&index| needed[index] == 0)
+        .collect();
+    let mut peeled = Vec::new();
+    while let Some(index) = outside.pop() {
+        left.remove(&index);
+        peeled.push(index);
+        for &other in needs[index].iter().filter(|&&other| waiting(other)) {
+            needed[other] -= 1;
+            if needed[other] == 0 {
+                outside.push(other);
+            }
+        }
+    }
+    // Each was peeled off after those that need it.
+    order.extend(peeled.into_iter().rev());
+    (order, left.into_iter().collect())
 }
 
 /// What can be told of a parameter.
