@@ -139,7 +139,7 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
     assert_eq!(
         stderr(&refused),
         "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements; 12 is the deepest step within \
-         --max-elements\n"
+         --max-elements 50,000,000\n"
     );
     // Where the size is not known before, the walk ends at the limit and leaves nothing.
     fs::write(

@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
     /// How often fertile elements are replaced [default: what the rule says]
-    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// The file to write, or - for standard output [default: NAME.svg]
     #[arg(long, short, value_name = "FILE")]
@@ -95,7 +95,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let graph = loaded.compile(steps)?;
     graph
         .check_size(steps, arguments.max_elements)
-        .map_err(|error| anyhow!(too_large(&error, &loaded.name, steps)))?;
+        .map_err(|error| {
+            anyhow!(too_large(
+                &error,
+                &loaded.name,
+                steps,
+                arguments.max_elements
+            ))
+        })?;
     let growth = Growth {
         steps,
         seed: arguments.seed,
@@ -115,7 +122,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     file.finish()?;
     if !arguments.quiet {
         let what = if path == Path::new("-") {
-            loaded.name.clone()
+            "standard output".into()
         } else {
             path.display().to_string()
         };
@@ -127,6 +134,15 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         ));
     }
     Ok(())
+}
+
+/// An output, as messages call it.
+fn named(path: &Path) -> String {
+    if path == Path::new("-") {
+        "standard output".into()
+    } else {
+        format!("'{}'", path.display())
+    }
 }
 
 /// What has been written.
@@ -235,14 +251,15 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-fn too_large(error: &TooLarge, name: &str, steps: u32) -> String {
+fn too_large(error: &TooLarge, name: &str, steps: u32, limit: u64) -> String {
+    let limit = text::grouped(&BigUint::from(limit));
     let count = error.elements.as_ref().map_or_else(
         || "more elements than can be counted".into(),
         |elements| text::counted(elements, "element"),
     );
     let deepest = match error.deepest {
-        Some(step) => format!("{step} is the deepest step within --max-elements"),
-        None => "no step is within --max-elements".into(),
+        Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
+        None => format!("no step is within --max-elements {limit}"),
     };
     format!("step {steps} of {name} has {count}; {deepest}")
 }
@@ -250,7 +267,7 @@ fn too_large(error: &TooLarge, name: &str, steps: u32) -> String {
 fn explain(error: RenderError, loaded: &Loaded, path: &Path, limit: u64) -> Failure {
     match error {
         RenderError::Io(error) => anyhow::Error::new(error)
-            .context(format!("'{}' cannot be written", path.display()))
+            .context(format!("{} cannot be written", named(path)))
             .into(),
         RenderError::Walk(WalkError::Cancelled) => Failure::Interrupted,
         RenderError::Walk(WalkError::NotFinite(error)) => error.diagnostic(&loaded.rule).into(),

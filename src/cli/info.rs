@@ -20,12 +20,15 @@ pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
     /// The last step of the forecast [default: what the rule says]
-    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000))]
+    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// As JSON
     #[arg(long)]
     json: bool,
 }
+
+/// Beyond this, the numbers alone would fill a disk.
+const MOST_STEPS: u32 = 10_000;
 
 #[derive(Serialize)]
 struct Info<'a> {
@@ -78,6 +81,10 @@ fn number(value: f64) -> serde_json::Value {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
     let steps = steps::choose(arguments.steps, &loaded)?;
+    if steps > MOST_STEPS {
+        let message = format!("info tells the sizes of no more than {MOST_STEPS} steps");
+        return Err(Failure::Usage(message));
+    }
     let graph = loaded.compile(steps)?;
     let info = info(&loaded, &graph, steps);
     let text = if arguments.json {

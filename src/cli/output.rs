@@ -62,6 +62,9 @@ impl Output {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
+        if !folder.exists() {
+            anyhow::bail!("there is no folder '{}'", folder.display());
+        }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".kfrac-").suffix(".part");
         #[cfg(unix)]
@@ -92,7 +95,7 @@ impl Output {
     /// Finishes: the file appears under its name. Without this it is removed.
     pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {
-            Self::Standard(mut out) => out.flush()?,
+            Self::Standard(mut out) => out.flush().context("standard output cannot be written")?,
             Self::Device { mut file, path } => file
                 .flush()
                 .with_context(|| format!("'{}' cannot be written", path.display()))?,

@@ -21,10 +21,10 @@ pub struct UnknownPalette;
 const OWN: &[(&str, &[&str])] = &[
     (
         "earth-to-leaf",
-        &["#6b4a2f", "#8a6a3b", "#7f8f3a", "#5fa04e", "#8fc46a"],
+        &["#8a6244", "#96783f", "#88963c", "#5fa04e", "#8fc46a"],
     ),
     ("leaf", &["#2f6b3f", "#5fa04e", "#a5c957"]),
-    ("bark", &["#5a4030", "#8a6a4a", "#b89a72"]),
+    ("bark", &["#8a6648", "#a58460", "#c2a680"]),
     ("fire", &["#8c1c13", "#d1491b", "#f2921d", "#f7c64a"]),
     ("ice", &["#2b5c8a", "#4c94b8", "#8fc7d6"]),
     ("sunset", &["#4b3f8f", "#a0458f", "#e0605f", "#f2a65a"]),
