@@ -17,15 +17,15 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
+//!     ├── measure   similarity dimension
 //!     │  grow       a depth-first walk
 //!     ▼
 //!  elements, in order, streamed
 //!     ├── render    pictures: SVG
-//!     ├── export    tables: CSV, JSON
-//!     └── measure   similarity dimension
+//!     └── export    tables: CSV, JSON
 //! ```
 //!
-//! Each stage knows only the stages above it. `render`, `export` and `measure` do not know each
+//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each
 //! other; [`cli`] uses what is public here and nothing else. Names and files are the
 //! [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in files are
 //! [`expression`]s.
