@@ -11,6 +11,8 @@ use super::read::{DESCRIPTION, RULE};
 
 /// A parent may have a parent, and so on, up to this many.
 const MOST_PARENTS: usize = 32;
+/// Behind this many components that are not there, no more are looked for.
+const MOST_MISSING: usize = 100;
 
 /// The rule in a source with everything in it that it names, and whether all of that was found;
 /// `None` if it is no rule.
@@ -25,6 +27,7 @@ pub(super) fn assemble(
         chain: vec![Arc::clone(source)],
         parameters: Vec::new(),
         components: Vec::new(),
+        missing: 0,
         generation: 0,
         complete: true,
     };
@@ -45,6 +48,8 @@ struct Assembly<'a> {
     parameters: Vec<(usize, Key)>,
     /// The components that have been looked for.
     components: Vec<Component>,
+    /// How many of them were not found.
+    missing: usize,
     /// The generation of the rule whose components are being put in.
     generation: usize,
     /// Whether everything that is named has been found.
@@ -243,8 +248,10 @@ impl Assembly<'_> {
                 known.generation = known.generation.max(generation);
                 known.node.clone()
             }
+            None if self.missing == MOST_MISSING => None,
             None => {
                 let found = self.find(name, shelf, &node.place);
+                self.missing += usize::from(found.is_none());
                 let (component, parameters) = found.unzip();
                 self.components.push(Component {
                     shelf,

@@ -11,6 +11,7 @@ mod reader;
 mod rule;
 mod shape;
 mod style;
+mod unused;
 mod yaml;
 
 pub use rule::{
@@ -89,10 +90,10 @@ impl Document {
         let mut diagnostics = Diagnostics::default();
         let assembled = assemble::assemble(source, catalogue, &mut diagnostics);
         let Some((node, complete)) = assembled else {
-            return Err(diagnostics);
+            return Err(diagnostics.without_repeats());
         };
         let Some(rule) = read::read(&node, complete, &mut diagnostics) else {
-            return Err(diagnostics);
+            return Err(diagnostics.without_repeats());
         };
         if diagnostics.has_errors() {
             // What can be said about names and values is said too.
@@ -128,6 +129,7 @@ impl Document {
         let mut all = self.warnings.clone();
         match Rule::resolve(&self.rule, settings) {
             Ok((rule, doubts)) => {
+                all.extend(unused::parameters(&self.rule, self.node.place.source()));
                 all.extend(doubts);
                 Ok((rule, all.without_repeats()))
             }

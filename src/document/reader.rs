@@ -131,7 +131,12 @@ impl Reader {
             None => default,
             Some((Value::Bool(flag), _)) => *flag,
             Some((_, node)) => {
-                self.mismatch(node, "true or false", "write true or false, without quotes");
+                let hint = match node.written().map(str::to_lowercase).as_deref() {
+                    Some("yes" | "on" | "true") => "write true",
+                    Some("no" | "off" | "false") => "write false",
+                    _ => "write true or false, without quotes",
+                };
+                self.mismatch(node, "true or false", hint);
                 default
             }
         }
@@ -170,6 +175,12 @@ impl Reader {
                 Expression::unknown()
             }
         };
+        let expression = if self.is_mended(node) && expression.as_call().is_some() {
+            // Whether a distribution belongs here is said when the comma is mended.
+            Expression::unknown()
+        } else {
+            expression
+        };
         for warning in expression.warnings() {
             let place = node.within(warning.range.clone());
             let mut diagnostic = Diagnostic::warning(warning.message).at(&place);
@@ -196,6 +207,14 @@ impl Reader {
             self.mismatch(node, "a point", hint);
             return point;
         };
+        if let [entry] = entries.as_slice()
+            && let Value::Text(text) = &entry.value
+            && let Some(at) = text.find(';')
+        {
+            let place = entry.within(at..at + 1);
+            self.error_with_hint(&place, "';' does not belong in a point", hint);
+            return point;
+        }
         for (index, entry) in entries.iter().enumerate() {
             let number = self.number(entry);
             match index {

@@ -105,6 +105,14 @@ fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
         let width = positive(reader, relative);
         return width.map(Width::Relative);
     }
+    if let Value::Text(text) = &node.value
+        && let Some(pixels) = text.strip_suffix("px").map(str::trim_end)
+        && pixels.parse::<f64>().is_ok()
+    {
+        let hint = format!("write {pixels}: widths are pixels");
+        reader.error_with_hint(&node.place, "a width has no unit", hint);
+        return None;
+    }
     positive(reader, node).map(Width::Pixels)
 }
 

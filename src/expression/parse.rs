@@ -5,8 +5,9 @@ use std::ops::Range;
 use super::functions::{FUNCTIONS, Function};
 use super::lex::{self, Token};
 use super::operator::{LOOSEST, NEGATE, NOT, One, POWER, Two};
-use super::scope::{self, nearest};
+use super::scope;
 use super::{Expression, ExpressionError, Node};
+use crate::diagnostic::nearest;
 
 const MOST_BYTES: usize = 4096;
 /// Of brackets, prefix operators and powers, each of which costs the parser a call of itself.
@@ -278,6 +279,9 @@ impl Parser<'_> {
             word @ ("and" | "or") => format!("write {word}, in small letters"),
             "true" | "false" | "not" | "!" => "write and or or between them".to_owned(),
             _ if left == "true" || left == "false" => "write and or or between them".to_owned(),
+            _ if self.open.last().is_some_and(|(_, call)| *call) => {
+                format!("write {left} * {right}, or a comma between two values: {left}, {right}")
+            }
             _ => format!("write {left} * {right}"),
         };
         let range = self.previous.start..self.range.end;
@@ -334,7 +338,7 @@ fn unknown_function(name: &str, range: Range<usize>) -> ExpressionError {
         let begins = |function: &&str| function.len() > 2 && name.starts_with(function);
         functions.into_iter().find(begins)
     };
-    let hint = nearest(name, functions.into_iter()).or_else(beginning);
+    let hint = nearest(name, functions).or_else(beginning);
     let hint = hint.map_or_else(
         || {
             let all = functions.join(", ");

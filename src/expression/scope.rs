@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::functions::{FUNCTIONS, Function};
 use super::{ExpressionError, Range};
-use crate::diagnostic::listed;
+use crate::diagnostic::{listed, nearest};
 
 const CONSTANTS: [(&str, f64); 3] = [
     ("pi", std::f64::consts::PI),
@@ -102,30 +102,4 @@ impl Scope {
         );
         ExpressionError::new(range, format!("unknown name '{name}'")).hint(hint)
     }
-}
-
-/// More candidates than this are not compared with a name.
-const MOST_CANDIDATES: usize = 1000;
-
-/// The candidate that `name` is most likely a misspelling of.
-pub(super) fn nearest<'a>(
-    name: &str,
-    candidates: impl Iterator<Item = &'a str>,
-) -> Option<&'a str> {
-    let lower = name.to_lowercase();
-    // A third of the letters wrong is no longer the same word.
-    let allowed = match name.len() {
-        0..=1 => 0,
-        2..=5 => 1,
-        _ => 2,
-    };
-    candidates
-        .take(MOST_CANDIDATES)
-        .map(|word| {
-            let distance = strsim::damerau_levenshtein(&lower, &word.to_lowercase());
-            (distance, word)
-        })
-        .filter(|&(distance, word)| distance == 0 || distance <= allowed && word.len() > 1)
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, word)| word)
 }

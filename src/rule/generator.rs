@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use crate::diagnostic::Place;
 use crate::expression::{Dependence, Program, degrees};
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
@@ -46,8 +48,8 @@ pub struct Move {
     pub(crate) scale: [Program; 2],
     pub(crate) shift: [Program; 2],
     pub(crate) about: [Program; 2],
-    /// The points that move, by their number.
-    pub(crate) points: Vec<usize>,
+    /// The points that move, by their number. Moves of the same points share them.
+    pub(crate) points: Arc<[usize]>,
 }
 
 impl Move {
@@ -235,7 +237,7 @@ impl Generator {
         );
         for moving in &self.moves {
             let map = moving.map(scratch);
-            for &number in &moving.points {
+            for &number in &*moving.points {
                 points[number] = map.transform_point2(points[number]);
             }
         }

@@ -137,7 +137,12 @@ impl Resolver {
                 "a number of steps is a whole number from 0 to 1,000,000{}",
                 numbers::but(number, value)
             );
-            self.error(&number.place, message);
+            if value > 0.0 && value <= f64::from(MOST_STEPS) {
+                let hint = format!("steps: {}", value.trunc());
+                self.error_with_hint(&number.place, message, hint);
+            } else {
+                self.error(&number.place, message);
+            }
         }
         whole
     }

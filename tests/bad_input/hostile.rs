@@ -157,6 +157,35 @@ fn names_are_compared_with_few_others() {
 }
 
 #[test]
+fn many_moves_missing_components_and_unused_parameters_cost_little() {
+    let points = "[1/2, 1/4], ".repeat(20_000);
+    let moves = "{rotate: 1}, ".repeat(20_000);
+    let moved = format!(
+        "initiator: segment\ngenerator:\n  elements: [[0, 0], {points}[1, 0]]\n  move: [{moves}]\n"
+    );
+    refused(moved.as_bytes(), "1,000 moves at most");
+    let named: String = (0..20_000)
+        .map(|i| format!("  - {{to: [1/2, 0], base_element: missing{i}}}\n"))
+        .collect();
+    let missing = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{named}");
+    refused(
+        missing.as_bytes(),
+        "no base element 'missing0' in the library",
+    );
+    let params: String = (0..20_000)
+        .map(|i| format!("  a{i}: a{}/2\n", i / 2))
+        .collect();
+    let params = format!(
+        "{KOCH}params:\n  last: 1\n{}",
+        params.replacen("a0/2", "0", 1)
+    );
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("unused.yaml"), params).unwrap();
+    let outcome = kfrac(folder.path(), &["check", "unused.yaml"]);
+    assert!(outcome.said.contains("nothing uses the parameter 'last'"));
+}
+
+#[test]
 fn of_many_mistakes_the_first_are_said() {
     let wrong = format!("{KOCH}generators:\n  a:\n{}", "  - [1]\n".repeat(20_000));
     refused(wrong.as_bytes(), "more");

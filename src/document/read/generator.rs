@@ -144,7 +144,10 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
 
 fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     let fields = reader.fields(node, &PART)?;
-    let seeds = reader.flag(fields.take("seeds"), false);
+    let seeds = fields.take("seeds");
+    // One that cannot be read may be true.
+    let unreadable = seeds.is_some_and(|node| !matches!(node.value, Value::Bool(_)));
+    let seeds = reader.flag(seeds, unreadable);
     let mut placement = if seeds {
         Placement::Seeds
     } else {

@@ -84,7 +84,14 @@ impl Reader<'_> {
             match event {
                 Ok((event, span)) => self.event(event, &span)?,
                 Err(error) => {
-                    return Err(trouble::translate(&error, self.source, &self.last_scalar));
+                    let flow = self.open.iter().rfind(|collection| collection.flow);
+                    let flow = flow.map(|collection| collection.range.start);
+                    return Err(trouble::translate(
+                        &error,
+                        self.source,
+                        &self.last_scalar,
+                        flow,
+                    ));
                 }
             }
         }

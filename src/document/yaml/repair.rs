@@ -102,27 +102,35 @@ pub(super) fn color_read_as_comment(nothing: &Place) -> Option<(Diagnostic, Node
     let start = text[..at].rfind(['\n', '\r']).map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
     // The parser puts what is missing before or behind the comment.
-    let (before, comment) = line.split_once(" #")?;
-    let digits = comment.split_whitespace().next()?;
-    if !matches!(digits.len(), 3 | 4 | 6 | 8)
-        || !digits.bytes().all(|byte| byte.is_ascii_hexdigit())
-        || !before.trim_end().ends_with([':', '-'])
-    {
-        return None;
-    }
-    let start = start + before.len() + 1;
-    let place = Place::new(source, start..start + 1 + digits.len());
-    let color = place.text();
-    let diagnostic = Diagnostic::error(format!("'{color}' is read as a comment"))
-        .at(&place)
-        .hint(format!("put it in quotes: \"{color}\""));
-    Some((
-        diagnostic,
-        Node {
-            value: Value::Text(color.to_owned()),
-            place,
-        },
-    ))
+    let place = color_in(&Place::new(source, start..start + line.len()))?;
+    let value = Value::Text(place.text().to_owned());
+    Some((color_is_comment(&place), Node { place, value }))
+}
+
+/// The first colour in a stretch of text that YAML takes for a comment.
+pub(super) fn color_in(stretch: &Place) -> Option<Place> {
+    let text = stretch.text();
+    let color = |(at, _): (usize, &str)| {
+        let (before, comment) = (&text[..at], &text[at + " #".len()..]);
+        let is_digit = |c: char| c.is_ascii_hexdigit();
+        let digits = comment.find(|c| !is_digit(c)).unwrap_or(comment.len());
+        let ends = !comment[digits..].starts_with(|c: char| c.is_alphanumeric());
+        let is_value = before.trim_end().ends_with([':', '-', ',', '[']);
+        let is_color = matches!(digits, 3 | 4 | 6 | 8) && ends && is_value;
+        is_color.then_some(at + 1..at + " #".len() + digits)
+    };
+    let range = text.match_indices(" #").find_map(color)?;
+    let start = stretch.range().start;
+    let source = stretch.source();
+    Some(Place::new(source, start + range.start..start + range.end))
+}
+
+/// The mistake of a colour at this place.
+pub(super) fn color_is_comment(color: &Place) -> Diagnostic {
+    let text = color.text();
+    Diagnostic::error(format!("'{text}' is read as a comment"))
+        .at(color)
+        .hint(format!("write \"{text}\""))
 }
 
 /// The entries of a mapping, each key once and merge keys merged where they stand: the mapping's

@@ -139,7 +139,7 @@ fn each_mistake_has_its_message() {
             "generator:\n- [0, 0\n- [1, 0]\n",
             "2:3 this '[' is never closed",
         ),
-        ("a: {b: #ff0000}\n", "1:4 this '{' is never closed"),
+        ("a: {b: #ff0000}\n", "1:8 '#ff0000' is read as a comment"),
         ("a: [1 2}\n", "1:4 this '[' is closed by a '}'"),
         ("a: ]\n", "1:4 this ']' closes nothing"),
         ("a: \"x\n  b: 2\n", "1:4 this quote is never closed"),

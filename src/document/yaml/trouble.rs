@@ -89,11 +89,13 @@ pub(super) fn no_key(key: &Node) -> Diagnostic {
         .hint("a key is text, as in 'key: value'")
 }
 
-/// A mistake of syntax; `last` is the scalar read before it.
+/// A mistake of syntax; `last` is the scalar read before it, `flow` the start of the innermost
+/// list or mapping in flow style that is open.
 pub(super) fn translate(
     error: &ScanError,
     source: &Arc<Source>,
     last: &Range<usize>,
+    flow: Option<usize>,
 ) -> Diagnostic {
     let text = source.text();
     let at = error
@@ -108,6 +110,40 @@ pub(super) fn translate(
         .filter(|c| !"\r\n".contains(*c))
         .map_or(0, char::len_utf8);
     let place = Place::new(source, at..at + char_len);
+    // Such a comment swallows the closing bracket, and the parser reads on in the lines below.
+    let unclosed = matches!(
+        error.kind(),
+        ErrorKind::UnclosedFlowCollection { .. }
+            | ErrorKind::ExpectedFlowMappingSeparator
+            | ErrorKind::ExpectedFlowSequenceSeparator
+            | ErrorKind::InvalidFlowScalarIndent
+            | ErrorKind::InvalidIndentation
+            | ErrorKind::MappingValueNotAllowed
+            | ErrorKind::InvalidColonPlacement
+            | ErrorKind::MismatchedFlowCollectionEnd { .. }
+    );
+    // A key in a line below that is not indented further is no part of what is open.
+    let open = flow.filter(|start| {
+        let [above, here] = [*start, at].map(|at| source.line_column(line_start(source, at)));
+        let is_below = here.0 > above.0 && here.1 <= above.1;
+        *error.kind() == ErrorKind::InvalidColonPlacement && is_below
+    });
+    let flow = match flow {
+        Some(start) if start < at => start..at,
+        // The place is that of the bracket.
+        _ => at..text.len(),
+    };
+    let color = super::repair::color_in(&Place::new(source, flow)).filter(|_| unclosed);
+    if let Some(color) = color {
+        return super::repair::color_is_comment(&color);
+    }
+    if let Some(open) = open {
+        let bracket = Place::new(source, open..open + 1);
+        let close = if bracket.text() == "[" { "]" } else { "}" };
+        return Diagnostic::error(format!("this '{}' is never closed", bracket.text()))
+            .at(&bracket)
+            .hint(format!("close it with '{close}'"));
+    }
     let (message, hint) = match error.kind() {
         ErrorKind::RecursionLimitExceeded => return too_deep(&place),
         ErrorKind::UnknownAnchor | ErrorKind::MissingAnchorOrAliasName => {

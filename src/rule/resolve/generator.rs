@@ -22,7 +22,6 @@ impl Resolver {
         let mut ends = Vec::new();
         let mut seeding = Vec::new();
         for part in &document.parts {
-            let before = written.len();
             let ring = part.placement.seeds();
             let elements = self.elements(
                 &part.entries,
@@ -47,9 +46,8 @@ impl Resolver {
                     meets(elements.last(), |element| element.to, 1.0),
                 ]
             };
-            if ring {
-                seeding.extend(before..written.len());
-            } else {
+            seeding.resize(written.len(), ring);
+            if !ring {
                 ends.extend(elements.first().map(|element| (element.from, false)));
                 ends.extend(elements.last().map(|element| (element.to, true)));
             }
@@ -68,15 +66,9 @@ impl Resolver {
             .iter()
             .rfind(|(_, last)| *last)
             .map(|(number, _)| *number);
-        let inner = (0..written.len()).filter(|number| {
-            seeding.contains(number) || Some(*number) != first && Some(*number) != last
-        });
-        let inner: Vec<_> = inner.collect();
-        let moves = document
-            .moves
-            .iter()
-            .map(|moving| self.moving(moving, &scope, written.len(), &inner))
-            .collect();
+        let inner = (0..written.len())
+            .filter(|number| seeding[*number] || Some(*number) != first && Some(*number) != last);
+        let moves = self.moves(document, &scope, written.len(), inner.collect());
         let points: Vec<_> = written
             .iter()
             .map(|point| {

@@ -65,22 +65,31 @@ impl Resolver {
         let default = self.constant(&written.value);
         let mut limit = |number: &Option<_>| number.as_ref().and_then(|n| self.constant(n));
         let (min, max) = (limit(&written.min), limit(&written.max));
-        let value = set.map(|setting| setting.value).or(default);
+        let mut value = set.map(|setting| setting.value).or(default);
+        // What is computed from a value that is refused is not told.
         if let (Some(low), Some(high), Some(number)) = (min, max, &written.min)
             && low > high
         {
             let message =
                 format!("the limits of '{name}' are upside down: min {low} is above max {high}");
             self.error_with_hint(&number.place, message, format!("min: {high}, max: {low}"));
-        } else if let Some(value) = value {
+            value = None;
+        } else if let Some(given) = value {
             let beyond = match (min, max) {
-                (Some(low), _) if value < low => Some(("below its least", low)),
-                (_, Some(high)) if value > high => Some(("above its largest", high)),
+                (Some(low), _) if given < low => Some(("below its least", low)),
+                (_, Some(high)) if given > high => Some(("above its largest", high)),
                 _ => None,
+            };
+            let allowed = match (min, max) {
+                (Some(low), Some(high)) => format!("from {low} to {high}"),
+                (Some(low), None) => format!("at least {low}"),
+                (None, high) => format!("at most {}", high.unwrap_or(f64::INFINITY)),
             };
             let at = set.map_or(&written.value.place, |_| &written.name.place);
             if let Some((where_to, limit)) = beyond {
-                self.error(at, format!("'{name}' is {value}, {where_to} value {limit}"));
+                let message = format!("'{name}' is {given}, {where_to} value {limit}");
+                self.error_with_hint(at, message, allowed);
+                value = None;
             }
         }
         Values { value, min, max }

@@ -1,11 +1,22 @@
 //! Random functions: drawn variables and what they move.
 
+use std::sync::Arc;
+
 use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoints};
 use crate::expression::{Program, Scope, Type, is_reserved};
 
 use super::super::draw::{Distribution, Variable};
 use super::super::{Moment, Move};
 use super::{Resolver, is_name, whole_number};
+
+/// More moves than this are refused: each costs time in every replacement.
+const MOST_MOVES: usize = 1000;
+
+/// The points that most moves move.
+struct Shared {
+    all: Arc<[usize]>,
+    inner: Arc<[usize]>,
+}
 
 impl Resolver {
     pub(super) fn variables(
@@ -63,13 +74,33 @@ impl Resolver {
         }
     }
 
-    pub(super) fn moving(
+    /// The moves of a generator with `count` points; `inner` are those that are no ends of it.
+    pub(super) fn moves(
         &mut self,
-        document: &MoveDocument,
+        document: &GeneratorDocument,
         scope: &Scope,
         count: usize,
-        inner: &[usize],
-    ) -> Move {
+        inner: Vec<usize>,
+    ) -> Vec<Move> {
+        if let Some(moving) = document.moves.get(MOST_MOVES) {
+            let message = format!(
+                "a generator has 1,000 moves at most, this one has {}",
+                document.moves.len()
+            );
+            let hint = "one move can scale, turn and shift any number of points";
+            self.error_with_hint(&moving.place, message, hint);
+        }
+        let shared = Shared {
+            all: (0..count).collect(),
+            inner: inner.into(),
+        };
+        let moves = document.moves.iter().take(MOST_MOVES);
+        moves
+            .map(|moving| self.moving(moving, scope, &shared))
+            .collect()
+    }
+
+    fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &Shared) -> Move {
         let zero = || Program::constant(0.0);
         let mut pair = |point: &Option<Point>| {
             point.as_ref().map_or([zero(), zero()], |point| {
@@ -86,15 +117,16 @@ impl Resolver {
             .as_ref()
             .map_or_else(zero, |number| self.program(number, scope));
         let points = match &document.points {
-            WhichPoints::All => (0..count).collect(),
-            WhichPoints::Inner => inner.to_vec(),
+            WhichPoints::All => Arc::clone(&shared.all),
+            WhichPoints::Inner => Arc::clone(&shared.inner),
             WhichPoints::Numbers(numbers) => {
                 let mut points = Vec::new();
                 for number in numbers {
                     let Some(value) = self.constant(number) else {
                         continue;
                     };
-                    let largest = u32::try_from(count.saturating_sub(1)).unwrap_or(u32::MAX);
+                    let largest = shared.all.last().copied().unwrap_or_default();
+                    let largest = u32::try_from(largest).unwrap_or(u32::MAX);
                     match whole_number(value, largest) {
                         Some(point) => points.push(point as usize),
                         None => {
@@ -105,7 +137,7 @@ impl Resolver {
                         }
                     }
                 }
-                points
+                points.into()
             }
         };
         Move {
