@@ -566,8 +566,8 @@ fn interrupt(signal: &str) {
         );
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let killed = std::process::Command::new("kill")
-        .args([signal, &child.id().to_string()])
+    let killed = std::process::Command::new("sh")
+        .args(["-c", &format!("kill {signal} {}", child.id())])
         .status()
         .unwrap();
     assert!(killed.success());
