@@ -132,6 +132,31 @@ fn info_tells_the_size_of_every_step() {
     assert!(info["elements"].is_array() && info["length"].is_null() && info["bounds"].is_null());
 }
 
+/// Which of two generators is drawn does not matter where both have as many elements.
+#[test]
+fn counts_are_told_where_they_do_not_hang_on_the_draw() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "initiator: segment\ngenerators:\n  up: koch\n  down: [[0, 0], [1/3, 0], [1/2, -sqrt(3)/6], \
+                [2/3, 0], [1, 0]]\nselect: {at_random: {up: 1, down: 1}}\n";
+    fs::write(folder.path().join("coast.yaml"), text).unwrap();
+    let elements = || {
+        let info = run(
+            folder.path(),
+            &["info", "coast.yaml", "--steps", "2", "--json"],
+        )
+        .success();
+        let info: serde_json::Value = serde_json::from_str(&stdout(&info)).unwrap();
+        info["elements"].clone()
+    };
+    assert_eq!(elements(), serde_json::json!(["1", "4", "16"]));
+    fs::write(
+        folder.path().join("coast.yaml"),
+        text.replace(", [2/3, 0]", ""),
+    )
+    .unwrap();
+    assert!(elements().is_null());
+}
+
 #[test]
 fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use crate::expression::Dependence;
 use crate::geometry::DVec2;
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
@@ -63,6 +64,8 @@ struct Compiler<'r> {
     /// The class and state of every object, in the order of their numbers.
     keys: Vec<(Class, State)>,
     objects: Vec<Object>,
+    /// Numbers for whether an element is fertile, the generator that it names and its state.
+    behaviours: HashMap<(bool, Option<usize>, State), usize>,
     /// The replacement matrix modulo m for an age and step: a column a kind.
     columns: HashMap<(u32, u32), Vec<Vec<u32>>>,
 }
@@ -88,6 +91,7 @@ impl<'r> Compiler<'r> {
             numbers: HashMap::new(),
             keys: Vec::new(),
             objects: Vec::new(),
+            behaviours: HashMap::new(),
             columns: HashMap::new(),
         }
     }
@@ -182,10 +186,14 @@ impl<'r> Compiler<'r> {
         if number >= MOST_OBJECTS {
             return Err(Stop::Irregular);
         }
+        let behaviours = self.behaviours.len();
+        let becomes = (class.fertile, class.generator, state.clone());
+        let behaviour = *self.behaviours.entry(becomes).or_insert(behaviours);
         self.objects.push(Object {
             base_element: class.base_element,
             visible: class.visible,
             origin: class.origin,
+            behaviour,
             replacement: if class.fertile {
                 Replacement::Beyond
             } else {
@@ -256,8 +264,7 @@ impl<'r> Compiler<'r> {
                 self.depends.index_is_free
                     || !self.depends.length
                         && selection.programs().any(|condition| {
-                            use crate::expression::Dependence::None;
-                            condition.dependence(Moment::LENGTH) != None
+                            condition.dependence(Moment::LENGTH) != Dependence::None
                         })
             }
             Selection::ByIndex(_) => self.depends.index_is_free,
@@ -301,7 +308,6 @@ impl<'r> Compiler<'r> {
                 let [from, to] = [element.from, element.to].map(|number| points[number]);
                 (to - from).length()
             };
-            let mut objects = Vec::new();
             let mut next = body.clone();
             // Parts that stay follow each other in the order of traversal.
             let mut order: Vec<usize> = (0..listed.parts().len()).collect();
@@ -331,7 +337,7 @@ impl<'r> Compiler<'r> {
                     }
                 }
             }
-            objects.extend(of_parts.into_iter().flatten());
+            let objects: Vec<usize> = of_parts.into_iter().flatten().collect();
             if decided && self.is_fixed(generator) {
                 let mut production = Production::default();
                 production.set(listed.parts(), &points, &objects);
@@ -344,7 +350,6 @@ impl<'r> Compiler<'r> {
 
     /// Whether a generator's points are the same wherever an object in this state stands.
     fn is_fixed(&self, generator: usize) -> bool {
-        use crate::expression::Dependence;
         let listed = &self.rule.generators()[generator];
         !listed.is_random()
             && listed.programs().all(|program| {

@@ -126,20 +126,21 @@ impl Graph {
         known.then(|| Forecast::new(self))
     }
 
-    /// Whether alternatives have the same numbers of children of every object.
+    /// Whether alternatives have the same numbers of children of every behaviour.
     fn are_equal(&self, alternatives: &[Alternative]) -> bool {
         let census = |alternative: &Alternative| {
             let mut body = Vec::new();
             let mut seeds = Vec::new();
-            let mut objects = alternative.objects.iter();
+            let behaviour = |object: &usize| self.objects[*object].behaviour;
+            let mut behaviours = alternative.objects.iter().map(behaviour);
             for part in self.rule.generators()[alternative.generator].parts() {
-                let objects = objects.by_ref().take(part.elements.len()).copied();
+                let behaviours = behaviours.by_ref().take(part.elements.len());
                 if part.placement.seeds() {
-                    let mut seed: Vec<usize> = objects.collect();
+                    let mut seed: Vec<usize> = behaviours.collect();
                     seed.sort_unstable();
                     seeds.push(seed);
                 } else {
-                    body.extend(objects);
+                    body.extend(behaviours);
                 }
             }
             body.sort_unstable();

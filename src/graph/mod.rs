@@ -4,8 +4,9 @@
 //! of their own and a [`Production`], the instances that stand in an object's place one step
 //! later. What depends on the moment (on age, step, length or, modulo m, on the index) has become
 //! more objects, so that the productions of a deterministic rule are lists of fixed maps. Only
-//! where numbers are drawn, or where an index cannot be resolved (an *irregular* rule), an object
-//! says [`Replacement::Evaluated`], and its instances are worked out where it stands.
+//! where numbers are drawn, or where an index has to be counted, an object says
+//! [`Replacement::Evaluated`], and its instances are worked out where it stands. A rule in which the
+//! choice of a generator hangs on such an index is *irregular*.
 //!
 //! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
 //! ([`Placement::SeedsAsInitiator`]) keeps the position only.
@@ -33,6 +34,8 @@ pub struct Object {
     pub visible: bool,
     /// The generator that listed it, by number; `None` for the initiator.
     pub origin: Option<usize>,
+    /// What it becomes: objects of one behaviour have the same replacements, however they look.
+    pub(crate) behaviour: usize,
     /// What takes its place in the next step.
     pub replacement: Replacement,
 }

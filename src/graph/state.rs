@@ -83,8 +83,13 @@ impl Dependences {
             all.add(program);
             match program.dependence(Moment::INDEX) {
                 Dependence::None => {}
-                // Where points are drawn, they are worked out where the element stands.
-                Dependence::Modulo(modulus) if !rule.is_random() => all.count_modulo(modulus),
+                // Points that are drawn are worked out where the element stands, and so are those
+                // that would make too many states.
+                Dependence::Modulo(modulus)
+                    if !rule.is_random() && all.common(modulus) <= LARGEST_MODULUS =>
+                {
+                    all.count_modulo(modulus);
+                }
                 _ => all.counts_index = true,
             }
         }
@@ -124,9 +129,14 @@ impl Dependences {
     }
 
     fn count_modulo(&mut self, modulus: u32) {
-        let common = greatest_common_divisor(self.modulus, modulus);
-        self.modulus = (self.modulus / common).saturating_mul(modulus);
+        self.modulus = self.common(modulus);
         self.index_is_free |= self.modulus > LARGEST_MODULUS;
+    }
+
+    /// The least common multiple of what counts so far and another modulus.
+    fn common(&self, modulus: u32) -> u32 {
+        let divisor = greatest_common_divisor(self.modulus, modulus);
+        (self.modulus / divisor).saturating_mul(modulus)
     }
 }
 

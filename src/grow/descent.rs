@@ -237,9 +237,10 @@ impl<'g> Descent<'g> {
             };
             if kept || level == self.target {
                 let joined = self.joined;
-                let object_ = &self.graph.objects()[object];
-                let open = !self.graph.base_elements()[object_.base_element].is_closed();
-                self.joined = object_.visible && open && meets_end;
+                let leaf = &self.graph.objects()[object];
+                let is_open = !self.graph.base_elements()[leaf.base_element].is_closed();
+                let goes_on = leaf.visible && is_open;
+                self.joined = goes_on && meets_end;
                 if last {
                     self.pop();
                 }
@@ -247,7 +248,7 @@ impl<'g> Descent<'g> {
                     standing,
                     object,
                     level,
-                    joined: joined && object_.visible && open,
+                    joined: joined && goes_on,
                     rank,
                 }));
             }
