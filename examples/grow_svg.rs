@@ -10,7 +10,7 @@ use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::render::{Size, svg};
+use kfrac::render::{self, Options, Size};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -24,19 +24,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (rule, _warnings) = Document::read(&source, &catalogue)?.resolve(&[])?;
     let rule = Arc::new(rule);
     let graph = Graph::compile(&rule, steps)?;
-    let labels = svg::Labels {
-        title: name,
-        ..svg::Labels::default()
+    let options = Options {
+        size: Size::Long(800),
+        ..Options::of(&rule)
     };
     let out = &mut io::BufWriter::new(io::stdout().lock());
-    svg::write(
-        &graph,
-        &Growth::steps(steps),
-        rule.style(),
-        rule.view(),
-        Size::Long(800),
-        &labels,
-        out,
-    )?;
+    render::write(&graph, &Growth::steps(steps), &options, out)?;
     Ok(())
 }

@@ -21,7 +21,8 @@
 //!     │  grow       a depth-first walk
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG
+//!     ├── render    pictures: SVG, PNG
+//!     ├── figure    figures about a rule: sheets of approximants
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
@@ -36,6 +37,7 @@ pub mod diagnostic;
 pub mod document;
 pub mod export;
 pub mod expression;
+pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
@@ -43,6 +45,7 @@ pub mod measure;
 pub mod render;
 pub mod rule;
 pub mod style;
+mod wording;
 
 /// The programs of the README are tested.
 #[cfg(doctest)]

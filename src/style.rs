@@ -14,6 +14,12 @@ impl Colour {
     /// Black.
     pub const BLACK: Self = Self([0, 0, 0, 255]);
 
+    /// A grey from 0, black, to 255, white.
+    #[must_use]
+    pub const fn grey(value: u8) -> Self {
+        Self([value, value, value, 255])
+    }
+
     /// Reads a colour as CSS writes it: a name, `#3b6`, `#33bb66`, `rgb(…)`, `hsl(…)`, `oklch(…)` ….
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
@@ -26,6 +32,13 @@ impl Colour {
     #[must_use]
     pub fn rgba(self) -> [u8; 4] {
         self.0
+    }
+
+    /// The colour without its transparency.
+    #[must_use]
+    pub fn opaque(self) -> Self {
+        let [red, green, blue, _] = self.0;
+        Self([red, green, blue, 255])
     }
 
     /// The opacity, from 0 to 1.

@@ -16,7 +16,7 @@ use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
-use kfrac::render::{Size, svg};
+use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
 use num_bigint::BigUint;
 use proptest::prelude::*;
@@ -255,8 +255,8 @@ proptest! {
             let graph = Graph::compile(&rule, steps).unwrap();
             let mut bytes = Vec::new();
             let growth = Growth { seed, ..Growth::steps(steps) };
-            let labels = svg::Labels::default();
-            let drawn = svg::write(&graph, &growth, rule.style(), rule.view(), Size::Long(300), &labels, &mut bytes);
+            let options = Options { size: Size::Long(300), ..Options::of(&rule) };
+            let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)
         };
         prop_assert_eq!(draw(), draw());

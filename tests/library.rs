@@ -19,7 +19,7 @@ use kfrac::geometry::Bounds;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
-use kfrac::render::{Size, svg};
+use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
 use num_bigint::BigUint;
 use picture::Picture;
@@ -73,23 +73,19 @@ fn svg_of(name: &str, rule: &Rule, graph: &Graph, steps: u32) -> Vec<u8> {
 }
 
 fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -> Vec<u8> {
-    let labels = svg::Labels {
+    let labels = Labels {
         title: rule.description().title.clone().unwrap(),
         description: rule.description().about.clone().unwrap(),
         provenance: document(name).to_yaml(),
     };
-    let mut bytes = Vec::new();
-    let growth = Growth::steps(steps);
-    svg::write(
-        graph,
-        &growth,
-        rule.style(),
-        rule.view(),
+    let options = Options {
         size,
-        &labels,
-        &mut bytes,
-    )
-    .unwrap_or_else(|error| panic!("{name} at {steps}: {error}"));
+        labels,
+        ..Options::of(rule)
+    };
+    let mut bytes = Vec::new();
+    render::write(graph, &Growth::steps(steps), &options, &mut bytes)
+        .unwrap_or_else(|error| panic!("{name} at {steps}: {error}"));
     bytes
 }
 

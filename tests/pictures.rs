@@ -6,8 +6,7 @@ mod common;
 
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::render::{Size, svg};
-use kfrac::style::View;
+use kfrac::render::{self, Options, Size};
 
 /// The path elements of a picture, 100 pixels wide, without the space that strokes take.
 fn paths(text: &str, steps: u32) -> Vec<String> {
@@ -32,18 +31,12 @@ fn picture(text: &str, steps: u32, style: &str) -> String {
     let rule = common::resolved(&common::document_of(&text), &[]);
     let graph = Graph::compile(&rule, steps).unwrap();
     let mut bytes = Vec::new();
-    let labels = svg::Labels::default();
-    let view = View::default();
-    svg::write(
-        &graph,
-        &Growth::steps(steps),
-        rule.style(),
-        &view,
-        Size::Long(100),
-        &labels,
-        &mut bytes,
-    )
-    .unwrap();
+    let options = Options {
+        size: Size::Long(100),
+        style: rule.style().clone(),
+        ..Options::default()
+    };
+    render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()
 }
 
@@ -287,7 +280,7 @@ fn a_closed_chain_is_filled_whatever_strokes_it() {
              generator: [[0, 0], [1/2, 0], [1, 0]]\nstyle: {{fill: teal, {style}}}"
         )
     };
-    let area = "fill=\"#008080\" stroke=\"none\" d=\"M0 10000l0-10000 10000 0 0 10000z\"";
+    let area = "fill=\"#008080\" d=\"M0 10000l0-10000 10000 0 0 10000z\"";
     for style in [
         "width: 0",
         "width: 0, color_by: index",

@@ -6,28 +6,25 @@ mod common;
 
 use common::{compiled, document, resolved};
 use kfrac::grow::Growth;
-use kfrac::render::{Size, svg};
+use kfrac::render::{self, Labels, Options, Size};
 
 /// A rule of the library at a size of 256 pixels.
 fn picture(name: &str, steps: u32) -> String {
     let document = document(name);
     let rule = resolved(&document, &[]);
-    let labels = svg::Labels {
+    let labels = Labels {
         title: rule.description().title.clone().unwrap(),
         description: rule.description().about.clone().unwrap(),
         provenance: document.to_yaml(),
     };
+    let options = Options {
+        size: Size::Long(256),
+        labels,
+        ..Options::of(&rule)
+    };
+    let graph = compiled(&rule, steps);
     let mut bytes = Vec::new();
-    svg::write(
-        &compiled(&rule, steps),
-        &Growth::steps(steps),
-        rule.style(),
-        rule.view(),
-        Size::Long(256),
-        &labels,
-        &mut bytes,
-    )
-    .unwrap();
+    render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()
 }
 

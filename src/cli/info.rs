@@ -10,9 +10,10 @@ use crate::graph::{Graph, Level};
 use crate::grow::{Growth, extent};
 use crate::measure::similarity_dimension;
 use crate::rule::Parameter;
+use crate::wording;
 
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, output, steps, text};
+use super::{Failure, output, steps};
 
 /// Says what a rule is: parameters, sizes of its steps, bounds, dimension
 #[derive(clap::Args)]
@@ -273,7 +274,7 @@ fn table(info: &Info<'_>, elements: &[String]) -> String {
     let short = |digits: &str| {
         digits
             .parse()
-            .map_or_else(|_| digits.into(), |number| text::grouped(&number))
+            .map_or_else(|_| digits.into(), |number| wording::grouped(&number))
     };
     let mut rows = vec![["step", "elements", "fertile", "fractals", "length"].map(String::from)];
     for step in 0..elements.len() {

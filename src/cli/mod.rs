@@ -2,11 +2,16 @@
 
 mod cat;
 mod check;
+mod format;
 mod grow;
+mod growth;
 mod info;
+mod labels;
 mod list;
 mod output;
+mod picture;
 mod rule;
+mod sheet;
 mod steps;
 mod stop;
 mod text;
@@ -32,6 +37,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Grow(grow::Arguments),
+    Sheet(sheet::Arguments),
     Info(info::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
@@ -102,6 +108,7 @@ pub fn run() -> ExitCode {
     };
     let result = match &arguments.command {
         Command::Grow(arguments) => grow::run(arguments, &catalogue),
+        Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),

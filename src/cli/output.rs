@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use tempfile::TempPath;
 
-use super::stop;
+use super::{Failure, stop};
 
 /// Where a command writes.
 pub(super) enum Output {
@@ -31,7 +31,7 @@ const BUFFER: usize = 1 << 18;
 
 impl Output {
     /// Opens `-`, a device or a file that is to be made or replaced.
-    pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
+    fn create(path: &Path) -> anyhow::Result<Self> {
         if path == Path::new("-") {
             return Ok(Self::Standard(BufWriter::with_capacity(
                 BUFFER,
@@ -93,7 +93,7 @@ impl Output {
     }
 
     /// Finishes: the file appears under its name. Without this it is removed.
-    pub(super) fn finish(self) -> anyhow::Result<()> {
+    fn finish(self) -> anyhow::Result<()> {
         match self {
             Self::Standard(mut out) => out.flush().context("standard output cannot be written")?,
             Self::Device { mut file, path } => file
@@ -148,6 +148,29 @@ impl Write for Output {
     }
 }
 
+/// Writes a file as a whole, or nothing; tells the number of bytes.
+pub(super) fn write<T>(
+    path: &Path,
+    content: impl FnOnce(&mut Counted<Output>) -> Result<T, Failure>,
+) -> Result<(T, u64), Failure> {
+    let mut out = Counted {
+        inner: Output::create(path)?,
+        bytes: 0,
+    };
+    let told = content(&mut out)?;
+    out.inner.finish()?;
+    Ok((told, out.bytes))
+}
+
+/// An output, as messages call it.
+pub(super) fn called(path: &Path) -> String {
+    if path == Path::new("-") {
+        "standard output".into()
+    } else {
+        path.display().to_string()
+    }
+}
+
 /// Writes a text to standard output.
 pub(super) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
@@ -160,16 +183,6 @@ pub(super) fn print(text: &str) -> anyhow::Result<()> {
 pub(super) struct Counted<W> {
     inner: W,
     bytes: u64,
-}
-
-impl<W> Counted<W> {
-    pub(super) fn new(inner: W) -> Self {
-        Self { inner, bytes: 0 }
-    }
-
-    pub(super) fn into_parts(self) -> (W, u64) {
-        (self.inner, self.bytes)
-    }
 }
 
 impl<W: Write> Write for Counted<W> {

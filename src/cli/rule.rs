@@ -66,6 +66,8 @@ pub(super) struct Loaded {
     pub(super) name: String,
     pub(super) document: Document,
     pub(super) rule: Arc<Rule>,
+    /// The parameters that were set.
+    pub(super) settings: Vec<Setting>,
 }
 
 impl Loaded {
@@ -124,6 +126,7 @@ impl RuleArguments {
             name,
             document,
             rule: Arc::new(rule),
+            settings: self.set.clone(),
         })
     }
 

@@ -1,5 +1,7 @@
 //! How many steps a rule is grown where nobody says.
 
+use std::fmt;
+
 use super::Failure;
 use super::rule::Loaded;
 
@@ -14,6 +16,61 @@ pub(super) fn parse(text: &str) -> Result<u32, String> {
             "a number of steps is a whole number from 0 to {MOST_STEPS}"
         )),
     }
+}
+
+/// The most approximants on a sheet where nobody says which.
+pub(super) const MOST_CELLS: u32 = 12;
+
+/// Several numbers of steps, one at least.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Several(Vec<u32>);
+
+impl Several {
+    /// All from 0 to a number.
+    pub(super) fn up_to(last: u32) -> Self {
+        Self((0..=last).collect())
+    }
+
+    pub(super) fn as_slice(&self) -> &[u32] {
+        &self.0
+    }
+
+    pub(super) fn largest(&self) -> u32 {
+        self.0.iter().copied().max().unwrap_or_default()
+    }
+}
+
+/// As the command line has them.
+impl fmt::Display for Several {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let follow = |pair: &[u32]| pair[1] == pair[0] + 1;
+        if let (Some(first), Some(last)) = (self.0.first(), self.0.last())
+            && self.0.windows(2).all(follow)
+        {
+            return write!(f, "{first}..{last}");
+        }
+        let all: Vec<_> = self.0.iter().map(u32::to_string).collect();
+        f.write_str(&all.join(","))
+    }
+}
+
+/// Reads several numbers of steps: `0..6` is 0 to 6 with both ends, `0,2,4` is a list.
+pub(super) fn parse_several(text: &str) -> Result<Several, String> {
+    const MOST: usize = 10_000;
+    let wrong = || "write 0..6, or a list such as 0,2,4".to_owned();
+    let mut all = Vec::new();
+    for part in text.split(',') {
+        let (first, last) = part.split_once("..").unwrap_or((part, part));
+        let (first, last) = (parse(first.trim())?, parse(last.trim())?);
+        if first > last {
+            return Err(wrong());
+        }
+        if (last - first) as usize >= MOST - all.len().min(MOST) {
+            return Err(format!("a sheet has no more than {MOST} pictures"));
+        }
+        all.extend(first..=last);
+    }
+    Ok(Several(all))
 }
 
 /// The number of steps that was asked for, or that the rule proposes, or else the deepest one, up

@@ -2,8 +2,6 @@
 
 use std::io::{IsTerminal, Write};
 
-use num_bigint::BigUint;
-
 use crate::diagnostic::Diagnostics;
 
 /// Writes diagnostics to standard error, coloured on a terminal.
@@ -17,50 +15,4 @@ pub(super) fn complain(diagnostics: &Diagnostics) {
 /// Writes a line to standard error.
 pub(super) fn say(line: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
-}
-
-/// A whole number with commas between thousands; a very long one by its first digits and its size.
-pub(super) fn grouped(number: &BigUint) -> String {
-    const LONG: usize = 60;
-    let digits = number.to_string();
-    if digits.len() > LONG {
-        return format!("{}.{}e{}", &digits[..1], &digits[1..4], digits.len() - 1);
-    }
-    let mut text = String::with_capacity(digits.len() * 4 / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// A number of bytes in powers of a thousand.
-pub(super) fn bytes(count: u64) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
-    let mut value = count as f64;
-    let mut unit = "B";
-    for larger in ["kB", "MB", "GB", "TB"] {
-        if value < 1000.0 {
-            break;
-        }
-        value /= 1000.0;
-        unit = larger;
-    }
-    if unit == "B" || value >= 100.0 {
-        format!("{value:.0} {unit}")
-    } else {
-        format!("{value:.1} {unit}")
-    }
-}
-
-/// "1 element", "2 elements".
-pub(super) fn counted(number: &BigUint, noun: &str) -> String {
-    let s = if *number == BigUint::from(1u8) {
-        ""
-    } else {
-        "s"
-    };
-    format!("{} {noun}{s}", grouped(number))
 }

@@ -63,4 +63,10 @@ impl Bounds {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
+
+    /// Makes the box as large as it must be to hold another one.
+    pub fn add_all(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
 }

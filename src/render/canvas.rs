@@ -1,4 +1,9 @@
+use std::fmt;
+
 use crate::geometry::{Bounds, DVec2};
+use crate::style::View;
+
+use super::Survey;
 
 /// The size of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -7,6 +12,16 @@ pub enum Size {
     Long(u32),
     /// Width and height; what is drawn is fitted into them, in the middle.
     Exactly(u32, u32),
+}
+
+/// As the command line has it: `1024` or `1024x768`.
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Long(side) => write!(f, "{side}"),
+            Self::Exactly(width, height) => write!(f, "{width}x{height}"),
+        }
+    }
 }
 
 /// Positions farther away than this many pixels are not drawn.
@@ -93,6 +108,27 @@ impl Canvas {
             scale,
             corner: centre - half,
         })
+    }
+
+    /// The canvas that shows what surveys have seen, all of them on the same scale, or a window.
+    pub(crate) fn of(surveys: &[Survey<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
+        let mut all = Bounds::EMPTY;
+        for survey in surveys {
+            all.add_all(&survey.bounds);
+        }
+        let overhang = surveys.iter().map(Survey::overhang).fold(0.0, f64::max);
+        let (shown, pad) = match view.window {
+            Some([x, y, width, height]) => {
+                let corner = DVec2::new(x, y);
+                (Bounds::new(corner, corner + DVec2::new(width, height)), 0.0)
+            }
+            None => (all, overhang),
+        };
+        let canvas = Self::fit(&shown, size, view.margin + pad)?;
+        if !all.is_empty() && !canvas.holds(&all) {
+            return Err(NoRoom::TooClose);
+        }
+        Ok(canvas)
     }
 
     /// Whether all of a box lies near enough to be drawn.

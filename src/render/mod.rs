@@ -1,34 +1,128 @@
 //! Pictures of approximants.
 //!
 //! A picture is made in two walks or more: a survey that learns what there is to draw and how
-//! large it is, and one walk for every class of colour, so that nothing is held in memory.
+//! large it is, and one walk for every class of colour, so that no element is held in memory. What
+//! is walked over becomes paths in whole hundredths of a pixel, the same for every format.
 
 mod canvas;
 mod classes;
-mod path;
+mod painter;
+mod png;
+mod scene;
+mod surface;
 mod survey;
-pub mod svg;
+mod svg;
+mod tracer;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
+pub use png::TooManyPixels;
 pub use survey::Survey;
 
-use std::io;
+pub(crate) use scene::Scene;
+pub(crate) use surface::{FINE, Paint, Pen, Position, Surface};
+pub(crate) use tracer::Tracer;
 
-use crate::grow::WalkError;
+use std::convert::Infallible;
+use std::io::{self, Write};
+
+use crate::graph::Graph;
+use crate::grow::{Growth, WalkError};
+use crate::rule::Rule;
+use crate::style::{Colour, Named, Style, View, Width};
+
+use self::png::Png;
+use self::svg::Svg;
 
 /// Widths of strokes that are relative to their elements are rounded to so many steps an octave.
 const WIDTHS_AN_OCTAVE: f64 = 8.0;
+
+/// A format of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
+    Svg,
+    /// Portable network graphics, antialiased, of four bytes a pixel in memory.
+    Png,
+}
+
+impl Named for Format {
+    const NAMES: &'static [(&'static str, Self)] = &[("svg", Self::Svg), ("png", Self::Png)];
+}
+
+/// What a file says of itself beside the picture.
+#[derive(Clone, Debug, Default)]
+pub struct Labels {
+    /// The title.
+    pub title: String,
+    /// What is to be seen.
+    pub description: String,
+    /// What it takes to make the file again, as text.
+    pub provenance: String,
+}
+
+/// How a picture is made.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The format; SVG unless said otherwise.
+    pub format: Format,
+    /// How elements are drawn.
+    pub style: Style,
+    /// What part of the plane is drawn; everything unless said otherwise.
+    pub view: View,
+    /// The size; 1024 pixels on the long side unless said otherwise.
+    pub size: Size,
+    /// What the file says of itself.
+    pub labels: Labels,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            format: Format::Svg,
+            style: Style::default(),
+            view: View::default(),
+            size: Size::Long(1024),
+            labels: Labels::default(),
+        }
+    }
+}
+
+impl Options {
+    /// The style and the view that a rule proposes.
+    #[must_use]
+    pub fn of(rule: &Rule) -> Self {
+        Self {
+            style: rule.style().clone(),
+            view: *rule.view(),
+            ..Self::default()
+        }
+    }
+}
+
+/// A picture that has been written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The number of elements of the approximant.
+    pub elements: u64,
+    /// The number of fractals.
+    pub fractals: u64,
+}
 
 /// Why a picture is not made.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The walk ended early.
     #[error(transparent)]
-    Walk(WalkError<std::convert::Infallible>),
+    Walk(WalkError<Infallible>),
     /// The picture has no room for what is to be drawn.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    /// The picture is larger than memory may be.
+    #[error(transparent)]
+    TooManyPixels(#[from] TooManyPixels),
     /// The picture cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -47,8 +141,79 @@ impl From<WalkError<io::Error>> for RenderError {
     }
 }
 
-impl From<WalkError<std::convert::Infallible>> for RenderError {
-    fn from(error: WalkError<std::convert::Infallible>) -> Self {
+impl From<WalkError<Infallible>> for RenderError {
+    fn from(error: WalkError<Infallible>) -> Self {
         Self::Walk(error)
+    }
+}
+
+/// Something that can be drawn in any format.
+pub(crate) trait Drawing {
+    /// Width and height in pixels.
+    fn size(&self) -> [u32; 2];
+    /// The colour behind everything.
+    fn background(&self) -> Option<Colour>;
+    /// The pen that most strokes are drawn with.
+    fn pen(&self) -> Pen;
+    /// Draws it.
+    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError>;
+}
+
+/// Grows a graph and writes the approximant as a picture.
+///
+/// # Errors
+///
+/// If growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
+pub fn write(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
+    let Options { style, view, .. } = options;
+    let survey = Survey::walk(graph, growth, style, growth.steps)?;
+    let canvas = Canvas::of(std::slice::from_ref(&survey), view, options.size)?;
+    let scene = Scene::new(&survey, growth, canvas);
+    write_drawing(&scene, options.format, &options.labels, out)?;
+    Ok(Picture {
+        size: canvas.size(),
+        elements: survey.elements,
+        fractals: survey.fractals,
+    })
+}
+
+/// Writes a drawing as a file.
+pub(crate) fn write_drawing(
+    drawing: &impl Drawing,
+    format: Format,
+    labels: &Labels,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    let (size, background) = (drawing.size(), drawing.background());
+    match format {
+        Format::Svg => {
+            let mut svg = Svg::begin(out, size, background, drawing.pen(), labels)?;
+            drawing.draw(&mut svg)?;
+            svg.finish()?;
+        }
+        Format::Png => {
+            let mut png = Png::begin(size, background)?;
+            drawing.draw(&mut png)?;
+            png.write(labels, out)?;
+        }
+    }
+    Ok(())
+}
+
+/// The pen of a style; where widths are relative, one of a pixel.
+pub(crate) fn pen(style: &Style) -> Pen {
+    Pen {
+        width: match style.width {
+            Width::Pixels(width) => width,
+            Width::Relative(_) => 1.0,
+        },
+        cap: style.cap,
+        join: style.join,
+        dash: 0.0,
     }
 }

@@ -47,6 +47,16 @@ impl<'g> Survey<'g> {
         }
     }
 
+    /// What was walked over.
+    pub(super) fn graph(&self) -> &'g Graph {
+        self.graph
+    }
+
+    /// How it is drawn.
+    pub(super) fn style(&self) -> &'g Style {
+        self.style
+    }
+
     /// The classes of colour, now that everything has been seen, and those that are to be painted.
     #[must_use]
     pub fn classes(&self) -> (Classes, Vec<u64>) {

@@ -1,135 +1,207 @@
-//! SVG: connected elements as paths, polygons as subpaths of one orientation, streamed.
-//!
-//! Coordinates are whole hundredths of a pixel, so no point is off by more than 0.01 pixels at the
-//! picture's size. Colours are painted class by class, one walk each.
+//! SVG: paths in whole hundredths of a pixel, streamed.
 
-mod painter;
+mod path;
 
 use std::io::{self, Write};
 
-use crate::geometry::{Bounds, DVec2};
-use crate::graph::Graph;
-use crate::grow::{Growth, walk};
-use crate::style::{Cap, Colour, Join, Named, Style, View, Width};
+use crate::style::{Cap, Colour, Join, Named};
 
-use super::{Canvas, NoRoom, RenderError, Size, Survey};
-use painter::{Painter, Pass, Scene};
+use super::Labels;
+use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
+use path::PathData;
 
-/// Units of the file's coordinates to a pixel.
-const FINE: f64 = 100.0;
+/// Path data is handed on in pieces of about this many bytes.
+const CHUNK: usize = 1 << 16;
 
-/// What a file says of itself beside the picture.
-#[derive(Clone, Debug, Default)]
-pub struct Labels {
-    /// The title.
-    pub title: String,
-    /// What is to be seen.
-    pub description: String,
-    /// What it takes to make the file again, as text.
-    pub provenance: String,
+/// An SVG document that is being written.
+pub(super) struct Svg<W> {
+    out: W,
+    buffer: Vec<u8>,
+    path: PathData,
+    /// The pen that all strokes have that say nothing else.
+    pen: Pen,
+    /// The colour of strokes in the group that is open.
+    group: Option<Colour>,
+    label: Option<String>,
 }
 
-/// A picture that has been written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picture {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// The number of elements of the approximant.
-    pub elements: u64,
-    /// The number of fractals.
-    pub fractals: u64,
-}
-
-/// Grows a graph and writes the approximant as SVG.
-///
-/// # Errors
-///
-/// If growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
-pub fn write(
-    graph: &Graph,
-    growth: &Growth<'_>,
-    style: &Style,
-    view: &View,
-    size: Size,
-    labels: &Labels,
-    out: &mut impl Write,
-) -> Result<Picture, RenderError> {
-    let mut survey = Survey::new(graph, style, growth.steps);
-    walk(graph, growth, &mut survey)?;
-    let (bounds, pad) = match view.window {
-        Some([x, y, width, height]) => {
-            let corner = DVec2::new(x, y);
-            (Bounds::new(corner, corner + DVec2::new(width, height)), 0.0)
+impl<W: Write> Svg<W> {
+    /// Begins a document whose strokes are mostly drawn with `pen`.
+    pub(super) fn begin(
+        mut out: W,
+        [width, height]: [u32; 2],
+        background: Option<Colour>,
+        pen: Pen,
+        labels: &Labels,
+    ) -> io::Result<Self> {
+        let [wide, high] = fine([width, height]);
+        writeln!(
+            out,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
+        )?;
+        writeln!(out, "<title>{}</title>", escaped(&labels.title))?;
+        writeln!(out, "<desc>{}</desc>", escaped(&labels.description))?;
+        if !labels.provenance.is_empty() {
+            writeln!(
+                out,
+                "<metadata>\n{}</metadata>",
+                escaped(&labels.provenance)
+            )?;
         }
-        None => (survey.bounds, survey.overhang()),
-    };
-    let canvas = Canvas::fit(&bounds, size, view.margin + pad)?;
-    if !survey.bounds.is_empty() && !canvas.holds(&survey.bounds) {
-        return Err(NoRoom::TooClose.into());
+        if let Some(background) = background {
+            let opacity = opacity("fill", background);
+            writeln!(
+                out,
+                r#"<rect width="{wide}" height="{high}" fill="{background}"{opacity}/>"#
+            )?;
+        }
+        // What all paths share.
+        write!(out, r#"<g fill="none" stroke-width="{}""#, pen.width * FINE)?;
+        if pen.cap != Cap::Butt {
+            write!(out, r#" stroke-linecap="{}""#, pen.cap.name())?;
+        }
+        if pen.join != Join::Miter {
+            write!(out, r#" stroke-linejoin="{}""#, pen.join.name())?;
+        }
+        out.write_all(b">\n")?;
+        Ok(Self {
+            out,
+            buffer: Vec::with_capacity(2 * CHUNK),
+            path: PathData::default(),
+            pen,
+            group: None,
+            label: None,
+        })
     }
-    let (classes, painted) = survey.classes();
 
-    write_head(out, &canvas, style, labels)?;
-    let scene = Scene {
-        graph,
-        style,
-        canvas: &canvas,
-        classes: &classes,
-    };
-    let (passes, together) = Pass::all(&scene, painted);
-    for pass in passes {
-        let mut painter = Painter::new(scene, pass, together, out);
-        walk(graph, growth, &mut painter)?;
-        painter.close_group()?;
+    /// Ends the document.
+    pub(super) fn finish(mut self) -> io::Result<()> {
+        self.close_group();
+        self.buffer.extend_from_slice(b"</g>\n</svg>\n");
+        self.out.write_all(&self.buffer)
     }
-    out.write_all(b"</g>\n</svg>\n")?;
-    Ok(Picture {
-        size: canvas.size(),
-        elements: survey.elements,
-        fractals: survey.fractals,
-    })
+
+    fn open_group(&mut self, colour: Colour) -> io::Result<()> {
+        if self.group != Some(colour) {
+            self.close_group();
+            self.group = Some(colour);
+            let opacity = opacity("stroke", colour);
+            writeln!(self.buffer, r#"<g stroke="{colour}"{opacity}>"#)?;
+        }
+        Ok(())
+    }
+
+    fn close_group(&mut self) {
+        if self.group.take().is_some() {
+            self.buffer.extend_from_slice(b"</g>\n");
+        }
+    }
+
+    /// The attributes in which a pen differs from that of the document.
+    fn pen(&mut self, pen: Pen) -> io::Result<()> {
+        let out = &mut self.buffer;
+        if pen.width != self.pen.width {
+            write!(out, r#" stroke-width="{:.1}""#, pen.width * FINE)?;
+        }
+        if pen.cap != self.pen.cap {
+            write!(out, r#" stroke-linecap="{}""#, pen.cap.name())?;
+        }
+        if pen.join != self.pen.join {
+            write!(out, r#" stroke-linejoin="{}""#, pen.join.name())?;
+        }
+        if pen.dash > 0.0 {
+            write!(out, r#" stroke-dasharray="{:.1}""#, pen.dash * FINE)?;
+        }
+        Ok(())
+    }
 }
 
-fn write_head(
-    out: &mut impl Write,
-    canvas: &Canvas,
-    style: &Style,
-    labels: &Labels,
-) -> io::Result<()> {
-    let [width, height] = canvas.size();
-    let (wide, high) = (u64::from(width) * 100, u64::from(height) * 100);
-    writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
-    )?;
-    writeln!(out, "<title>{}</title>", escaped(&labels.title))?;
-    writeln!(out, "<desc>{}</desc>", escaped(&labels.description))?;
-    if !labels.provenance.is_empty() {
+impl<W: Write> Surface for Svg<W> {
+    fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        if let Some(Stroke { colour, .. }) = paint.stroke {
+            self.open_group(colour)?;
+        }
+        self.buffer.extend_from_slice(b"<path");
+        if let Some(label) = self.label.take() {
+            let label = escaped(&label).replace('"', "&quot;");
+            write!(self.buffer, r#" aria-label="{label}""#)?;
+        }
+        if let Some(fill) = paint.fill {
+            write!(self.buffer, r#" fill="{fill}"{}"#, opacity("fill", fill))?;
+        }
+        match paint.stroke {
+            Some(stroke) => self.pen(stroke.pen)?,
+            None if self.group.is_some() => self.buffer.extend_from_slice(br#" stroke="none""#),
+            None => {}
+        }
+        self.buffer.extend_from_slice(b" d=\"");
+        Ok(())
+    }
+
+    #[inline]
+    fn move_to(&mut self, to: Position) {
+        self.path.move_to(to);
+    }
+
+    #[inline]
+    fn line_to(&mut self, to: Position) {
+        self.path.line_to(to);
+    }
+
+    #[inline]
+    fn curve_to(&mut self, a: Position, b: Position, to: Position) {
+        self.path.curve_to(a, b, to);
+    }
+
+    #[inline]
+    fn close(&mut self) {
+        self.path.close();
+    }
+
+    #[inline]
+    fn hand_on(&mut self) -> io::Result<()> {
+        if self.path.len() > CHUNK {
+            self.path.drain(&mut self.buffer);
+            self.out.write_all(&self.buffer)?;
+            self.buffer.clear();
+        }
+        Ok(())
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.path.drain(&mut self.buffer);
+        self.path = PathData::default();
+        self.buffer.extend_from_slice(b"\"/>\n");
+        if self.buffer.len() > CHUNK {
+            self.out.write_all(&self.buffer)?;
+            self.buffer.clear();
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+        self.close_group();
+        let ([x, y], [width, height]) = (fine(corner), fine(size));
         writeln!(
-            out,
-            "<metadata>\n{}</metadata>",
-            escaped(&labels.provenance)
-        )?;
+            self.buffer,
+            r#"<svg x="{x}" y="{y}" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
+        )
     }
-    if let Some(background) = style.background {
-        let opacity = opacity("fill", background);
-        writeln!(
-            out,
-            r#"<rect width="{wide}" height="{high}" fill="{background}"{opacity}/>"#
-        )?;
+
+    fn leave(&mut self) -> io::Result<()> {
+        self.close_group();
+        self.buffer.extend_from_slice(b"</svg>\n");
+        Ok(())
     }
-    // What all paths share.
-    out.write_all(br#"<g fill="none""#)?;
-    if let Width::Pixels(width) = style.width {
-        write!(out, r#" stroke-width="{}""#, width * FINE)?;
+
+    fn label(&mut self, text: &str) {
+        self.label = Some(text.into());
     }
-    if style.cap != Cap::Butt {
-        write!(out, r#" stroke-linecap="{}""#, style.cap.name())?;
-    }
-    if style.join != Join::Miter {
-        write!(out, r#" stroke-linejoin="{}""#, style.join.name())?;
-    }
-    out.write_all(b">\n")
+}
+
+/// Whole pixels in the units of positions.
+fn fine(pixels: [u32; 2]) -> [u64; 2] {
+    pixels.map(|side| u64::from(side) * 100)
 }
 
 /// Text as XML may hold it.

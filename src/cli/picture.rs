@@ -8,10 +8,7 @@ use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Widt
 
 /// Options of pictures.
 #[derive(clap::Args)]
-pub(crate) struct PictureArguments {
-    /// The picture's long side in pixels, or WIDTHxHEIGHT
-    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = size)]
-    pub(crate) size: Size,
+pub(super) struct PictureArguments {
     /// A window in the rule's units: lower left corner, width, height
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
@@ -20,7 +17,7 @@ pub(crate) struct PictureArguments {
     stroke: Option<Colour>,
     /// The width of strokes in pixels, or, with a % sign, relative to the element
     #[arg(long, value_name = "W", value_parser = width)]
-    stroke_width: Option<Width>,
+    pub(super) stroke_width: Option<Width>,
     /// The colour of areas
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     fill: Option<Colour>,
@@ -46,7 +43,7 @@ pub(crate) struct PictureArguments {
 
 impl PictureArguments {
     /// The rule's style with what is asked for.
-    pub(crate) fn style(&self, rule: &Rule) -> Style {
+    pub(super) fn style(&self, rule: &Rule) -> Style {
         let own = rule.style();
         Style {
             stroke: self.stroke.or(own.stroke),
@@ -66,7 +63,7 @@ impl PictureArguments {
     }
 
     /// The rule's view with what is asked for.
-    pub(crate) fn view(&self, rule: &Rule) -> View {
+    pub(super) fn view(&self, rule: &Rule) -> View {
         View {
             window: self.view.or(rule.view().window),
             margin: self.margin.unwrap_or(rule.view().margin),
@@ -74,19 +71,12 @@ impl PictureArguments {
     }
 
     /// The options as the command line has them, each with its value.
-    pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
+    pub(super) fn options(&self) -> Vec<(&'static str, String)> {
         let mut options = Vec::new();
         let mut option = |name: &'static str, value: Option<String>| {
             options.extend(value.map(|value| (name, value)));
         };
         let colour = |colour: Option<Colour>| colour.map(|colour| format!("{colour:#}"));
-        option(
-            "size",
-            Some(match self.size {
-                Size::Long(side) => side.to_string(),
-                Size::Exactly(width, height) => format!("{width}x{height}"),
-            }),
-        );
         option(
             "view",
             self.view
@@ -116,7 +106,8 @@ impl PictureArguments {
 
 const MOST_PIXELS: u32 = 1_000_000;
 
-fn size(text: &str) -> Result<Size, String> {
+/// Reads the size of a picture.
+pub(super) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| match text.parse::<u32>() {
         Ok(side) if (1..=MOST_PIXELS).contains(&side) => Ok(side),
         _ => Err(format!(
@@ -165,7 +156,8 @@ fn width(text: &str) -> Result<Width, String> {
     }
 }
 
-fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+/// Reads one of the names of an enumeration.
+pub(super) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name))
         .try_map(|name| T::from_name(&name).ok_or("unknown"))
 }

@@ -1,0 +1,61 @@
+//! What a picture's file says of itself: enough to make it again.
+
+use crate::render;
+
+use super::rule::Loaded;
+
+/// Title, description, and provenance: the program's version, the command that makes the picture
+/// from what follows, the values of the parameters, and the rule with all its components.
+pub(super) fn labels(
+    loaded: &Loaded,
+    shown: &str,
+    subcommand: &str,
+    options: impl IntoIterator<Item = (&'static str, String)>,
+) -> render::Labels {
+    let description = loaded.rule.description();
+    let title = description
+        .title
+        .clone()
+        .unwrap_or_else(|| loaded.name.clone());
+    let mut provenance = format!(
+        "# kfrac {}\n# {}\n",
+        env!("CARGO_PKG_VERSION"),
+        command(loaded, subcommand, options)
+    );
+    for parameter in loaded.rule.parameters() {
+        provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
+    }
+    provenance.push_str(&loaded.document.to_yaml());
+    let about = description.about.as_deref().unwrap_or_default().trim();
+    render::Labels {
+        title,
+        description: format!("{shown} of {}. {about}", loaded.name),
+        provenance,
+    }
+}
+
+/// The command that makes the picture again from the rule as resolved.
+fn command(
+    loaded: &Loaded,
+    subcommand: &str,
+    options: impl IntoIterator<Item = (&'static str, String)>,
+) -> String {
+    let file = quoted(&format!("{}.yaml", loaded.name));
+    let mut command = format!("kfrac {subcommand} {file}");
+    let settings = loaded.settings.iter();
+    let settings = settings.map(|setting| ("set", format!("{}={}", setting.name, setting.value)));
+    for (name, value) in settings.chain(options) {
+        // Joined by a sign of equality, so that a value may begin with a minus.
+        command.push_str(&format!(" --{name}={}", quoted(&value)));
+    }
+    command
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
+    if word.chars().all(plain) {
+        return word.into();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}

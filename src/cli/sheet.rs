@@ -1,0 +1,112 @@
+//! `kfrac sheet`: approximants side by side.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use crate::catalogue::Catalogue;
+use crate::figure::sheet;
+use crate::render::{self, Size};
+use crate::style::{Named, Style, Width};
+use crate::wording;
+
+use super::growth::GrowthArguments;
+use super::labels::labels;
+use super::picture::{self, PictureArguments};
+use super::rule::{Loaded, RuleArguments};
+use super::steps::Several;
+use super::{Failure, format, output, steps, text};
+
+/// Draws approximants side by side
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    rule: RuleArguments,
+    /// Which steps, as 0..6 or 0,2,4 [default: 0 to what the rule says, no more than 12]
+    #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
+    steps: Option<Several>,
+    /// The file to write, or - for standard output [default: NAME-sheet.svg]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The format [default: from the extension of the file]
+    #[arg(long, value_parser = picture::named::<render::Format>())]
+    format: Option<render::Format>,
+    /// The long side of every picture in pixels, or WIDTHxHEIGHT
+    #[arg(long, value_name = "SIZE", default_value = "256", value_parser = picture::size)]
+    size: Size,
+    /// How many pictures stand in a row [default: as many as make the sheet 4 to 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    columns: Option<u32>,
+    #[command(flatten)]
+    picture: PictureArguments,
+    #[command(flatten)]
+    growth: GrowthArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let start = Instant::now();
+    let format = format::choose(arguments.format, arguments.output.as_deref())?;
+    let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
+    let steps = match &arguments.steps {
+        Some(steps) => steps.clone(),
+        None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
+    };
+    let graph = loaded.compile(steps.largest())?;
+    let mut cells = Vec::new();
+    for &step in steps.as_slice() {
+        cells.push(sheet::Cell {
+            name: format!("step {step}"),
+            graph: &graph,
+            growth: arguments.growth.steps(step, &graph, &loaded)?,
+        });
+    }
+    let default = PathBuf::from(format!("{}-sheet.{}", loaded.name, format.name()));
+    let path = arguments.output.as_ref().unwrap_or(&default);
+    let options = arguments.options(&loaded, &steps, format);
+    let (written, bytes) = output::write(path, |out| {
+        sheet::write(&cells, arguments.columns, &options, out)
+            .map_err(|error| arguments.growth.explain(error, &loaded, path))
+    })?;
+    if !arguments.growth.quiet {
+        let [width, height] = written.size;
+        text::say(&format!(
+            "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
+            output::called(path),
+            wording::counted(&cells.len().into(), "approximant"),
+            loaded.name,
+            wording::counted(&written.elements.into(), "element"),
+            wording::bytes(bytes),
+            start.elapsed().as_secs_f64(),
+        ));
+    }
+    Ok(())
+}
+
+impl Arguments {
+    /// The rule's style, with strokes that suit small pictures unless their width is asked for.
+    fn style(&self, loaded: &Loaded) -> Style {
+        let mut style = self.picture.style(&loaded.rule);
+        if let (Width::Pixels(width), None) = (&mut style.width, self.picture.stroke_width) {
+            let (Size::Long(side) | Size::Exactly(side, _)) = self.size;
+            *width *= (f64::from(side) / 1024.0).clamp(0.5, 1.0);
+        }
+        style
+    }
+
+    fn options(&self, loaded: &Loaded, steps: &Several, format: render::Format) -> render::Options {
+        let mut options = vec![("steps", steps.to_string())];
+        options.extend(self.growth.options());
+        if format != render::Format::Svg {
+            options.push(("format", format.name().into()));
+        }
+        options.push(("size", self.size.to_string()));
+        options.extend(self.columns.map(|columns| ("columns", columns.to_string())));
+        options.extend(self.picture.options());
+        render::Options {
+            format,
+            style: self.style(loaded),
+            view: self.picture.view(&loaded.rule),
+            size: self.size,
+            labels: labels(loaded, &format!("Steps {steps}"), "sheet", options),
+        }
+    }
+}

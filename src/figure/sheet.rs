@@ -1,0 +1,173 @@
+//! Sheets: approximants side by side, all of them at one scale, each with its name and its number
+//! of elements.
+
+use std::io::Write;
+
+use crate::geometry::DVec2;
+use crate::graph::Graph;
+use crate::grow::Growth;
+use crate::render::{
+    Canvas, Drawing, Options, Pen, RenderError, Scene, Surface, Survey, pen, write_drawing,
+};
+use crate::style::{Colour, Style};
+
+use crate::wording::counted;
+
+use super::LABEL;
+use super::text::Font;
+
+/// The size of captions, and what lies around cells, in pixels.
+const CAPTION: f64 = 14.0;
+const CAPTION_HEIGHT: u32 = 24;
+const GAP: u32 = 16;
+
+/// One picture of a sheet.
+pub struct Cell<'a> {
+    /// What the approximant is called.
+    pub name: String,
+    /// The graph that it is grown from.
+    pub graph: &'a Graph,
+    /// How it is grown.
+    pub growth: Growth<'a>,
+}
+
+/// A sheet that has been written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Written {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The number of elements of all approximants together.
+    pub elements: u64,
+}
+
+/// Grows approximants and writes them side by side, in rows of `columns` (a sheet about as wide as
+/// high if nothing is said).
+///
+/// [`Options::size`] is the size of every picture, not of the sheet. All show the same part of the
+/// plane, that which the largest of them fills; colours that tell steps mean the same in all.
+///
+/// # Errors
+///
+/// If growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
+pub fn write(
+    cells: &[Cell<'_>],
+    columns: Option<u32>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Written, RenderError> {
+    let Options { style, view, .. } = options;
+    let steps = cells.iter().map(|cell| cell.growth.steps).max();
+    let mut surveys = Vec::new();
+    for cell in cells {
+        surveys.push(Survey::walk(
+            cell.graph,
+            &cell.growth,
+            style,
+            steps.unwrap_or_default(),
+        )?);
+    }
+    let canvas = Canvas::of(&surveys, view, options.size)?;
+    let font = Font::new();
+    let mut scenes = Vec::new();
+    let mut elements = 0;
+    for (cell, survey) in cells.iter().zip(&surveys) {
+        let caption = format!(
+            "{}: {}",
+            cell.name,
+            counted(&survey.elements.into(), "element")
+        );
+        scenes.push((caption, Scene::new(survey, &cell.growth, canvas)));
+        elements += survey.elements;
+    }
+    let widest = scenes
+        .iter()
+        .map(|(caption, _)| font.width(caption, CAPTION));
+    let widest = widest.fold(0.0, f64::max).ceil();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "captions are short"
+    )]
+    let sheet = Sheet {
+        columns: columns.unwrap_or_else(|| columns_for(cells.len(), canvas.size())),
+        column: canvas.size()[0].max(widest as u32),
+        row: canvas.size()[1] + CAPTION_HEIGHT,
+        scenes,
+        canvas,
+        font,
+        style,
+    };
+    write_drawing(&sheet, options.format, &options.labels, out)?;
+    Ok(Written {
+        size: sheet.size(),
+        elements,
+    })
+}
+
+struct Sheet<'a> {
+    /// The approximants with their captions.
+    scenes: Vec<(String, Scene<'a>)>,
+    /// The canvas of each.
+    canvas: Canvas,
+    columns: u32,
+    /// The width of a column and the height of a row, in pixels, without the gaps.
+    column: u32,
+    row: u32,
+    font: Font,
+    style: &'a Style,
+}
+
+impl Drawing for Sheet<'_> {
+    fn size(&self) -> [u32; 2] {
+        let count = u32::try_from(self.scenes.len()).unwrap_or(u32::MAX);
+        let sides = [
+            (self.columns.min(count), self.column),
+            (count.div_ceil(self.columns), self.row),
+        ];
+        sides.map(|(count, side)| {
+            side.saturating_add(GAP)
+                .saturating_mul(count)
+                .saturating_add(GAP)
+        })
+    }
+
+    fn background(&self) -> Option<Colour> {
+        self.style.background
+    }
+
+    fn pen(&self) -> Pen {
+        pen(self.style)
+    }
+
+    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
+        let [width, height] = self.canvas.size();
+        let places = (0..).flat_map(|row| (0..self.columns).map(move |column| [column, row]));
+        for ((caption, scene), [column, row]) in self.scenes.iter().zip(places) {
+            let left = GAP + column * (self.column + GAP);
+            let top = GAP + row * (self.row + GAP);
+            surface.enter([left + (self.column - width) / 2, top], [width, height])?;
+            scene.draw(surface)?;
+            surface.leave()?;
+            let middle = f64::from(left) + f64::from(self.column) / 2.0;
+            let at = DVec2::new(middle, f64::from(top + height) + CAPTION + 2.0);
+            self.font.draw(surface, caption, CAPTION, at, LABEL)?;
+        }
+        Ok(())
+    }
+}
+
+/// The number of columns that makes the sheet's sides about 4 to 3.
+fn columns_for(count: usize, [width, height]: [u32; 2]) -> u32 {
+    let count = u32::try_from(count).unwrap_or(u32::MAX).max(1);
+    let [width, height] = [
+        width.saturating_add(GAP),
+        height.saturating_add(CAPTION_HEIGHT + GAP),
+    ];
+    let off = |columns: u32| {
+        let rows = count.div_ceil(columns);
+        let ratio = f64::from(columns) * f64::from(width) / (f64::from(rows) * f64::from(height));
+        libm::log(ratio * 3.0 / 4.0).abs()
+    };
+    let all = 1..=count.min(100);
+    all.min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(1)
+}

@@ -1,0 +1,134 @@
+//! Labels of figures, drawn as outlines of Noto Sans: the same in every viewer, on every machine
+//! and in every format.
+
+use std::io;
+
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
+
+use crate::geometry::DVec2;
+use crate::render::{FINE, Paint, Position, Surface, Tracer};
+use crate::style::Colour;
+
+/// The font of all labels.
+pub(super) struct Font {
+    face: Face<'static>,
+}
+
+impl Font {
+    pub(super) fn new() -> Self {
+        match Face::parse(notosans::REGULAR_TTF, 0) {
+            Ok(face) => Self { face },
+            Err(error) => unreachable!("the font is whole: {error}"),
+        }
+    }
+
+    /// Pixels a unit of the font, where an em has `size` pixels.
+    fn scale(&self, size: f64) -> f64 {
+        size / f64::from(self.face.units_per_em())
+    }
+
+    fn glyph(&self, character: char) -> GlyphId {
+        self.face.glyph_index(character).unwrap_or_default()
+    }
+
+    fn advance(&self, glyph: GlyphId) -> f64 {
+        f64::from(self.face.glyph_hor_advance(glyph).unwrap_or_default())
+    }
+
+    /// The width of a text in pixels.
+    pub(super) fn width(&self, text: &str, size: f64) -> f64 {
+        let glyphs = text.chars().map(|character| self.glyph(character));
+        glyphs.map(|glyph| self.advance(glyph)).sum::<f64>() * self.scale(size)
+    }
+
+    /// Draws a text of `size` pixels an em with the middle of its baseline at `at`, in pixels,
+    /// y down.
+    pub(super) fn draw(
+        &self,
+        surface: &mut impl Surface,
+        text: &str,
+        size: f64,
+        at: DVec2,
+        colour: Colour,
+    ) -> io::Result<()> {
+        let before = self.width(text, size) / 2.0;
+        surface.label(text);
+        let mut outline = Outline {
+            tracer: Tracer::new(surface),
+            origin: at - DVec2::new(before, 0.0),
+            scale: self.scale(size),
+            pen: DVec2::ZERO,
+        };
+        outline.tracer.begin(&Paint {
+            fill: Some(colour),
+            stroke: None,
+        })?;
+        for character in text.chars() {
+            let glyph = self.glyph(character);
+            // A space has no outline.
+            let _ = self.face.outline_glyph(glyph, &mut outline);
+            outline.origin.x += self.advance(glyph) * outline.scale;
+        }
+        outline.tracer.end()
+    }
+}
+
+/// Lays glyphs on a surface.
+struct Outline<'s, S> {
+    tracer: Tracer<'s, S>,
+    /// Where the glyph stands, in pixels.
+    origin: DVec2,
+    scale: f64,
+    /// The last point, in the font's units.
+    pen: DVec2,
+}
+
+impl<S: Surface> Outline<'_, S> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    fn position(&self, point: DVec2) -> Position {
+        let pixel = self.origin + DVec2::new(point.x, -point.y) * self.scale;
+        [pixel.x, pixel.y].map(|value| (value * FINE).round() as i64)
+    }
+}
+
+impl<S: Surface> OutlineBuilder for Outline<'_, S> {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.pen = point(x, y);
+        self.tracer.move_to(self.position(self.pen));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.pen = point(x, y);
+        self.tracer.line_to(self.position(self.pen));
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let (control, to) = (point(x1, y1), point(x, y));
+        // The same parabola as a cubic.
+        let (a, b) = (
+            self.pen.lerp(control, 2.0 / 3.0),
+            to.lerp(control, 2.0 / 3.0),
+        );
+        self.tracer
+            .curve_to(self.position(a), self.position(b), self.position(to));
+        self.pen = to;
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let (a, b, to) = (point(x1, y1), point(x2, y2), point(x, y));
+        self.tracer
+            .curve_to(self.position(a), self.position(b), self.position(to));
+        self.pen = to;
+    }
+
+    fn close(&mut self) {
+        self.tracer.close(false);
+    }
+}
+
+fn point(x: f32, y: f32) -> DVec2 {
+    DVec2::new(x.into(), y.into())
+}

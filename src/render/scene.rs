@@ -1,0 +1,90 @@
+use std::convert::Infallible;
+
+use crate::graph::Graph;
+use crate::grow::{Growth, WalkError, walk};
+use crate::style::{Colour, Style, Width};
+
+use super::painter::Painter;
+use super::surface::{Pen, Surface};
+use super::{Canvas, Classes, Drawing, RenderError, Survey};
+
+/// An approximant on its canvas.
+pub(crate) struct Scene<'a> {
+    pub(super) graph: &'a Graph,
+    growth: &'a Growth<'a>,
+    pub(super) style: &'a Style,
+    pub(super) canvas: Canvas,
+    pub(super) classes: Classes,
+    passes: Vec<Pass>,
+    /// Whether closed paths are filled as they are stroked.
+    pub(super) fills_strokes: bool,
+}
+
+/// What one walk paints.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Pass {
+    /// The areas of fractals that are closed chains, under everything else.
+    Areas,
+    /// The elements of a class.
+    Class(u64),
+}
+
+impl<'a> Scene<'a> {
+    /// What a survey has seen, on a canvas.
+    pub(crate) fn new(survey: &Survey<'a>, growth: &'a Growth<'a>, canvas: Canvas) -> Self {
+        let (graph, style) = (survey.graph(), survey.style());
+        let (classes, painted) = survey.classes();
+        // One path for both, where stroke and colour never change along a fractal.
+        let together = graph.draws_closed_paths()
+            && matches!(style.width, Width::Pixels(_))
+            && classes.keep_fractals_whole();
+        let areas = (style.fill.is_some() && !together).then_some(Pass::Areas);
+        let passes = areas.into_iter();
+        Self {
+            graph,
+            growth,
+            style,
+            canvas,
+            classes,
+            passes: passes.chain(painted.into_iter().map(Pass::Class)).collect(),
+            fills_strokes: together && style.fill.is_some(),
+        }
+    }
+}
+
+impl Drawing for Scene<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.canvas.size()
+    }
+
+    fn background(&self) -> Option<Colour> {
+        self.style.background
+    }
+
+    fn pen(&self) -> Pen {
+        super::pen(self.style)
+    }
+
+    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
+        for &pass in &self.passes {
+            let mut painter = Painter::new(self, pass, surface);
+            walk(self.graph, self.growth, &mut painter)?;
+            painter.finish()?;
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Survey<'a> {
+    /// Walks over an approximant once. Colours that tell steps span `steps` of them.
+    pub(crate) fn walk(
+        graph: &'a Graph,
+        growth: &Growth<'_>,
+        style: &'a Style,
+        steps: u32,
+    ) -> Result<Self, WalkError<Infallible>> {
+        let mut survey = Self::new(graph, style, steps);
+        walk(graph, growth, &mut survey)?;
+        Ok(survey)
+    }
+}

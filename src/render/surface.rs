@@ -1,0 +1,73 @@
+use std::io;
+
+use crate::style::{Cap, Colour, Join};
+
+/// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
+///
+/// Positions are rounded once, so that pictures of all formats show the same points, and none is
+/// off by more than 0.01 pixels.
+pub(crate) type Position = [i64; 2];
+
+/// Units of positions to a pixel.
+pub(crate) const FINE: f64 = 100.0;
+
+/// How a path is painted: filled first, then stroked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Paint {
+    /// The colour of the area, under the nonzero rule.
+    pub(crate) fill: Option<Colour>,
+    /// The line along the path.
+    pub(crate) stroke: Option<Stroke>,
+}
+
+/// A line along a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stroke {
+    /// Its colour.
+    pub(crate) colour: Colour,
+    /// Its width and shape.
+    pub(crate) pen: Pen,
+}
+
+/// The pen that strokes are drawn with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pen {
+    /// The width in pixels.
+    pub(crate) width: f64,
+    /// The ends of open paths.
+    pub(crate) cap: Cap,
+    /// The corners of paths.
+    pub(crate) join: Join,
+    /// The length of dashes and of the gaps between them, in pixels; 0 for a line without gaps.
+    pub(crate) dash: f64,
+}
+
+/// Where the parts of pictures are made: a picture's format.
+///
+/// Paths come one after another, each between [`Surface::begin`] and [`Surface::end`]; what comes
+/// later lies on top. Their subpaths have no two equal vertices in a row but dots, which are one
+/// line of no length.
+pub(crate) trait Surface {
+    /// Begins a path.
+    fn begin(&mut self, paint: &Paint) -> io::Result<()>;
+    /// Begins a subpath.
+    fn move_to(&mut self, to: Position);
+    /// A straight line.
+    fn line_to(&mut self, to: Position);
+    /// A cubic Bézier curve.
+    fn curve_to(&mut self, a: Position, b: Position, to: Position);
+    /// Closes the subpath with a line to its first vertex.
+    fn close(&mut self);
+    /// Hands on what has been drawn of the path, if that is much.
+    fn hand_on(&mut self) -> io::Result<()>;
+    /// Ends the path.
+    fn end(&mut self) -> io::Result<()>;
+
+    /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
+    /// and nothing is drawn outside.
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()>;
+    /// Ends a part.
+    fn leave(&mut self) -> io::Result<()>;
+    /// What the next path says in words, where the format can tell.
+    fn label(&mut self, text: &str);
+}

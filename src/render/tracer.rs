@@ -1,0 +1,103 @@
+use std::io;
+
+use crate::render::surface::{Paint, Position, Surface};
+
+/// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
+pub(crate) struct Tracer<'s, S: ?Sized> {
+    surface: &'s mut S,
+    pen: Position,
+    start: Position,
+    /// A vertex that is not drawn yet: the last one of a closed path is left out.
+    held: Option<Position>,
+    /// Whether the subpath has a vertex beside its start.
+    has_length: bool,
+    open: bool,
+}
+
+impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
+    pub(crate) fn new(surface: &'s mut S) -> Self {
+        Self {
+            surface,
+            pen: [0, 0],
+            start: [0, 0],
+            held: None,
+            has_length: false,
+            open: false,
+        }
+    }
+
+    /// Begins a path.
+    pub(crate) fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        self.surface.begin(paint)
+    }
+
+    /// Begins a subpath.
+    pub(crate) fn move_to(&mut self, to: Position) {
+        self.finish();
+        self.surface.move_to(to);
+        (self.pen, self.start) = (to, to);
+        self.has_length = false;
+        self.open = true;
+    }
+
+    pub(crate) fn line_to(&mut self, to: Position) {
+        self.draw_held();
+        self.held = Some(to);
+    }
+
+    pub(crate) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
+        self.draw_held();
+        self.surface.curve_to(a, b, to);
+        self.pen = to;
+        self.has_length = true;
+    }
+
+    /// Closes the subpath; `returned` tells that its last vertex is its first, which is then not
+    /// drawn twice.
+    pub(crate) fn close(&mut self, returned: bool) {
+        if returned || self.held == Some(self.start) {
+            self.held = None;
+        }
+        self.draw_held();
+        if self.has_length {
+            self.surface.close();
+        } else {
+            self.surface.line_to(self.pen);
+        }
+        self.open = false;
+    }
+
+    /// Ends the subpath where the pen is.
+    fn finish(&mut self) {
+        if !self.open {
+            return;
+        }
+        self.draw_held();
+        if !self.has_length {
+            self.surface.line_to(self.pen);
+        }
+        self.open = false;
+    }
+
+    fn draw_held(&mut self) {
+        let Some(to) = self.held.take() else { return };
+        // A vertex that rounds to the one before adds nothing.
+        if to == self.pen {
+            return;
+        }
+        self.surface.line_to(to);
+        self.pen = to;
+        self.has_length = true;
+    }
+
+    /// Hands on what has been drawn of the path, if that is much.
+    pub(crate) fn hand_on(&mut self) -> io::Result<()> {
+        self.surface.hand_on()
+    }
+
+    /// Ends the path.
+    pub(crate) fn end(&mut self) -> io::Result<()> {
+        self.finish();
+        self.surface.end()
+    }
+}

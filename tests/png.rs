@@ -1,0 +1,265 @@
+//! PNG and SVG are the same picture: resvg, which reads the SVG, is held against our PNG.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{compiled, document, document_of, resolved};
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::grow::Growth;
+use kfrac::render::{self, Format, Labels, Options, Size};
+use kfrac::rule::Rule;
+use resvg::tiny_skia::{Color, Pixmap, Transform};
+use resvg::usvg;
+
+/// Values of pixels differ by no more than this on average and at worst, of 255, on white and on
+/// black. resvg makes strokes in the units of the file, a hundred to a pixel, and rounds other
+/// corners; the worst is one of the four lines by which an edge is sampled.
+const MEAN: f64 = 0.5;
+const WORST: u8 = 64;
+
+fn drawn(rule: &Arc<Rule>, steps: u32, options: &Options) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let graph = compiled(rule, steps);
+    render::write(&graph, &Growth::steps(steps), options, &mut bytes)
+        .unwrap_or_else(|error| panic!("{:?} at {steps}: {error}", rule.description().title));
+    bytes
+}
+
+/// The pixels of an SVG on a background.
+fn read_svg(svg: &[u8], background: Color) -> Pixmap {
+    let tree = usvg::Tree::from_data(svg, &usvg::Options::default()).unwrap();
+    let size = tree.size().to_int_size();
+    let mut pixmap = Pixmap::new(size.width(), size.height()).unwrap();
+    pixmap.fill(background);
+    resvg::render(&tree, Transform::identity(), &mut pixmap.as_mut());
+    pixmap
+}
+
+/// A PNG as its decoder sees it: header, texts, and red, green, blue and opacity of every pixel.
+struct Read {
+    colour: png::ColorType,
+    depth: png::BitDepth,
+    texts: Vec<(String, String)>,
+    size: [u32; 2],
+    rgba: Vec<[u8; 4]>,
+}
+
+fn read_png(bytes: &[u8]) -> Read {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    let header = decoder.read_header_info().unwrap();
+    let (colour, depth) = (header.color_type, header.bit_depth);
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    reader.finish().unwrap();
+    let rgba = match info.color_type {
+        png::ColorType::Rgba => pixels.chunks(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
+        png::ColorType::GrayscaleAlpha => {
+            pixels.chunks(2).map(|p| [p[0], p[0], p[0], p[1]]).collect()
+        }
+        other => panic!("{other:?}"),
+    };
+    let texts = &reader.info().utf8_text;
+    Read {
+        colour,
+        depth,
+        texts: texts
+            .iter()
+            .map(|text| (text.keyword.clone(), text.get_text().unwrap()))
+            .collect(),
+        size: [info.width, info.height],
+        rgba,
+    }
+}
+
+/// Mean and largest difference on a background that is white or black.
+fn difference(png: &Read, svg: &Pixmap, background: u8) -> (f64, u8) {
+    assert_eq!(png.size, [svg.width(), svg.height()]);
+    let (mut sum, mut worst) = (0.0, 0);
+    for (ours, theirs) in png.rgba.iter().zip(svg.pixels()) {
+        let theirs = [theirs.red(), theirs.green(), theirs.blue()];
+        for (our, their) in ours.iter().zip(theirs) {
+            let over = u32::from(*our) * u32::from(ours[3])
+                + u32::from(background) * u32::from(255 - ours[3]);
+            let over = u8::try_from((over + 127) / 255).unwrap();
+            sum += f64::from(over.abs_diff(their));
+            worst = worst.max(over.abs_diff(their));
+        }
+    }
+    (sum / (3.0 * svg.pixels().len() as f64), worst)
+}
+
+/// Holds a picture's two formats against each other.
+fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
+    let options = |format| Options {
+        format,
+        size: Size::Long(size),
+        ..Options::of(rule)
+    };
+    let svg = drawn(rule, steps, &options(Format::Svg));
+    let png = read_png(&drawn(rule, steps, &options(Format::Png)));
+    for (background, value) in [(Color::WHITE, 255), (Color::BLACK, 0)] {
+        let (mean, worst) = difference(&png, &read_svg(&svg, background), value);
+        assert!(
+            mean <= MEAN && worst <= WORST,
+            "{name} at {steps}: {mean:.4} on average, {worst} at worst"
+        );
+    }
+}
+
+#[test]
+fn both_formats_of_the_whole_library_are_the_same_picture() {
+    let entries = Catalogue::embedded().entries();
+    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        let name = entry.name.as_str();
+        let rule = resolved(&document(name), &[]);
+        agree(name, &rule, rule.steps().unwrap_or(4).min(8), 256);
+    }
+}
+
+#[test]
+fn both_formats_agree_on_every_style() {
+    const CHAIN: &str = "initiator: triangle\ngenerator: koch\n";
+    const TREE: &str = "initiator: segment\ngenerator: pythagoras\n";
+    const SQUARES: &str = "initiator: segment\ngenerator: levy\nbase_element: square\n";
+    const ARCS: &str = "initiator: segment\ngenerator: dragon\nbase_element: half-circle\n";
+    const RINGS: &str = "initiator: square\ngenerator: {parts: [{elements: [[0, 0], {to: [1, 0], fertile: false}]}, {seeds: true, closed: true, elements: [[1/3, 1/3], [2/3, 1/3], [2/3, 2/3], [1/3, 2/3]]}]}\n";
+    for (rule, style) in [
+        (
+            CHAIN,
+            "stroke: rgb(200 0 100 / 40%), width: 9, fill: rgb(0 80 200 / 50%), join: miter",
+        ),
+        (
+            CHAIN,
+            "fill: gold, color_by: index, palette: plasma, width: 3",
+        ),
+        (
+            CHAIN,
+            "background: \"#fafae680\", stroke: navy, width: 5, join: bevel, cap: butt",
+        ),
+        (
+            TREE,
+            "width: {relative: 0.3}, cap: square, color_by: step, palette: leaf",
+        ),
+        (
+            TREE,
+            "width: {relative: 0.2}, cap: butt, join: miter, stroke: rgb(0 0 0 / 30%)",
+        ),
+        (TREE, "width: 0.4"),
+        (TREE, "width: 0"),
+        (
+            SQUARES,
+            "fill: rgb(20 120 20 / 30%), stroke: black, width: 2",
+        ),
+        (SQUARES, "color_by: direction, palette: sunset"),
+        (ARCS, "width: 4, color_by: generator, palette: ice"),
+        (
+            RINGS,
+            "fill: rgb(200 60 20 / 20%), stroke: maroon, width: 1",
+        ),
+    ] {
+        let text = format!("{rule}style: {{{style}}}\n");
+        let rule = resolved(&document_of(&text), &[]);
+        agree(&text, &rule, 3, 200);
+    }
+}
+
+#[test]
+fn windows_show_the_same_part() {
+    let text = "initiator: segment\ngenerator: koch\nview: {window: [0.3, 0.1, 0.02, 0.015]}\nstyle: {width: 2}\n";
+    agree(text, &resolved(&document_of(text), &[]), 7, 200);
+}
+
+/// More vertices than are drawn at once, in a colour whose overlaps would show.
+#[test]
+fn long_paths_are_drawn_as_one() {
+    let text =
+        "initiator: segment\ngenerator: levy\nstyle: {width: 1.2, stroke: rgb(0 60 120 / 40%)}\n";
+    agree(text, &resolved(&document_of(text), &[]), 18, 700);
+}
+
+/// How a picture is stored: as grey, with a palette, or in full.
+#[test]
+fn pixels_take_no_more_bits_than_they_need() {
+    use png::{BitDepth, ColorType};
+    let squares = "initiator: square\ngenerator: carpet\nbase_element: square\n";
+    let chain = "initiator: triangle\ngenerator: koch\n";
+    for (text, expected) in [
+        (
+            format!("{chain}style: {{background: white}}"),
+            (ColorType::Grayscale, BitDepth::Eight),
+        ),
+        (
+            format!("{chain}style: {{stroke: navy}}"),
+            (ColorType::Indexed, BitDepth::Eight),
+        ),
+        (
+            format!("{chain}style: {{width: 0, background: tan}}"),
+            (ColorType::Indexed, BitDepth::One),
+        ),
+        (
+            format!("{squares}style: {{color_by: index, palette: spectral}}"),
+            (ColorType::Rgba, BitDepth::Eight),
+        ),
+        (
+            format!("{squares}style: {{color_by: index, palette: spectral, background: snow}}"),
+            (ColorType::Rgb, BitDepth::Eight),
+        ),
+    ] {
+        let rule = resolved(&document_of(&text), &[]);
+        let options = Options {
+            format: Format::Png,
+            size: Size::Long(300),
+            ..Options::of(&rule)
+        };
+        let read = read_png(&drawn(&rule, 3, &options));
+        assert_eq!((read.colour, read.depth), expected, "{text}");
+    }
+}
+
+#[test]
+fn a_png_says_what_it_is() {
+    let rule = resolved(&document("koch"), &[]);
+    let options = Options {
+        format: Format::Png,
+        labels: Labels {
+            title: "Koch curve".into(),
+            description: "Step 2 of koch.".into(),
+            provenance: "# kfrac grow 'Schöne Regel.yaml'\ninitiator: segment\n".into(),
+        },
+        ..Options::of(&rule)
+    };
+    let texts = read_png(&drawn(&rule, 2, &options)).texts;
+    let expected = [
+        ("Title", options.labels.title),
+        ("Description", options.labels.description),
+        ("Software", format!("kfrac {}", env!("CARGO_PKG_VERSION"))),
+        ("Comment", options.labels.provenance),
+    ];
+    assert_eq!(
+        texts,
+        expected.map(|(keyword, text)| (keyword.to_owned(), text))
+    );
+}
+
+#[test]
+fn pictures_that_are_too_large_are_refused_with_the_memory_they_would_take() {
+    let rule = resolved(&document("koch"), &[]);
+    let options = Options {
+        format: Format::Png,
+        size: Size::Exactly(200_000, 100_000),
+        ..Options::of(&rule)
+    };
+    let mut bytes = Vec::new();
+    let error =
+        render::write(&compiled(&rule, 1), &Growth::steps(1), &options, &mut bytes).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a PNG of 200000 x 100000 pixels takes 80.0 GB of memory, and 2.1 GB is the most; an SVG of this size takes none"
+    );
+    assert!(bytes.is_empty());
+}
