@@ -41,6 +41,11 @@ pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), Expr
     if let Some((sign, token)) = SIGNS.iter().find(|(sign, _)| rest.starts_with(sign)) {
         return Ok((*token, start..start + sign.len()));
     }
+    if [".inf", ".nan"].iter().any(|word| rest.starts_with(word)) {
+        let message = "this number is not finite";
+        return Err(ExpressionError::new(start..start + 4, message)
+            .hint("all numbers of a rule are finite"));
+    }
     let range = start..start + first.len_utf8();
     Err(foreign_character(first, range))
 }
