@@ -7,7 +7,7 @@
 //! # The way of the data
 //!
 //! ```text
-//!  library/*.yaml, a user's file
+//!  library/*.yaml, a user's file, a program (build)
 //!     │  document   what was written, with places in the file; parents and components put in
 //!     ▼
 //!  RuleDocument
@@ -27,10 +27,11 @@
 //! ```
 //!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each
-//! other; [`cli`] uses what is public here and nothing else. Names and files are the
-//! [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in files are
-//! [`expression`]s.
+//! other; [`cli`] uses what is public here and nothing else. What a program [`build`]s is written
+//! as a file and read as such. Names and files are the [`catalogue`]'s work, mistakes in files are
+//! [`diagnostic`]s, numbers in files are [`expression`]s.
 
+pub mod build;
 pub mod catalogue;
 pub mod cli;
 pub mod diagnostic;

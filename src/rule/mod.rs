@@ -47,6 +47,20 @@ pub struct Parameter {
     pub about: Option<String>,
 }
 
+impl Parameter {
+    /// A parameter without limits.
+    #[must_use]
+    pub fn new(name: impl Into<String>, value: f64) -> Self {
+        Self {
+            name: name.into(),
+            value,
+            min: None,
+            max: None,
+            about: None,
+        }
+    }
+}
+
 /// A production rule: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {

@@ -33,7 +33,7 @@ impl Rule {
     /// # Errors
     ///
     /// All that is wrong with it. What is only doubtful comes with the rule.
-    pub fn resolve(
+    pub(crate) fn resolve(
         document: &RuleDocument,
         settings: &[Setting],
     ) -> Result<(Self, Diagnostics), Diagnostics> {

@@ -9,6 +9,8 @@ use super::Colour;
 #[derive(Clone)]
 pub struct Palette {
     name: String,
+    /// Those that it was made of; empty for a palette of the field.
+    colours: Vec<Colour>,
     gradient: Arc<dyn Gradient + Send + Sync>,
 }
 
@@ -79,6 +81,7 @@ impl Palette {
             .ok_or(UnknownPalette)?;
         Ok(Self {
             name: (*name).into(),
+            colours: Vec::new(),
             gradient: preset(),
         })
     }
@@ -86,12 +89,12 @@ impl Palette {
     /// A palette from colours at even distances, mixed in Oklab; black if there are none.
     #[must_use]
     pub fn of_colours(name: &str, colours: &[Colour]) -> Self {
-        let colours: Vec<_> = match colours {
+        let colours = match colours {
             [] => vec![Colour::BLACK; 2],
             [only] => vec![*only; 2],
             several => several.to_vec(),
         };
-        let colours: Vec<_> = colours
+        let stops: Vec<_> = colours
             .iter()
             .map(|colour| {
                 let [red, green, blue, opacity] = colour.rgba();
@@ -99,12 +102,13 @@ impl Palette {
             })
             .collect();
         let gradient = GradientBuilder::new()
-            .colors(&colours)
+            .colors(&stops)
             .mode(colorgrad::BlendMode::Oklab)
             .build::<LinearGradient>()
             .unwrap_or_else(|_| unreachable!("two colours or more make a gradient"));
         Self {
             name: name.into(),
+            colours,
             gradient: Arc::new(gradient),
         }
     }
@@ -113,6 +117,12 @@ impl Palette {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The colours that it was made of, two or more; none if it is a palette of the field.
+    #[must_use]
+    pub fn colours(&self) -> &[Colour] {
+        &self.colours
     }
 
     /// The colour at a place from 0 to 1.
@@ -131,6 +141,7 @@ impl Default for Palette {
     fn default() -> Self {
         Self {
             name: "viridis".into(),
+            colours: Vec::new(),
             gradient: Arc::new(preset::viridis()),
         }
     }

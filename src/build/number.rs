@@ -1,0 +1,64 @@
+//! Numbers and points.
+
+use crate::document::node::Value;
+use crate::geometry::DVec2;
+
+use super::written;
+
+/// A number: a value, or an expression as text.
+#[derive(Clone, Debug)]
+pub struct Number(pub(super) Value);
+
+impl From<f64> for Number {
+    fn from(value: f64) -> Self {
+        // YAML's words for what is not finite, which the expression reader refuses.
+        Self(if value.is_nan() {
+            Value::Text(".nan".into())
+        } else if value.is_infinite() {
+            Value::Text(if value > 0.0 { ".inf" } else { "-.inf" }.into())
+        } else {
+            // Points are one where they are written alike; -0.0 + 0.0 is 0.0.
+            Value::Number(value + 0.0)
+        })
+    }
+}
+
+impl From<i32> for Number {
+    fn from(value: i32) -> Self {
+        Self::from(f64::from(value))
+    }
+}
+
+impl From<&str> for Number {
+    fn from(expression: &str) -> Self {
+        Self(Value::Text(expression.into()))
+    }
+}
+
+impl From<String> for Number {
+    fn from(expression: String) -> Self {
+        Self(Value::Text(expression))
+    }
+}
+
+/// A point: two numbers, to the right and upwards.
+#[derive(Clone, Debug)]
+pub struct Point(pub(super) Value);
+
+impl<X: Into<Number>, Y: Into<Number>> From<(X, Y)> for Point {
+    fn from((x, y): (X, Y)) -> Self {
+        Self(written::sequence([x.into().0, y.into().0]))
+    }
+}
+
+impl<N: Into<Number>> From<[N; 2]> for Point {
+    fn from([x, y]: [N; 2]) -> Self {
+        Self::from((x, y))
+    }
+}
+
+impl From<DVec2> for Point {
+    fn from(point: DVec2) -> Self {
+        Self::from((point.x, point.y))
+    }
+}

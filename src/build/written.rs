@@ -1,0 +1,152 @@
+//! The values of a rule as a file writes them.
+
+use crate::document::node::{Key, Node, Value};
+use crate::rule::{BaseElement, Description, Piece};
+use crate::style::{Colour, Named, Palette, Style, View, Width};
+
+use super::{Number, Point};
+
+/// A mapping that is being written.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Entries(Vec<(Key, Node)>);
+
+impl Entries {
+    /// With a key's value, in the place of another that it may have.
+    pub(super) fn set(mut self, key: &str, value: Value) -> Self {
+        let node = Node::from(value);
+        match self.0.iter_mut().find(|(known, _)| known.name == key) {
+            Some((_, old)) => *old = node,
+            None => self.0.push((Key::new(key), node)),
+        }
+        self
+    }
+
+    pub(super) fn set_some(self, key: &str, value: Option<Value>) -> Self {
+        match value {
+            Some(value) => self.set(key, value),
+            None => self,
+        }
+    }
+
+    /// With a name that must not be there: if it is, the reader of the file says so.
+    pub(super) fn add(mut self, name: impl Into<String>, value: Value) -> Self {
+        self.0.push((Key::new(name), value.into()));
+        self
+    }
+
+    /// With the entries of another mapping behind its own.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.0.extend(other.0);
+        self
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Without what another mapping has as well.
+    fn without(mut self, other: &Self) -> Self {
+        let same = |(key, node): &(Key, Node), (other, as_node): &(Key, Node)| {
+            key.name == other.name && node.same_value(as_node)
+        };
+        self.0
+            .retain(|entry| !other.0.iter().any(|known| same(entry, known)));
+        self
+    }
+
+    pub(super) fn value(self) -> Value {
+        Value::Mapping(self.0)
+    }
+}
+
+pub(super) fn sequence(values: impl IntoIterator<Item = Value>) -> Value {
+    Value::Sequence(values.into_iter().map(Node::from).collect())
+}
+
+pub(super) fn base_element(element: &BaseElement) -> Value {
+    let start = element.start();
+    let mut pieces = element.pieces();
+    // The last side of a polygon is what `closed` says.
+    if let (true, [others @ .., Piece::Line(_)]) = (element.is_closed(), pieces) {
+        pieces = others;
+    }
+    let pieces = pieces.iter().map(|piece| match *piece {
+        Piece::Line(end) => Point::from(end).0,
+        Piece::Cubic(a, b, end) => Entries::default()
+            .set("curve", Point::from(end).0)
+            .set(
+                "control",
+                sequence([a, b].map(|point| Point::from(point).0)),
+            )
+            .value(),
+    });
+    let points = [Point::from(start).0].into_iter().chain(pieces);
+    Entries::default()
+        .set("points", sequence(points))
+        .set("closed", Value::Bool(element.is_closed()))
+        .value()
+}
+
+pub(super) fn description(entries: Entries, description: &Description) -> Entries {
+    let Description {
+        title,
+        about,
+        source,
+        tags,
+    } = description;
+    let text = |text: &String| Value::Text(text.clone());
+    let tags = (!tags.is_empty()).then(|| sequence(tags.iter().map(text)));
+    entries
+        .set_some("title", title.as_ref().map(text))
+        .set_some("about", about.as_ref().map(text))
+        .set_some("source", source.as_ref().map(text))
+        .set_some("tags", tags)
+}
+
+/// What of a style is not as it is if nothing is said.
+pub(super) fn style(style: &Style) -> Entries {
+    let entries = |style: &Style| {
+        let colour = |colour: Option<Colour>| colour.map(colour_text);
+        let width = match style.width {
+            Width::Pixels(width) => Number::from(width).0,
+            Width::Relative(width) => Entries::default()
+                .set("relative", Number::from(width).0)
+                .value(),
+        };
+        Entries::default()
+            .set_some("stroke", colour(style.stroke))
+            .set_some("fill", colour(style.fill))
+            .set_some("background", colour(style.background))
+            .set("width", width)
+            .set("cap", Value::Text(style.cap.name().into()))
+            .set("join", Value::Text(style.join.name().into()))
+            .set("color_by", Value::Text(style.color_by.name().into()))
+            .set("palette", palette(&style.palette))
+    };
+    entries(style).without(&entries(&Style::default()))
+}
+
+fn colour_text(colour: Colour) -> Value {
+    Value::Text(format!("{colour:#}"))
+}
+
+fn palette(palette: &Palette) -> Value {
+    let name = palette.name();
+    if Palette::named(name).is_ok_and(|known| known == *palette) {
+        Value::Text(name.into())
+    } else {
+        sequence(palette.colours().iter().copied().map(colour_text))
+    }
+}
+
+/// What of a view is not as it is if nothing is said.
+pub(super) fn view(view: &View) -> Entries {
+    let number = |value| Number::from(value).0;
+    let entries = |view: &View| {
+        let window = view.window.map(|window| sequence(window.map(number)));
+        Entries::default()
+            .set_some("window", window)
+            .set("margin", number(view.margin))
+    };
+    entries(view).without(&entries(&View::default()))
+}
