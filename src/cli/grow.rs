@@ -17,7 +17,7 @@ use crate::render::{RenderError, svg};
 
 use super::output::{Counted, Output};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, steps, stop, text};
+use super::{Failure, progress, steps, stop, text};
 use picture::PictureArguments;
 
 /// Grows a rule and draws it
@@ -103,20 +103,25 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 arguments.max_elements
             ))
         })?;
-    let growth = Growth {
-        steps,
-        seed: arguments.seed,
-        most_elements: arguments.max_elements,
-        cancel: Some(stop::flag()),
-    };
     let default = PathBuf::from(format!("{}.{}", loaded.name, format.extension()));
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let mut out = Counted::new(Output::create(path)?);
-    let wrote = match format {
-        Format::Svg => write_svg(arguments, &loaded, &graph, &growth, &mut out),
-        Format::Csv => write_table(export::Format::Csv, &graph, &growth, &mut out),
-        Format::Json => write_table(export::Format::JsonLines, &graph, &growth, &mut out),
-    };
+    let output = Output::create(path)?;
+    let shows_progress = !arguments.quiet && output.is_file();
+    let mut out = Counted::new(output);
+    let wrote = progress::watched(shows_progress, |progress| {
+        let growth = Growth {
+            steps,
+            seed: arguments.seed,
+            most_elements: arguments.max_elements,
+            cancel: Some(stop::flag()),
+            progress,
+        };
+        match format {
+            Format::Svg => write_svg(arguments, &loaded, &graph, &growth, &mut out),
+            Format::Csv => write_table(export::Format::Csv, &graph, &growth, &mut out),
+            Format::Json => write_table(export::Format::JsonLines, &graph, &growth, &mut out),
+        }
+    });
     let wrote = wrote.map_err(|failure| explain(failure, &loaded, path, arguments.max_elements))?;
     let (file, bytes) = out.into_parts();
     file.finish()?;

@@ -6,6 +6,7 @@ mod grow;
 mod info;
 mod list;
 mod output;
+mod progress;
 mod rule;
 mod steps;
 mod stop;

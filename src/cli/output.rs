@@ -92,6 +92,11 @@ impl Output {
         })
     }
 
+    /// Whether a file is made; what stands behind a pipe or device may be the terminal.
+    pub(super) fn is_file(&self) -> bool {
+        matches!(self, Self::File { .. })
+    }
+
     /// Finishes: the file appears under its name. Without this it is removed.
     pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {

@@ -1,17 +1,20 @@
 //! What people read.
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 
 use num_bigint::BigUint;
 
 use crate::diagnostic::Diagnostics;
 
-/// Writes diagnostics to standard error, coloured on a terminal.
+/// Writes diagnostics to standard error, coloured where the terminal and the environment
+/// (`NO_COLOR`, `CLICOLOR_FORCE`, `TERM`) want it: colours that are not wanted are taken out there.
 pub(super) fn complain(diagnostics: &Diagnostics) {
-    let stderr = anstream::stderr();
-    let color = std::io::stderr().is_terminal();
     // Nobody is left to be told that standard error is closed.
-    let _ = writeln!(stderr.lock(), "{}", diagnostics.render(color).trim_end());
+    let _ = writeln!(
+        anstream::stderr().lock(),
+        "{}",
+        diagnostics.render(true).trim_end()
+    );
 }
 
 /// Writes a line to standard error.
