@@ -1,5 +1,7 @@
 //! `kfrac cat`: the rule file itself.
 
+use std::path::PathBuf;
+
 use crate::catalogue::Catalogue;
 use crate::document::Document;
 
@@ -10,7 +12,7 @@ use super::{Failure, output, rule};
 pub(super) struct Arguments {
     /// A rule file, the name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
-    rule: String,
+    rule: PathBuf,
     /// With its components and parents put into it
     #[arg(long)]
     inline: bool,

@@ -1,5 +1,6 @@
 //! `kfrac check`: everything that is wrong with rule files.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -16,7 +17,7 @@ use super::{Failure, output, rule, text};
 pub(super) struct Arguments {
     /// Rule files, names of rules in the library, or - for standard input
     #[arg(value_name = "FILE", required = true)]
-    files: Vec<String>,
+    files: Vec<PathBuf>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -40,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             Failure::Input(error) => Diagnostic::error(format!("{error:#}")).into(),
             _ => Diagnostics::default(),
         });
-        all.push((file, diagnostics));
+        all.push((file.to_string_lossy(), diagnostics));
     }
     let wrong = all.iter().any(|(_, diagnostics)| diagnostics.has_errors());
     if arguments.json {
@@ -68,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if wrong { Err(Failure::Said) } else { Ok(()) }
 }
 
-fn check(file: &str, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
+fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let source = rule::open(file, catalogue)?;
     let document = Document::read(&source, catalogue)?;
     let (rule, mut diagnostics) = document.resolve(&[])?;

@@ -17,7 +17,7 @@ use crate::render::{RenderError, svg};
 
 use super::output::{Counted, Output};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, progress, steps, stop, text};
+use super::{Failure, progress, rule, steps, stop, text};
 use picture::PictureArguments;
 
 /// Grows a rule and draws it
@@ -66,8 +66,7 @@ impl Format {
     fn of_path(path: &Path) -> Result<Self, Failure> {
         let extension = path
             .extension()
-            .and_then(|extension| extension.to_str())
-            .map(str::to_lowercase);
+            .map(|extension| extension.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some("svg") => Ok(Self::Svg),
             Some("csv") => Ok(Self::Csv),
@@ -103,7 +102,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 arguments.max_elements
             ))
         })?;
-    let default = PathBuf::from(format!("{}.{}", loaded.name, format.extension()));
+    let mut default = rule::name_of(&arguments.rule.rule).to_os_string();
+    default.push(".");
+    default.push(format.extension());
+    let default = PathBuf::from(default);
     let path = arguments.output.as_ref().unwrap_or(&default);
     let output = Output::create(path)?;
     let shows_progress = !arguments.quiet && output.is_file();
@@ -247,11 +249,19 @@ fn command(arguments: &Arguments, loaded: &Loaded, growth: &Growth<'_>) -> Strin
     command
 }
 
-/// A word as a shell takes it.
+/// A word as a shell takes it, on one line.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
     if word.chars().all(plain) {
         return word.into();
+    }
+    if word.contains(char::is_control) {
+        let escaped = word.chars().map(|c| match c {
+            '\'' | '\\' => format!("\\{c}"),
+            c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
+            c => c.into(),
+        });
+        return format!("$'{}'", escaped.collect::<String>());
     }
     format!("'{}'", word.replace('\'', r"'\''"))
 }

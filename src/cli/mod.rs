@@ -88,11 +88,13 @@ pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version go to standard output; a closed pipe is no failure.
-            let printed = error.print();
-            return match (error.exit_code(), printed) {
-                (0, Err(error)) if error.kind() != io::ErrorKind::BrokenPipe => ExitCode::FAILURE,
-                (0, _) => ExitCode::SUCCESS,
+            // Help and version go to standard output.
+            return match (error.exit_code(), error.print()) {
+                (0, Ok(())) => ExitCode::SUCCESS,
+                (0, Err(error)) => {
+                    let error = anyhow::Error::new(error).context(output::NO_STANDARD_OUTPUT);
+                    report(&error.into())
+                }
                 _ => ExitCode::from(2),
             };
         }

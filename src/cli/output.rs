@@ -26,6 +26,9 @@ pub(super) enum Output {
     },
 }
 
+/// What is said if standard output fails.
+pub(super) const NO_STANDARD_OUTPUT: &str = "standard output cannot be written";
+
 /// Bytes that are handed to the system at once.
 const BUFFER: usize = 1 << 18;
 
@@ -40,6 +43,10 @@ impl Output {
         }
         let failed = || format!("'{}' cannot be written", path.display());
         let metadata = path.metadata().ok();
+        let names_folder = path.to_string_lossy().ends_with(std::path::is_separator);
+        if metadata.is_none() && names_folder {
+            anyhow::bail!("there is no folder '{}'", path.display());
+        }
         if metadata.as_ref().is_some_and(std::fs::Metadata::is_dir) {
             anyhow::bail!("'{}' is a folder", path.display());
         }
@@ -100,7 +107,7 @@ impl Output {
     /// Finishes: the file appears under its name. Without this it is removed.
     pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {
-            Self::Standard(mut out) => out.flush().context("standard output cannot be written")?,
+            Self::Standard(mut out) => out.flush().context(NO_STANDARD_OUTPUT)?,
             Self::Device { mut file, path } => file
                 .flush()
                 .with_context(|| format!("'{}' cannot be written", path.display()))?,
@@ -156,9 +163,9 @@ impl Write for Output {
 /// Writes a text to standard output.
 pub(super) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()?;
-    Ok(())
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context(NO_STANDARD_OUTPUT)
 }
 
 /// Counts the bytes that pass.

@@ -17,8 +17,10 @@ pub(super) fn complain(diagnostics: &Diagnostics) {
     );
 }
 
-/// Writes a line to standard error.
+/// Writes a line to standard error; a name in it may hold anything, but is kept from the terminal's
+/// controls.
 pub(super) fn say(line: &str) {
+    let line = line.replace(char::is_control, "\u{fffd}");
     let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 
