@@ -10,10 +10,13 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::Document;
 use crate::graph::Graph;
 
-use super::{Failure, output, rule, text};
+use super::{Failure, help, output, rule, text};
 
 /// Says everything that is wrong with rule files
+///
+/// The exit status is 1 if any of them has an error; warnings alone leave it at 0.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// Rule files, names of rules in the library, or - for standard input
     #[arg(value_name = "FILE", required = true)]
@@ -22,6 +25,14 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac check mine.yaml
+      Says what is wrong with a rule, where, and what would be right
+  kfrac check rules/*.yaml --json
+      The same of many, for an editor
+";
 
 #[derive(Serialize)]
 struct Row<'a> {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
+use clap::ValueHint;
 use num_bigint::BigUint;
 
 use crate::catalogue::Catalogue;
@@ -17,42 +18,74 @@ use crate::render::{RenderError, svg};
 
 use super::output::{Counted, Output};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, progress, rule, steps, stop, text};
+use super::{Failure, help, progress, rule, steps, stop, text};
 use picture::PictureArguments;
 
-/// Grows a rule and draws it
+/// Grows a rule and draws it, or lists its elements
+///
+/// Fertile elements are replaced so many times, and what stands then, the approximant, is written as
+/// a picture or as a table. The file appears whole or not at all.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
     /// How often fertile elements are replaced [default: what the rule says]
+    ///
+    /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
+    /// elements.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// The file to write, or - for standard output [default: NAME.svg]
-    #[arg(long, short, value_name = "FILE")]
+    ///
+    /// A file that is there is replaced.
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// The format [default: from the extension of the file]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    #[command(flatten)]
-    picture: PictureArguments,
-    /// What random draws depend on
+    /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Refuses to grow more elements than this
+    /// The most elements that are grown
+    ///
+    /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N", default_value_t = 50_000_000)]
     max_elements: u64,
     /// Says nothing but what is wrong
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
+    /// A picture
     Svg,
+    /// A table of the elements in order of traversal, a row each, with a header
     Csv,
+    /// The same rows as JSON objects, one a line
     Json,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac grow pythagoras --steps 8
+      Draws the Pythagoras tree after eight steps, into pythagoras.svg
+  kfrac grow pythagoras --set angle=30 -o oblique.svg
+      Sets a parameter of the rule (kfrac info pythagoras lists them) and names the file
+  kfrac grow mine.yaml --stroke teal --stroke-width 2 --background white
+      Draws a rule of your own in your own colours
+  kfrac grow dragon --color-by index --palette sunset
+      Lets colours run along the curve
+  kfrac grow koch --view 0,0,0.4,0.2 --size 800x400
+      Draws what lies in a window of the plane
+  kfrac grow random-tree --seed 7
+      Draws another tree of the same kind
+  kfrac grow koch --steps 4 --format csv -o - | head
+      Lists the elements
+";
 
 impl Format {
     fn extension(self) -> &'static str {

@@ -39,7 +39,9 @@ pub(super) struct RuleArguments {
     /// A rule file, the name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
     pub(super) rule: PathBuf,
-    /// Sets a parameter of the rule
+    /// Sets a parameter of the rule; it may be given several times
+    ///
+    /// The value may be an expression: --set angle=180/7. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,
 }
