@@ -103,24 +103,23 @@ impl Catalogue {
     /// # Errors
     ///
     /// If there is no such rule, or it cannot be read.
-    pub fn rule(&self, argument: &str) -> Result<Arc<Source>, Diagnostic> {
-        let path = Path::new(argument);
+    pub fn rule(&self, argument: impl AsRef<Path>) -> Result<Arc<Source>, Diagnostic> {
+        let path = argument.as_ref();
+        let name = path.to_string_lossy();
         match fs::metadata(path) {
-            Ok(metadata) if metadata.is_file() => return read_file(path, argument),
-            Ok(metadata) if metadata.is_dir() && self.find(Shelf::Rules, argument).is_none() => {
+            Ok(metadata) if !metadata.is_dir() => return read_file(path),
+            Ok(_) if self.find(Shelf::Rules, &name).is_none() => {
                 return Err(Diagnostic::error(format!(
-                    "'{argument}' is a folder, not a rule file"
+                    "'{name}' is a folder, not a rule file"
                 )));
             }
-            // A named pipe or device is read like a file.
-            Ok(metadata) if !metadata.is_dir() => return read_file(path, argument),
             _ => {}
         }
-        let looks_like_path = argument.contains(['/', '\\']);
+        let looks_like_path = name.contains(['/', '\\']);
         if looks_like_path {
-            return Err(Diagnostic::error(format!("there is no file '{argument}'")));
+            return Err(Diagnostic::error(format!("there is no file '{name}'")));
         }
-        self.component(Shelf::Rules, argument)
+        self.component(Shelf::Rules, &name)
     }
 
     /// The rule that the last one of a chain extends: a file beside it or by path, or a rule by name.
@@ -132,12 +131,10 @@ impl Catalogue {
         chain: &[Arc<Source>],
     ) -> Result<Arc<Source>, Diagnostic> {
         if without_extension(name) != name || name.contains(['/', '\\']) {
-            let folder = chain
-                .last()
-                .and_then(|rule| Path::new(rule.name()).parent());
+            let folder = chain.last().and_then(|rule| rule.path().parent());
             let beside = folder.unwrap_or(Path::new("")).join(name);
             if beside.is_file() {
-                return read_file(&beside, &beside.display().to_string());
+                return read_file(&beside);
             }
             return self.rule(name);
         }
@@ -186,7 +183,7 @@ impl Catalogue {
     /// If it cannot be read.
     pub fn open(&self, entry: &Entry) -> Result<Arc<Source>, Diagnostic> {
         if let Some(path) = &entry.path {
-            return read_file(path, &path.display().to_string());
+            return read_file(path);
         }
         let name = format!("{}/{}.yaml", entry.shelf.folder(), entry.name);
         let bytes = EMBEDDED
@@ -285,17 +282,19 @@ fn without_extension(name: &str) -> &str {
 
 /// Whether two texts come from one file, by whatever paths.
 pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
-    let file = |source: &Source| fs::canonicalize(source.name()).ok();
+    let file = |source: &Source| fs::canonicalize(source.path()).ok();
     a.text() == b.text() && (a.name() == b.name() || file(a).is_some() && file(a) == file(b))
 }
 
-fn read_file(path: &Path, name: &str) -> Result<Arc<Source>, Diagnostic> {
+fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     use std::io::Read;
     // One byte more than is allowed tells a file that is too large without reading all of it.
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
     fs::File::open(path)
         .and_then(|file| file.take(most).read_to_end(&mut bytes))
-        .map_err(|error| Diagnostic::error(format!("'{name}' cannot be read: {error}")))?;
-    Source::read(name, bytes)
+        .map_err(|error| {
+            Diagnostic::error(format!("'{}' cannot be read: {error}", path.display()))
+        })?;
+    Source::read_file(path, bytes)
 }

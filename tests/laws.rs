@@ -15,7 +15,7 @@ use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::grow::{Element, Fractal, Growth, Progress, Visitor, walk};
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
 use num_bigint::BigUint;
@@ -67,11 +67,14 @@ impl Visitor for Collected {
 
 fn collect(graph: &Graph, steps: u32, seed: u64) -> Collected {
     let mut collected = Collected::default();
+    let progress = Progress::default();
     let growth = Growth {
         seed,
+        progress: Some(&progress),
         ..Growth::steps(steps)
     };
     let walked = walk(graph, &growth, &mut collected).unwrap();
+    assert_eq!(progress.walked(), walked.elements);
     assert_eq!(walked.elements, collected.elements().count() as u64);
     assert_eq!(walked.fractals, collected.fractals.len() as u64);
     collected

@@ -60,7 +60,7 @@ fn assert_same_box(what: &str, bounds: &Bounds, expected: [f64; 4]) {
 /// The deepest approximant up to 4 that has no more elements than are grown.
 fn deepest(graph: &Graph) -> u32 {
     match graph.check_size(4, MOST_ELEMENTS) {
-        Ok(()) => 4,
+        Ok(_) => 4,
         Err(error) => error.deepest.unwrap(),
     }
 }

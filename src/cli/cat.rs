@@ -1,20 +1,31 @@
 //! `kfrac cat`: the rule file itself.
 
+use std::path::PathBuf;
+
 use crate::catalogue::Catalogue;
 use crate::document::Document;
 
-use super::{Failure, output, rule};
+use super::{Failure, help, output, rule};
 
 /// Prints a rule file, to start from
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// A rule file, the name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
-    rule: String,
-    /// With its components and parents put into it
+    rule: PathBuf,
+    /// With the components and rules that it names put into it
     #[arg(long)]
     inline: bool,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac cat dragon > mine.yaml
+      Copies a rule of the library, to change it and grow it
+  kfrac cat --inline pythagoras-30
+      Shows all of a rule that others are part of
+";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let source = rule::open(&arguments.rule, catalogue)?;

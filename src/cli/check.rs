@@ -1,5 +1,6 @@
 //! `kfrac check`: everything that is wrong with rule files.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -9,18 +10,29 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::Document;
 use crate::graph::Graph;
 
-use super::{Failure, output, rule, text};
+use super::{Failure, help, output, rule, text};
 
 /// Says everything that is wrong with rule files
+///
+/// The exit status is 1 if any of them has an error; warnings alone leave it at 0.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// Rule files, names of rules in the library, or - for standard input
     #[arg(value_name = "FILE", required = true)]
-    files: Vec<String>,
+    files: Vec<PathBuf>,
     /// As JSON
     #[arg(long)]
     json: bool,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac check mine.yaml
+      Says what is wrong with a rule, where, and what would be right
+  kfrac check rules/*.yaml --json
+      The same of many, for an editor
+";
 
 #[derive(Serialize)]
 struct Row<'a> {
@@ -40,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             Failure::Input(error) => Diagnostic::error(format!("{error:#}")).into(),
             _ => Diagnostics::default(),
         });
-        all.push((file, diagnostics));
+        all.push((file.to_string_lossy(), diagnostics));
     }
     let wrong = all.iter().any(|(_, diagnostics)| diagnostics.has_errors());
     if arguments.json {
@@ -68,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if wrong { Err(Failure::Said) } else { Ok(()) }
 }
 
-fn check(file: &str, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
+fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let source = rule::open(file, catalogue)?;
     let document = Document::read(&source, catalogue)?;
     let (rule, mut diagnostics) = document.resolve(&[])?;

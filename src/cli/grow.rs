@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::ValueHint;
+
 use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::Graph;
@@ -15,30 +17,62 @@ use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, format, output, steps, text};
+use super::{Failure, format, help, output, steps, text};
 
-/// Grows a rule and draws it
+/// Grows a rule and draws it, or lists its elements
+///
+/// Fertile elements are replaced so many times, and what stands then, the approximant, is written as
+/// a picture or as a table. The file appears whole or not at all.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
     /// How often fertile elements are replaced [default: what the rule says]
+    ///
+    /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
+    /// elements.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// The file to write, or - for standard output [default: NAME.svg]
-    #[arg(long, short, value_name = "FILE")]
+    ///
+    /// A file that is there is replaced.
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// The format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<Format>())]
     format: Option<Format>,
+    #[command(flatten)]
+    growth: GrowthArguments,
     /// The picture's long side in pixels, or WIDTHxHEIGHT
+    ///
+    /// The other side follows from the shape; where both are given, the shape is fitted into them.
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = picture::size)]
+    #[arg(help_heading = "Picture")]
     size: Size,
     #[command(flatten)]
     picture: PictureArguments,
-    #[command(flatten)]
-    growth: GrowthArguments,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac grow pythagoras --steps 8
+      Draws the Pythagoras tree after eight steps, into pythagoras.svg
+  kfrac grow pythagoras --set angle=30 -o oblique.svg
+      Sets a parameter of the rule (kfrac info pythagoras lists them) and names the file
+  kfrac grow mine.yaml --stroke teal --stroke-width 2 --background white
+      Draws a rule of your own in your own colours
+  kfrac grow koch --steps 7 --size 3000 -o koch.png
+      Draws pixels instead, 3000 of them from left to right
+  kfrac grow dragon --color-by index --palette sunset
+      Lets colours run along the curve
+  kfrac grow koch --view 0,0,0.4,0.2 --size 800x400
+      Draws what lies in a window of the plane
+  kfrac grow random-tree --seed 7
+      Draws another tree of the same kind
+  kfrac grow koch --steps 4 --format csv -o - | head
+      Lists the elements
+";
 
 /// What may come of a rule.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -64,10 +98,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let steps = steps::choose(arguments.steps, &loaded)?;
     let graph = loaded.compile(steps)?;
-    let growth = arguments.growth.steps(steps, &graph, &loaded)?;
-    let default = PathBuf::from(format!("{}.{}", loaded.name, format.name()));
+    arguments.growth.check(steps, &graph, &loaded)?;
+    let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let (wrote, bytes) = output::write(path, |out| {
+    let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
+        let growth = arguments.growth.to(steps, progress);
         match format {
             Format::Picture(format) => {
                 let options = arguments.options(&loaded, steps, format);

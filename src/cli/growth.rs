@@ -5,20 +5,22 @@ use std::path::Path;
 use anyhow::anyhow;
 
 use crate::graph::{Graph, TooLarge};
-use crate::grow::{Growth, WalkError};
+use crate::grow::{Growth, Progress, WalkError};
 use crate::render::RenderError;
 use crate::wording::{counted, grouped};
 
 use super::rule::Loaded;
-use super::{Failure, stop};
+use super::{Failure, output, stop};
 
 /// How a rule is grown, and how far at most.
 #[derive(clap::Args)]
 pub(super) struct GrowthArguments {
-    /// What random draws depend on
+    /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Refuses to grow more elements than this
+    /// The most elements that are grown
+    ///
+    /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N", default_value_t = 50_000_000)]
     max_elements: u64,
     /// Says nothing but what is wrong
@@ -27,22 +29,22 @@ pub(super) struct GrowthArguments {
 }
 
 impl GrowthArguments {
-    /// Grows to a number of steps, if that is within the limit as far as can be told before.
-    pub(super) fn steps(
-        &self,
-        steps: u32,
-        graph: &Graph,
-        loaded: &Loaded,
-    ) -> Result<Growth<'static>, Failure> {
-        graph
-            .check_size(steps, self.max_elements)
-            .map_err(|error| anyhow!(self.too_large(&error, &loaded.name, steps)))?;
-        Ok(Growth {
+    /// Refuses a step that has too many elements, as far as that can be told before.
+    pub(super) fn check(&self, steps: u32, graph: &Graph, loaded: &Loaded) -> Result<(), Failure> {
+        let checked = graph.check_size(steps, self.max_elements);
+        checked.map_err(|error| anyhow!(self.too_large(&error, &loaded.name, steps)))?;
+        Ok(())
+    }
+
+    /// Growth by a number of steps.
+    pub(super) fn to<'a>(&self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
+        Growth {
             steps,
             seed: self.seed,
             most_elements: self.max_elements,
             cancel: Some(stop::flag()),
-        })
+            progress,
+        }
     }
 
     fn too_large(&self, error: &TooLarge, name: &str, steps: u32) -> String {
@@ -68,7 +70,7 @@ impl GrowthArguments {
         match error {
             RenderError::Io(error) => anyhow::Error::new(error)
                 .context(match path == Path::new("-") {
-                    true => "standard output cannot be written".into(),
+                    true => output::NO_STANDARD_OUTPUT.into(),
                     false => format!("'{}' cannot be written", path.display()),
                 })
                 .into(),

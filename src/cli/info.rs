@@ -13,10 +13,14 @@ use crate::rule::Parameter;
 use crate::wording;
 
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, output, steps};
+use super::{Failure, help, output, steps};
 
 /// Says what a rule is: parameters, sizes of its steps, bounds, dimension
+///
+/// The sizes of the steps are told without growing them, wherever the rule allows it: numbers of
+/// elements, of those that are fertile and of fractals, and the length.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
@@ -27,6 +31,16 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac info dragon
+      Says what the rule is
+  kfrac info koch --steps 40
+      Tells the size of steps that nobody could grow
+  kfrac info pythagoras --set angle=30 --json
+      For another program
+";
 
 /// Beyond this, the numbers alone would fill a disk.
 const MOST_STEPS: u32 = 10_000;

@@ -51,11 +51,19 @@ fn command(
     command
 }
 
-/// A word as a shell takes it.
+/// A word as a shell takes it, on one line.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
     if word.chars().all(plain) {
         return word.into();
+    }
+    if word.contains(char::is_control) {
+        let escaped = word.chars().map(|c| match c {
+            '\'' | '\\' => format!("\\{c}"),
+            c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
+            c => c.into(),
+        });
+        return format!("$'{}'", escaped.collect::<String>());
     }
     format!("'{}'", word.replace('\'', r"'\''"))
 }

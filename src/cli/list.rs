@@ -5,10 +5,11 @@ use serde::Serialize;
 use crate::catalogue::{Catalogue, Entry, Shelf};
 use crate::document::node::{Node, Value};
 
-use super::{Failure, output};
+use super::{Failure, help, output};
 
 /// Lists the library: rules and components
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// Only what has this in its name, title or tags
     #[arg(value_name = "PATTERN")]
@@ -17,6 +18,16 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac list
+      Lists everything
+  kfrac list tree
+      Lists what has a tree in its name, title or tags
+  kfrac list --library rules --json
+      With the files of a folder, for another program
+";
 
 #[derive(Serialize)]
 struct Row {

@@ -2,14 +2,18 @@
 
 mod cat;
 mod check;
+mod completions;
 mod format;
 mod grow;
 mod growth;
+mod help;
 mod info;
 mod labels;
 mod list;
+mod man;
 mod output;
 mod picture;
+mod progress;
 mod rule;
 mod sheet;
 mod steps;
@@ -17,19 +21,28 @@ mod stop;
 mod text;
 
 use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand, ValueHint};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
-/// Grows, draws and measures linear fractals.
+/// Grows, draws and measures linear fractals
+///
+/// A production rule replaces the fertile elements of a shape by smaller copies of a generator, step
+/// by step (J. A. Kaandorp, "Interactive generation of fractal objects", CWI report CS-R8706, 1987).
+/// Rules are YAML files. A library of them is built in: `kfrac list` shows it.
 #[derive(Parser)]
-#[command(name = "kfrac", version, max_term_width = 100)]
+#[command(name = "kfrac", version, max_term_width = 100, after_long_help = help::styled(MORE))]
 struct Arguments {
-    /// A folder with rules and components, before the user's own and the embedded library
-    #[arg(long, value_name = "DIR", global = true)]
-    library: Vec<std::path::PathBuf>,
+    /// A folder with rules and components, to look in first
+    ///
+    /// It may be given several times. After these folders come those of KFRAC_LIBRARY, the user's
+    /// own and the built-in library.
+    #[arg(long, value_name = "DIR", global = true, display_order = 1000)]
+    #[arg(value_hint = ValueHint::DirPath)]
+    library: Vec<PathBuf>,
     #[command(subcommand)]
     command: Command,
 }
@@ -42,7 +55,51 @@ enum Command {
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
+
+/// The command line, for what is made from it.
+fn command() -> clap::Command {
+    Arguments::command()
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac grow pythagoras --steps 8
+      Draws the Pythagoras tree after eight steps, into pythagoras.svg
+  kfrac list dragon
+      Shows what the library has that is called after a dragon
+  kfrac info koch
+      Says what the Koch curve is, and how many elements its steps have
+  kfrac cat koch > mine.yaml
+      Copies a rule, to make another of it
+  kfrac grow mine.yaml
+      Draws that
+
+Exit status:
+  0
+      Done, also if a reader closes the pipe
+  1
+      The input is wrong, a limit was met, or a file could not be written
+  2
+      The command line is wrong
+  130
+      Interrupted, as by Ctrl-C; what was being written is removed
+
+Environment:
+  KFRAC_LIBRARY
+      Folders with rules and components, separated as in PATH
+  XDG_DATA_HOME
+      Where the user's data are, if not in ~/.local/share
+  NO_COLOR, CLICOLOR_FORCE
+      Take colours out of all messages, or put them in even where they go to a pipe
+
+Files:
+  ~/.local/share/kfrac
+      The user's own rules and components, in the folders rules, initiators, generators and \
+base_elements; rules may also lie in the folder itself. On Windows it is %APPDATA%\\kfrac
+";
 
 /// Why the program ends without having done its work.
 #[derive(Debug)]
@@ -93,11 +150,13 @@ pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version go to standard output; a closed pipe is no failure.
-            let printed = error.print();
-            return match (error.exit_code(), printed) {
-                (0, Err(error)) if error.kind() != io::ErrorKind::BrokenPipe => ExitCode::FAILURE,
-                (0, _) => ExitCode::SUCCESS,
+            // Help and version go to standard output.
+            return match (error.exit_code(), error.print()) {
+                (0, Ok(())) => ExitCode::SUCCESS,
+                (0, Err(error)) => {
+                    let error = anyhow::Error::new(error).context(output::NO_STANDARD_OUTPUT);
+                    report(&error.into())
+                }
                 _ => ExitCode::from(2),
             };
         }
@@ -113,6 +172,8 @@ pub fn run() -> ExitCode {
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
+        Command::Completions(arguments) => completions::run(arguments, &catalogue),
+        Command::Man(arguments) => man::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

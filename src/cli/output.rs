@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use tempfile::TempPath;
 
-use super::{Failure, stop};
+use crate::grow::Progress;
+
+use super::{Failure, progress, stop};
 
 /// Where a command writes.
 pub(super) enum Output {
@@ -26,12 +28,15 @@ pub(super) enum Output {
     },
 }
 
+/// What is said if standard output fails.
+pub(super) const NO_STANDARD_OUTPUT: &str = "standard output cannot be written";
+
 /// Bytes that are handed to the system at once.
 const BUFFER: usize = 1 << 18;
 
 impl Output {
     /// Opens `-`, a device or a file that is to be made or replaced.
-    fn create(path: &Path) -> anyhow::Result<Self> {
+    pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
         if path == Path::new("-") {
             return Ok(Self::Standard(BufWriter::with_capacity(
                 BUFFER,
@@ -40,6 +45,10 @@ impl Output {
         }
         let failed = || format!("'{}' cannot be written", path.display());
         let metadata = path.metadata().ok();
+        let names_folder = path.to_string_lossy().ends_with(std::path::is_separator);
+        if metadata.is_none() && names_folder {
+            anyhow::bail!("there is no folder '{}'", path.display());
+        }
         if metadata.as_ref().is_some_and(std::fs::Metadata::is_dir) {
             anyhow::bail!("'{}' is a folder", path.display());
         }
@@ -92,10 +101,15 @@ impl Output {
         })
     }
 
+    /// Whether a file is made; what stands behind a pipe or device may be the terminal.
+    fn is_file(&self) -> bool {
+        matches!(self, Self::File { .. })
+    }
+
     /// Finishes: the file appears under its name. Without this it is removed.
-    fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {
-            Self::Standard(mut out) => out.flush().context("standard output cannot be written")?,
+            Self::Standard(mut out) => out.flush().context(NO_STANDARD_OUTPUT)?,
             Self::Device { mut file, path } => file
                 .flush()
                 .with_context(|| format!("'{}' cannot be written", path.display()))?,
@@ -148,16 +162,19 @@ impl Write for Output {
     }
 }
 
-/// Writes a file as a whole, or nothing; tells the number of bytes.
+/// Writes a file as a whole, or nothing; tells the number of bytes. How far the work is, is shown on
+/// a terminal, unless `quiet`.
 pub(super) fn write<T>(
     path: &Path,
-    content: impl FnOnce(&mut Counted<Output>) -> Result<T, Failure>,
+    quiet: bool,
+    content: impl FnOnce(&mut Counted<Output>, Option<&Progress>) -> Result<T, Failure>,
 ) -> Result<(T, u64), Failure> {
     let mut out = Counted {
         inner: Output::create(path)?,
         bytes: 0,
     };
-    let told = content(&mut out)?;
+    let shows_progress = !quiet && out.inner.is_file();
+    let told = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
     out.inner.finish()?;
     Ok((told, out.bytes))
 }
@@ -174,9 +191,9 @@ pub(super) fn called(path: &Path) -> String {
 /// Writes a text to standard output.
 pub(super) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()?;
-    Ok(())
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context(NO_STANDARD_OUTPUT)
 }
 
 /// Counts the bytes that pass.

@@ -1,6 +1,6 @@
 //! How a picture is to be drawn: what the command line says, over what the rule says.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::render::Size;
 use crate::rule::Rule;
@@ -8,23 +8,24 @@ use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Widt
 
 /// Options of pictures.
 #[derive(clap::Args)]
+#[command(next_help_heading = "Picture")]
 pub(super) struct PictureArguments {
-    /// A window in the rule's units: lower left corner, width, height
+    /// The window that is shown, in the rule's units: lower left corner, width, height
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
-    /// The colour of strokes, as CSS writes it
+    /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161)
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     stroke: Option<Colour>,
-    /// The width of strokes in pixels, or, with a % sign, relative to the element
+    /// The width of strokes in pixels, or, with a % sign, relative to the element's length
     #[arg(long, value_name = "W", value_parser = width)]
     pub(super) stroke_width: Option<Width>,
-    /// The colour of areas
+    /// The colour inside closed shapes
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     fill: Option<Colour>,
-    /// The ends of lines
+    /// The shape of the ends of lines
     #[arg(long, value_parser = named::<Cap>())]
     cap: Option<Cap>,
-    /// The corners of lines
+    /// The shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
     /// Pixels left free around the picture
@@ -33,10 +34,10 @@ pub(super) struct PictureArguments {
     /// The colour behind the picture
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     background: Option<Colour>,
-    /// What colours tell
-    #[arg(long, value_parser = named::<ColorBy>())]
+    /// What the colours of the palette tell apart
+    #[arg(long, value_name = "WHAT", value_parser = color_by())]
     color_by: Option<ColorBy>,
-    /// The colours
+    /// The colours that --color-by takes
     #[arg(long, value_name = "NAME", value_parser = palette())]
     palette: Option<Palette>,
 }
@@ -160,6 +161,21 @@ fn width(text: &str) -> Result<Width, String> {
 pub(super) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name))
         .try_map(|name| T::from_name(&name).ok_or("unknown"))
+}
+
+fn color_by() -> impl TypedValueParser<Value = ColorBy> {
+    let values = ColorBy::NAMES.iter().map(|(name, by)| {
+        PossibleValue::new(*name).help(match by {
+            ColorBy::None => "Nothing: all is of the colours of --stroke and --fill",
+            ColorBy::Step => "The step in which an element was born",
+            ColorBy::Age => "The age of the element's fractal, in steps",
+            ColorBy::Fractal => "The element's fractal, in the order of their birth",
+            ColorBy::Index => "The element's place in its fractal",
+            ColorBy::Generator => "The generator that an element comes from",
+            ColorBy::Direction => "The element's direction",
+        })
+    });
+    PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))
 }
 
 fn palette() -> impl TypedValueParser<Value = Palette> {

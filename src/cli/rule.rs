@@ -1,5 +1,6 @@
 //! The rule that a command works on, found and resolved.
 
+use std::ffi::OsStr;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,8 +38,10 @@ pub(super) fn catalogue(given: &[PathBuf]) -> Result<Catalogue, Failure> {
 pub(super) struct RuleArguments {
     /// A rule file, the name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
-    pub(super) rule: String,
-    /// Sets a parameter of the rule
+    pub(super) rule: PathBuf,
+    /// Sets a parameter of the rule; it may be given several times
+    ///
+    /// The value may be an expression: --set angle=180/7. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,
 }
@@ -62,7 +65,7 @@ fn setting(text: &str) -> Result<Setting, String> {
 
 /// A rule that has been read.
 pub(super) struct Loaded {
-    /// What files made from it are called.
+    /// What messages call it.
     pub(super) name: String,
     pub(super) document: Document,
     pub(super) rule: Arc<Rule>,
@@ -86,35 +89,42 @@ fn standard_input() -> Result<Arc<Source>, Failure> {
 }
 
 /// The text that `argument` names.
-pub(super) fn open(argument: &str, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
-    if argument == "-" {
+pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
+    if argument == Path::new("-") {
         return standard_input();
     }
     Ok(catalogue.rule(argument)?)
 }
 
 /// The name of a rule, without folder and extension.
-pub(super) fn name_of(argument: &str) -> String {
-    let file = Path::new(argument)
-        .file_name()
-        .and_then(|file| file.to_str());
-    match file {
-        Some("-") | None => "stdin".into(),
-        Some(file) => {
-            let stem = [".yaml", ".yml", ".json"]
-                .into_iter()
-                .find_map(|extension| file.strip_suffix(extension));
-            stem.filter(|stem| !stem.is_empty()).unwrap_or(file).into()
-        }
-    }
+pub(super) fn name_of(argument: &Path) -> &OsStr {
+    let is_rule_file = argument
+        .extension()
+        .is_some_and(|extension| extension == "yaml" || extension == "yml" || extension == "json");
+    let name = if is_rule_file {
+        argument.file_stem()
+    } else {
+        argument.file_name()
+    };
+    name.filter(|name| *name != "-")
+        .unwrap_or(OsStr::new("stdin"))
 }
 
 impl RuleArguments {
+    /// The file in the current folder that something made from the rule is written to.
+    pub(super) fn file(&self, suffix: &str, extension: &str) -> PathBuf {
+        let mut name = name_of(&self.rule).to_os_string();
+        name.push(suffix);
+        name.push(".");
+        name.push(extension);
+        name.into()
+    }
+
     /// Finds, reads and resolves the rule; warnings are said.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
         let source = open(&self.rule, catalogue)?;
         let document = Document::read(&source, catalogue)?;
-        let name = name_of(&self.rule);
+        let name = name_of(&self.rule).to_string_lossy().into_owned();
         for setting in &self.set {
             self.check_setting(setting, &document, &name)?;
         }
@@ -177,6 +187,8 @@ impl RuleArguments {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::name_of;
 
     #[test]
@@ -191,7 +203,7 @@ mod tests {
             (".yaml", ".yaml"),
             ("-", "stdin"),
         ] {
-            assert_eq!(name_of(argument), name);
+            assert_eq!(name_of(Path::new(argument)), name);
         }
     }
 }

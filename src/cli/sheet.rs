@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::ValueHint;
+
 use crate::catalogue::Catalogue;
 use crate::figure::sheet;
 use crate::render::{self, Size};
@@ -14,10 +16,13 @@ use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
-use super::{Failure, format, output, steps, text};
+use super::{Failure, format, help, output, steps, text};
 
 /// Draws approximants side by side
+///
+/// All are drawn to one scale, each with its step and its number of elements under it.
 #[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
@@ -25,22 +30,31 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
     /// The file to write, or - for standard output [default: NAME-sheet.svg]
-    #[arg(long, short, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// The format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
-    /// The long side of every picture in pixels, or WIDTHxHEIGHT
-    #[arg(long, value_name = "SIZE", default_value = "256", value_parser = picture::size)]
-    size: Size,
     /// How many pictures stand in a row [default: as many as make the sheet 4 to 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     columns: Option<u32>,
     #[command(flatten)]
-    picture: PictureArguments,
-    #[command(flatten)]
     growth: GrowthArguments,
+    /// The long side of every single picture in pixels, or WIDTHxHEIGHT
+    #[arg(long, value_name = "SIZE", default_value = "256", value_parser = picture::size)]
+    #[arg(help_heading = "Picture")]
+    size: Size,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
+
+const MORE: &str = "\
+Examples:
+  kfrac sheet koch --steps 0..5
+      Draws the first approximants of the Koch curve, into koch-sheet.svg
+  kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
+      Draws three of them in a row, larger, as pixels
+";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
@@ -51,18 +65,19 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
     };
     let graph = loaded.compile(steps.largest())?;
-    let mut cells = Vec::new();
     for &step in steps.as_slice() {
-        cells.push(sheet::Cell {
-            name: format!("step {step}"),
-            graph: &graph,
-            growth: arguments.growth.steps(step, &graph, &loaded)?,
-        });
+        arguments.growth.check(step, &graph, &loaded)?;
     }
-    let default = PathBuf::from(format!("{}-sheet.{}", loaded.name, format.name()));
+    let default = arguments.rule.file("-sheet", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let options = arguments.options(&loaded, &steps, format);
-    let (written, bytes) = output::write(path, |out| {
+    let (written, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
+        let cells = steps.as_slice().iter().map(|&step| sheet::Cell {
+            name: format!("step {step}"),
+            graph: &graph,
+            growth: arguments.growth.to(step, progress),
+        });
+        let cells: Vec<_> = cells.collect();
         sheet::write(&cells, arguments.columns, &options, out)
             .map_err(|error| arguments.growth.explain(error, &loaded, path))
     })?;
@@ -71,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         text::say(&format!(
             "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
             output::called(path),
-            wording::counted(&cells.len().into(), "approximant"),
+            wording::counted(&steps.as_slice().len().into(), "approximant"),
             loaded.name,
             wording::counted(&written.elements.into(), "element"),
             wording::bytes(bytes),

@@ -85,7 +85,7 @@ pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure
         return Ok(DEEPEST / 2);
     }
     Ok(match graph.check_size(DEEPEST, 20_000) {
-        Ok(()) => DEEPEST,
+        Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
     })
 }

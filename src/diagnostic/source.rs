@@ -1,10 +1,14 @@
 //! Texts and stretches of them.
 
+use std::path::{Path, PathBuf};
+
 use super::{Arc, Diagnostic, Range, fmt};
 
 /// A text that was read and the name that messages call it by.
 pub struct Source {
     name: String,
+    /// The name as a path, exact where that of a file is not text.
+    path: PathBuf,
     text: String,
     /// The byte offset at which each line starts.
     line_starts: Vec<usize>,
@@ -16,7 +20,12 @@ impl Source {
 
     /// A text and its name. A byte order mark at its start is not part of the text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
-        let mut text = text.into();
+        let name = name.into();
+        let path = PathBuf::from(&name);
+        Self::with_path(name, path, text.into())
+    }
+
+    fn with_path(name: String, path: PathBuf, mut text: String) -> Arc<Self> {
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
@@ -31,7 +40,8 @@ impl Source {
             std::iter::once(0).chain((0..bytes.len()).filter(|&i| ends_line(i)).map(|i| i + 1));
         let line_starts = line_starts.collect();
         Arc::new(Self {
-            name: name.into(),
+            name,
+            path,
             text,
             line_starts,
         })
@@ -44,6 +54,16 @@ impl Source {
     /// If they are more than 4 MiB, or not text in UTF-8.
     pub fn read(name: impl Into<String>, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
         let name = name.into();
+        let path = PathBuf::from(&name);
+        Self::read_as(name, path, bytes)
+    }
+
+    /// The text that the bytes of a file are, under the file's path.
+    pub(crate) fn read_file(path: &Path, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
+        Self::read_as(path.display().to_string(), path.to_path_buf(), bytes)
+    }
+
+    fn read_as(name: String, path: PathBuf, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
         if bytes.len() > Self::MOST_BYTES {
             return Err(Self::too_large(&name));
         }
@@ -55,7 +75,7 @@ impl Source {
             return Err(not_text);
         }
         String::from_utf8(bytes)
-            .map(|text| Self::new(name, text))
+            .map(|text| Self::with_path(name, path, text))
             .map_err(|error| {
                 let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
                 let line = valid.split(|&byte| byte == b'\n').count();
@@ -80,6 +100,11 @@ impl Source {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The path of its file, if it is a file's.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The text.

@@ -43,6 +43,11 @@ pub fn write(
     if format == Format::Csv {
         writeln!(out, "{}", COLUMNS.join(",")).map_err(WalkError::Visitor)?;
     }
+    if let Some(progress) = growth.progress
+        && let Ok(Some(elements)) = graph.check_size(growth.steps, growth.most_elements)
+    {
+        progress.expect(elements);
+    }
     let mut rows = Rows {
         graph,
         format,

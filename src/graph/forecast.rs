@@ -78,15 +78,15 @@ pub struct TooLarge {
 const MOST_BITS: u64 = 1 << 14;
 
 impl Graph {
-    /// Whether all approximants up to a step are within a number of elements; where the graph does
-    /// not tell, they are.
+    /// The number of elements of an approximant, if all up to it are within a number of elements;
+    /// where the graph does not tell, they are.
     ///
     /// # Errors
     ///
     /// If they are not: how many elements there are, and how deep one can go.
-    pub fn check_size(&self, steps: u32, most_elements: u64) -> Result<(), TooLarge> {
+    pub fn check_size(&self, steps: u32, most_elements: u64) -> Result<Option<u64>, TooLarge> {
         let Some(mut forecast) = self.forecast() else {
-            return Ok(());
+            return Ok(None);
         };
         let most = BigUint::from(most_elements);
         let mut deepest = None;
@@ -107,11 +107,14 @@ impl Graph {
                     deepest,
                 });
             }
-            if step < steps && !forecast.advance() {
+            if step == steps {
+                return Ok(u64::try_from(elements).ok());
+            }
+            if !forecast.advance() {
                 break;
             }
         }
-        Ok(())
+        Ok(None)
     }
 
     /// The sizes of the approximants, as far as the graph is resolved; `None` if they cannot be

@@ -6,9 +6,11 @@
 
 mod descent;
 mod extent;
+mod progress;
 mod walk;
 
 pub use extent::extent;
+pub use progress::Progress;
 pub use walk::{Growth, Walked, walk};
 
 use crate::geometry::Frame;

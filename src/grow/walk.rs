@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::graph::{Graph, Replacement};
 
 use super::descent::{Descent, Found, Start};
-use super::{Element, Fractal, Visitor, WalkError};
+use super::{Element, Fractal, Progress, Visitor, WalkError};
 
 /// How far to grow, and within what limits.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,8 @@ pub struct Growth<'a> {
     pub most_elements: u64,
     /// The walk ends soon after this is set.
     pub cancel: Option<&'a AtomicBool>,
+    /// Where the walk tells how far it is.
+    pub progress: Option<&'a Progress>,
 }
 
 impl Growth<'_> {
@@ -27,6 +29,7 @@ impl Growth<'_> {
             seed: 0,
             most_elements: 50_000_000,
             cancel: None,
+            progress: None,
         }
     }
 }
@@ -40,7 +43,7 @@ pub struct Walked {
     pub fractals: u64,
 }
 
-/// Visits between two looks at the flag that cancels.
+/// Visits between two looks at the flag that cancels, and between two words of progress.
 const PATIENCE: u64 = 1 << 12;
 
 /// A fractal whose seeds are being looked for.
@@ -60,6 +63,8 @@ struct Walk<'g, 'v, V> {
     growth: Growth<'v>,
     visitor: &'v mut V,
     walked: Walked,
+    /// The elements that progress has been told of.
+    told: u64,
     visited: u64,
     next_look: u64,
 }
@@ -92,10 +97,12 @@ pub fn walk<V: Visitor>(
         growth: *growth,
         visitor,
         walked: Walked::default(),
+        told: 0,
         visited: 0,
         next_look: PATIENCE,
     };
     walk.run(Start::initiator(growth.seed))?;
+    walk.tell_progress();
     Ok(walk.walked)
 }
 
@@ -193,9 +200,17 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             return Ok(());
         }
         self.next_look = self.visited + PATIENCE;
+        self.tell_progress();
         match self.growth.cancel {
             Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
             _ => Ok(()),
+        }
+    }
+
+    fn tell_progress(&mut self) {
+        if let Some(progress) = self.growth.progress {
+            progress.count(self.walked.elements - self.told);
+            self.told = self.walked.elements;
         }
     }
 

@@ -39,14 +39,19 @@ impl<'a> Scene<'a> {
             && matches!(style.width, Width::Pixels(_))
             && classes.keep_fractals_whole();
         let areas = (style.fill.is_some() && !together).then_some(Pass::Areas);
-        let passes = areas.into_iter();
+        let painted = painted.into_iter().map(Pass::Class);
+        let passes: Vec<_> = areas.into_iter().chain(painted).collect();
+        if let Some(progress) = growth.progress {
+            // The survey, and a walk for everything that is painted apart.
+            progress.expect(survey.elements * (1 + passes.len() as u64));
+        }
         Self {
             graph,
             growth,
             style,
             canvas,
             classes,
-            passes: passes.chain(painted.into_iter().map(Pass::Class)).collect(),
+            passes,
             fills_strokes: together && style.fill.is_some(),
         }
     }

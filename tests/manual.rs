@@ -1,0 +1,180 @@
+//! Help, manual pages and completions.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+fn kfrac() -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("kfrac"));
+    command.env_remove("KFRAC_LIBRARY");
+    command
+}
+
+/// What a command that succeeds writes to standard output.
+fn printed(arguments: &[&str]) -> String {
+    let output = kfrac().args(arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The subcommands that the help names, but for clap's own.
+fn commands() -> Vec<String> {
+    let help = printed(&["--help"]);
+    let list = help.split("Commands:\n").nth(1).unwrap();
+    let list = list.lines().take_while(|line| !line.is_empty());
+    let names = list.map(|line| line.split_whitespace().next().unwrap().to_owned());
+    names.filter(|name| name != "help").collect()
+}
+
+/// The examples of a help text: lines that are commands.
+fn examples(help: &str) -> Vec<&str> {
+    let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
+    lines.filter(|line| line.starts_with("kfrac ")).collect()
+}
+
+/// Every example is a command that works, as far as kfrac has to do with it.
+#[test]
+fn examples_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let rules = folder.path().join("rules");
+    fs::create_dir(&rules).unwrap();
+    let rule = printed(&["cat", "koch"]);
+    for path in [folder.path().join("mine.yaml"), rules.join("other.yaml")] {
+        fs::write(path, &rule).unwrap();
+    }
+    let mut pages = vec![printed(&["--help"])];
+    pages.extend(commands().iter().map(|name| printed(&[name, "--help"])));
+    for page in &pages {
+        let examples = examples(page);
+        assert!(examples.len() > 1, "{page}");
+        for example in examples {
+            let own = example.split(['|', '>']).next().unwrap();
+            let words = own.split_whitespace().skip(1);
+            let words = words.map(|word| word.replace('*', "other"));
+            let output = kfrac().args(words).current_dir(folder.path()).output();
+            let output = output.unwrap();
+            assert!(output.status.success(), "{example}: {output:?}");
+        }
+    }
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    assert_eq!(printed(&["man", "--dir", path]), "");
+    let sections = |page: &str| {
+        let headings = page.lines().filter_map(|line| line.strip_prefix(".SH "));
+        headings
+            .map(|heading| heading.replace('"', ""))
+            .collect::<Vec<_>>()
+    };
+    let main = printed(&["man"]);
+    assert_eq!(
+        sections(&main),
+        [
+            "NAME",
+            "SYNOPSIS",
+            "DESCRIPTION",
+            "OPTIONS",
+            "COMMANDS",
+            "EXAMPLES",
+            "EXIT STATUS",
+            "ENVIRONMENT",
+            "FILES"
+        ]
+    );
+    assert_eq!(read(folder.path(), "kfrac.1"), main);
+    for command in commands() {
+        let page = printed(&["man", &command]);
+        assert_eq!(read(folder.path(), &format!("kfrac-{command}.1")), page);
+        let title = format!(".TH KFRAC-{} 1 ", command.to_uppercase());
+        assert!(page.starts_with(&title), "{page}");
+        assert!(page.contains(&format!("kfrac\\-{command} \\- ")), "{page}");
+        let sections = sections(&page);
+        for section in [
+            "NAME",
+            "SYNOPSIS",
+            "DESCRIPTION",
+            "OPTIONS",
+            "EXAMPLES",
+            "SEE ALSO",
+        ] {
+            assert!(
+                sections.iter().any(|found| found == section),
+                "{command}: {section}"
+            );
+        }
+    }
+    let count = fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(count, commands().len() + 1);
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_page_of_no_command_is_a_wrong_command_line() {
+    let output = kfrac().args(["man", "grwo"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        said,
+        "error: kfrac has no command 'grwo' (did you mean 'grow'?)\n"
+    );
+}
+
+#[test]
+fn shells_learn_commands_options_and_rules() {
+    for (shell, rules) in [
+        ("bash", "koch koch-quadratic koch-snowflake"),
+        ("fish", "using_subcommand check\" -a \"base-element "),
+        ("zsh", "'rules:rule:(base-element "),
+        ("elvish", "--color-by"),
+        ("powershell", "--color-by"),
+    ] {
+        let script = printed(&["completions", shell]);
+        assert!(
+            script.contains("color-by") && script.contains(rules),
+            "{shell}"
+        );
+    }
+    let zsh = printed(&["completions", "zsh"]);
+    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 5);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn bash_completes() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("kfrac.bash");
+    fs::write(&script, printed(&["completions", "bash"])).unwrap();
+    for (words, completed) in [
+        ("kfrac gr", "grow"),
+        ("kfrac grow pythagoras-3", "pythagoras-30 pythagoras-345"),
+        ("kfrac grow koch --palette vi", "viridis"),
+        ("kfrac grow koch --cap ''", "round butt square"),
+        ("kfrac check hil", "hilbert"),
+        ("kfrac man comp", "completions"),
+        ("kfrac grow no-such-rule", ""),
+    ] {
+        let ask = format!(
+            "source '{}'; COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
+             _kfrac kfrac \"${{COMP_WORDS[COMP_CWORD]}}\" \"${{COMP_WORDS[COMP_CWORD - 1]}}\"; \
+             echo \"${{COMPREPLY[*]}}\"",
+            script.display()
+        );
+        let output = Command::new("bash")
+            .args(["--norc", "-c", &ask])
+            .output()
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(output.stdout).unwrap().trim_end(),
+            completed,
+            "{words}"
+        );
+    }
+}
