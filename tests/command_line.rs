@@ -312,6 +312,21 @@ fn the_library_is_listed_with_rules_and_components() {
 }
 
 #[test]
+fn schemas_are_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, schema) in [
+        (&["schema"][..], include_str!("../library/schema/rule.json")),
+        (
+            &["schema", "base-element"],
+            include_str!("../library/schema/base_element.json"),
+        ),
+    ] {
+        assert_eq!(stdout(&run(folder.path(), arguments).success()), schema);
+    }
+    run(folder.path(), &["schema", "style"]).code(2);
+}
+
+#[test]
 fn a_rule_is_printed_as_it_is_or_with_everything_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let plain = stdout(&run(folder.path(), &["cat", "vegetation"]).success());

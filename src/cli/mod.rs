@@ -7,6 +7,7 @@ mod info;
 mod list;
 mod output;
 mod rule;
+mod schema;
 mod steps;
 mod stop;
 mod text;
@@ -36,6 +37,7 @@ enum Command {
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
+    Schema(schema::Arguments),
 }
 
 /// Why the program ends without having done its work.
@@ -106,6 +108,7 @@ pub fn run() -> ExitCode {
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
+        Command::Schema(arguments) => schema::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
