@@ -55,11 +55,17 @@ fn the_files_of_the_library_say_what_the_command_prints() {
 }
 
 #[test]
-fn the_library_is_valid() {
+fn the_library_is_valid_and_leads_to_its_schema() {
     let catalogue = Catalogue::embedded();
     for entry in catalogue.entries() {
         let source = catalogue.open(&entry).unwrap();
         assert_valid(&validator(entry.shelf), source.name(), source.text());
+        let first = source.text().lines().next();
+        assert_eq!(first, Some(&*entry.shelf.modeline()), "{}", source.name());
+        let modeline = entry.shelf.modeline();
+        let (_, path) = modeline.split_once("$schema=").unwrap();
+        let folder = Path::new("library").join(entry.shelf.folder());
+        assert!(folder.join(path).is_file());
     }
 }
 
