@@ -1,7 +1,7 @@
 //! Where rule files and components are found: the user's folders, then the embedded library.
 //!
 //! A library folder holds `rules`, `initiators`, `generators` and `base_elements`, each with YAML
-//! files; rules may also lie in the folder itself.
+//! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -65,6 +65,15 @@ impl Shelf {
             Self::BaseElements => "base element",
             other => other.kind(),
         }
+    }
+
+    /// The first line of its files in the embedded library: editors find their schema by it.
+    #[must_use]
+    pub fn modeline(self) -> String {
+        format!(
+            "# yaml-language-server: $schema=../schema/{}.json",
+            self.kind()
+        )
     }
 }
 

@@ -312,10 +312,28 @@ fn the_library_is_listed_with_rules_and_components() {
 }
 
 #[test]
+fn schemas_are_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, schema) in [
+        (&["schema"][..], include_str!("../library/schema/rule.json")),
+        (
+            &["schema", "base-element"],
+            include_str!("../library/schema/base_element.json"),
+        ),
+    ] {
+        assert_eq!(stdout(&run(folder.path(), arguments).success()), schema);
+    }
+    run(folder.path(), &["schema", "style"]).code(2);
+}
+
+#[test]
 fn a_rule_is_printed_as_it_is_or_with_everything_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let plain = stdout(&run(folder.path(), &["cat", "vegetation"]).success());
-    assert_eq!(plain, include_str!("../library/rules/vegetation.yaml"));
+    let file = include_str!("../library/rules/vegetation.yaml");
+    // But for the line that leads from the library to the schema.
+    assert_eq!(plain, file.split_once('\n').unwrap().1);
+    assert!(plain.starts_with("title: "));
     let inline = stdout(&run(folder.path(), &["cat", "pythagoras-30", "--inline"]).success());
     assert!(!inline.contains("extends") && inline.contains("- [0, 0]"));
     // What was inlined draws the same.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, Shelf};
 use crate::document::Document;
 
 use super::{Failure, help, output, rule};
@@ -32,7 +32,16 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let text = if arguments.inline {
         Document::read(&source, catalogue)?.to_yaml()
     } else {
-        source.text().to_owned()
+        without_modeline(source.text()).to_owned()
     };
     Ok(output::print(&text)?)
+}
+
+/// The text without the line in which a file of the library names its schema: the path would lead
+/// nowhere from where the text is put.
+fn without_modeline(text: &str) -> &str {
+    match text.split_once('\n') {
+        Some((first, rest)) if first.trim_end() == Shelf::Rules.modeline() => rest,
+        _ => text,
+    }
 }

@@ -15,6 +15,7 @@ mod output;
 mod picture;
 mod progress;
 mod rule;
+mod schema;
 mod sheet;
 mod steps;
 mod stop;
@@ -57,6 +58,7 @@ enum Command {
     Check(check::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
+    Schema(schema::Arguments),
 }
 
 /// The command line, for what is made from it.
@@ -174,6 +176,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::run(arguments, &catalogue),
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),
+        Command::Schema(arguments) => schema::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, nearest};
 
 use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
-use super::read::{DESCRIPTION, RULE};
+use super::read::{DESCRIPTION, KIND, RULE, check_description};
 
 /// A parent may have a parent, and so on, up to this many.
 const MOST_PARENTS: usize = 32;
@@ -89,12 +89,12 @@ impl Assembly<'_> {
         };
         let kind = entries.iter().find(|(key, _)| key.name == "kind");
         if let Some((_, kind)) = kind
-            && !matches!(&kind.value, Value::Text(kind) if kind == "rule")
+            && !matches!(&kind.value, Value::Text(kind) if kind == KIND)
         {
             let message = format!("kind '{}' is not known", kind.place.text());
             self.error(&kind.place, message, "kind: rule, which may be left out");
             // The keys of another kind are not a rule's, so there is no use in looking at them.
-            nearest(kind.place.text(), ["rule"])?;
+            nearest(kind.place.text(), [KIND])?;
         }
         let keys = entries.iter().map(|(key, _)| key);
         let meant = RULE.meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
@@ -286,7 +286,17 @@ impl Assembly<'_> {
                 if let Some(index) = entries.iter().position(|(key, _)| key.name == "params") {
                     parameters = self.component_parameters(entries.remove(index).1);
                 }
-                entries.retain(|(key, _)| !DESCRIPTION.contains(&key.name.as_str()));
+                let is_description =
+                    |key: &Key| DESCRIPTION.iter().any(|known| known.name == key.name);
+                let (description, rest) = std::mem::take(entries)
+                    .into_iter()
+                    .partition(|(key, _)| is_description(key));
+                *entries = rest;
+                let description = Node {
+                    place: component.place.clone(),
+                    value: Value::Mapping(description),
+                };
+                check_description(&description, self.diagnostics);
             }
             Value::Sequence(_) => {}
             _ => {

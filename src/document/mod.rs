@@ -9,6 +9,7 @@ pub mod node;
 mod read;
 mod reader;
 mod rule;
+mod schema;
 mod shape;
 mod style;
 mod unused;
@@ -18,6 +19,8 @@ pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
     ParameterDocument, PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
 };
+
+pub use schema::schema;
 
 use std::sync::Arc;
 

@@ -8,4 +8,8 @@ mod parameters;
 mod rule;
 mod select;
 
-pub(super) use rule::{DESCRIPTION, RULE, read};
+pub(super) use base_element::BASE_ELEMENT;
+pub(super) use elements::{ELEMENTS, INITIATOR};
+pub(super) use generator::GENERATOR;
+pub(super) use parameters::{PARAMETER, PARAMS};
+pub(super) use rule::{DESCRIPTION, KIND, RULE, check_description, read};

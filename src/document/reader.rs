@@ -8,7 +8,7 @@ use crate::expression::Expression;
 use crate::style::Named;
 
 use super::node::{Node, Value};
-use super::shape::Shape;
+use super::shape::{Form, Member, Shape};
 use super::{Number, Point, Written};
 
 /// Collects what is wrong while values are read.
@@ -31,6 +31,7 @@ struct Field<'n> {
 /// A mapping whose keys are taken one by one.
 pub(super) struct Fields<'n> {
     pub(super) place: &'n Place,
+    shape: &'static Shape,
     entries: Vec<(&'static str, Field<'n>)>,
 }
 
@@ -45,7 +46,17 @@ impl<'n> Fields<'n> {
         self.field(key).map_or(self.place, |field| field.key)
     }
 
+    /// What its shape says of a key.
+    fn member(&self, key: &'static str) -> Option<&'static Member> {
+        self.shape.members().find(|member| member.name == key)
+    }
+
     fn field(&self, key: &'static str) -> Option<Field<'n>> {
+        debug_assert!(
+            self.member(key).is_some(),
+            "{} has no key '{key}'",
+            self.shape.what
+        );
         let found = self.entries.iter().find(|(name, _)| *name == key);
         found.map(|(_, field)| *field)
     }
@@ -89,7 +100,11 @@ impl Reader {
     }
 
     /// The keys of a mapping; those that are not known are reported, and taken for what they mean.
-    pub(super) fn fields<'n>(&mut self, node: &'n Node, shape: &Shape) -> Option<Fields<'n>> {
+    pub(super) fn fields<'n>(
+        &mut self,
+        node: &'n Node,
+        shape: &'static Shape,
+    ) -> Option<Fields<'n>> {
         let Value::Mapping(entries) = &node.value else {
             self.mismatch(node, shape.what, shape.hint);
             return None;
@@ -106,6 +121,7 @@ impl Reader {
         }
         Some(Fields {
             place: &node.place,
+            shape,
             entries: known,
         })
     }
@@ -126,8 +142,12 @@ impl Reader {
         }
     }
 
-    pub(super) fn flag(&mut self, node: Option<&Node>, default: bool) -> bool {
-        match node.map(|node| (&node.value, node)) {
+    /// A flag; where it is left out or cannot be read, what its shape says.
+    pub(super) fn flag(&mut self, fields: &Fields<'_>, key: &'static str) -> bool {
+        let default = fields
+            .member(key)
+            .is_some_and(|member| matches!(member.holds, Form::Flag(true)));
+        match fields.take(key).map(|node| (&node.value, node)) {
             None => default,
             Some((Value::Bool(flag), _)) => *flag,
             Some((_, node)) => {

@@ -14,6 +14,7 @@ mod selection;
 pub use base_element::{BaseElement, Piece, arc};
 pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
+pub(crate) use resolve::MOST_STEPS;
 pub use selection::Selection;
 
 use crate::geometry::DVec2;

@@ -1,24 +1,81 @@
 //! Base elements.
 
+use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
-use crate::document::reader::Reader;
+use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{BaseElementDocument, PieceDocument};
-use crate::document::shape::Shape;
+use crate::document::shape::{Form, Shape, Way, key, needed_key};
 
 use super::rule::first_line;
 
-const BASE_ELEMENT: Shape = Shape {
+pub(in crate::document) const BASE_ELEMENT: Shape = Shape {
     what: "a base element",
-    keys: &["points", "closed", "from", "to"],
+    keys: &[&[
+        needed_key(
+            "points",
+            Form::List(
+                &Form::Either(&[Form::Point, Form::Mapping(&PIECE)]),
+                2,
+                None,
+            ),
+            "The outline: a point, then points and round pieces. The first and the last point \
+             differ.",
+        ),
+        key(
+            "closed",
+            Form::Flag(false),
+            "Whether the last point is joined to the first: a polygon, which is filled.",
+        ),
+        key(
+            "from",
+            Form::Point,
+            "The point of the outline's plane that lies on the element's start; [0, 0] if left out.",
+        ),
+        key(
+            "to",
+            Form::Point,
+            "The point of the outline's plane that lies on the element's end; [1, 0] if left out.",
+        ),
+    ]],
+    ways: &[],
     hint: "a name from the library (base_element: triangle), or \
            {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}",
 };
 
+pub(super) const BASE_ELEMENT_OF: Form = Form::Either(&[
+    Form::File(Shelf::BaseElements),
+    Form::Mapping(&BASE_ELEMENT),
+]);
+
 const PIECE: Shape = Shape {
     what: "a piece of a base element",
-    keys: &["arc", "through", "curve", "control"],
+    keys: &[&[
+        key(
+            "arc",
+            Form::Point,
+            "A circular arc to this point, through another.",
+        ),
+        key("through", Form::Point, "A point on the arc."),
+        key("curve", Form::Point, "A Bézier curve to this point."),
+        key(
+            "control",
+            Form::List(&Form::Point, 1, Some(2)),
+            "The control points of the curve: one of a quadratic curve, two of a cubic one.",
+        ),
+    ]],
+    ways: &[ARC, CURVE],
     hint: "a piece is a point, {arc: [x, y], through: [x, y]} or \
            {curve: [x, y], control: [[x, y]]}",
+};
+
+const ARC: Way = Way {
+    needs: &["arc", "through"],
+    excludes: &["curve", "control"],
+};
+
+const CURVE: Way = Way {
+    needs: &["curve", "control"],
+    excludes: &["arc", "through"],
 };
 
 pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<BaseElementDocument> {
@@ -43,7 +100,7 @@ pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<Base
     }
     Some(BaseElementDocument {
         pieces,
-        closed: reader.flag(fields.take("closed"), false),
+        closed: reader.flag(&fields, "closed"),
         from: reader.optional_point(fields.take("from")),
         to: reader.optional_point(fields.take("to")),
         place: node.place.clone(),
@@ -56,6 +113,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
     }
     let fields = reader.fields(node, &PIECE)?;
     if let Some(to) = fields.take("arc") {
+        exclude(reader, &fields, &ARC, "an arc");
         let to = reader.point(to);
         let Some(through) = reader.optional_point(fields.take("through")) else {
             let message = "an arc needs a point that it goes through";
@@ -64,6 +122,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         };
         Some(PieceDocument::Arc { to, through })
     } else if let Some(to) = fields.take("curve") {
+        exclude(reader, &fields, &CURVE, "a curve");
         let to = reader.point(to);
         let control = fields.take("control");
         let points = control.map_or(&[][..], |node| {
@@ -81,5 +140,15 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         let message = "this piece does not say where it ends";
         reader.error_with_hint(&first_line(&node.place), message, PIECE.hint);
         None
+    }
+}
+
+/// Reports the keys that cannot stand where this way was taken.
+fn exclude(reader: &mut Reader, fields: &Fields<'_>, way: &Way, what: &str) {
+    for other in way.excludes {
+        if fields.take(other).is_some() {
+            let message = format!("`{other}` does not belong to {what}");
+            reader.error_with_hint(fields.place_of(other), message, PIECE.hint);
+        }
     }
 }

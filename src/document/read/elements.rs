@@ -4,29 +4,85 @@ use crate::document::Point;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{Entry, InitiatorDocument, Listed};
-use crate::document::shape::Shape;
+use crate::document::shape::{Form, Shape, key, needed_key};
 
-use super::base_element::read_base_element;
+use super::base_element::{BASE_ELEMENT_OF, read_base_element};
 use super::rule::first_line;
 
 const ELEMENT: Shape = Shape {
     what: "an element",
-    keys: &[
-        "from",
-        "to",
-        "direction",
-        "fertile",
-        "visible",
-        "connected",
-        "use",
-        "base_element",
-    ],
+    keys: &[&[
+        key(
+            "from",
+            Form::Point,
+            "Where the element runs from; where the one before it ends, if left out.",
+        ),
+        needed_key("to", Form::Point, "Where the element runs to."),
+        key(
+            "direction",
+            Form::Whole(1, Some(4)),
+            "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected \
+             (its sides swapped), 3 x reflected (its ends swapped), 4 both.",
+        ),
+        key(
+            "fertile",
+            Form::Flag(true),
+            "Whether the element is replaced; if not, it stays as it is for ever.",
+        ),
+        key(
+            "visible",
+            Form::Flag(true),
+            "Whether the element is drawn. It counts, and is replaced if it is fertile, all the \
+             same.",
+        ),
+        key(
+            "connected",
+            Form::Flag(true),
+            "Whether the element may join the one before it.",
+        ),
+        key(
+            "use",
+            Form::Text,
+            "The generator that replaces this element, whatever `select` says.",
+        ),
+        key(
+            "base_element",
+            BASE_ELEMENT_OF,
+            "What this element looks like, if not like the others: a name from the library, or a \
+             shape of its own.",
+        ),
+    ]],
+    ways: &[],
     hint: "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]",
 };
 
-const INITIATOR: Shape = Shape {
+/// A list of elements.
+pub(in crate::document) const ELEMENTS: Form = Form::List(
+    &Form::Either(&[Form::Point, Form::Mapping(&ELEMENT)]),
+    1,
+    None,
+);
+
+/// What every list of elements is.
+pub(super) const ABOUT_ELEMENTS: &str = "A list of points and elements: a chain runs from each \
+    point to the next. Begin with a point, or with an element that has `from`.";
+
+pub(in crate::document) const INITIATOR: Shape = Shape {
     what: "an initiator",
-    keys: &["elements", "closed", "connected"],
+    keys: &[&[
+        needed_key("elements", ELEMENTS, ABOUT_ELEMENTS),
+        key(
+            "closed",
+            Form::Flag(false),
+            "Whether one more element runs from the last point back to the first.",
+        ),
+        key(
+            "connected",
+            Form::Flag(true),
+            "Whether elements join each other at all.",
+        ),
+    ]],
+    ways: &[],
     hint: "a name from the library (initiator: segment), a list of points, or \
            {elements: [...], closed: true}",
 };
@@ -44,8 +100,8 @@ pub(super) fn read_initiator(reader: &mut Reader, node: &Node) -> InitiatorDocum
         return initiator;
     }
     if let Some(fields) = reader.fields(node, &INITIATOR) {
-        initiator.closed = reader.flag(fields.take("closed"), false);
-        initiator.connected = reader.flag(fields.take("connected"), true);
+        initiator.closed = reader.flag(&fields, "closed");
+        initiator.connected = reader.flag(&fields, "connected");
         initiator.entries = required_entries(reader, &fields, INITIATOR.what);
     }
     initiator
@@ -103,9 +159,9 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
         from: reader.optional_point(fields.take("from")),
         to,
         direction: reader.optional_number(fields.take("direction")),
-        fertile: reader.flag(fields.take("fertile"), true),
-        visible: reader.flag(fields.take("visible"), true),
-        connected: reader.flag(fields.take("connected"), true),
+        fertile: reader.flag(&fields, "fertile"),
+        visible: reader.flag(&fields, "visible"),
+        connected: reader.flag(&fields, "connected"),
         generator: fields.take("use").and_then(|node| reader.name(node)),
         base_element: fields
             .take("base_element")

@@ -1,34 +1,137 @@
 //! Generators: their parts, drawn variables and moves.
 
+use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{GeneratorDocument, MoveDocument, PartDocument, WhichPoints};
-use crate::document::shape::Shape;
+use crate::document::shape::{Form, Shape, Way, key, needed_key};
 use crate::document::{Number, Written};
 use crate::rule::Placement;
 
-use super::elements::{read_entries, required_entries};
+use super::elements::{ABOUT_ELEMENTS, ELEMENTS, read_entries, required_entries};
 use super::parameters::written;
 use super::rule::first_line;
 
-const GENERATOR: Shape = Shape {
+pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",
-    keys: &["elements", "parts", "random", "move", "connected"],
+    keys: &[&[
+        key("elements", ELEMENTS, ABOUT_ELEMENTS),
+        key(
+            "parts",
+            Form::List(&Form::Mapping(&PART), 1, None),
+            "Several lists, in place of `elements`: parts that take the element's place, and parts \
+             that seed.",
+        ),
+        key(
+            "random",
+            Form::Names(&Form::Expression, 0),
+            "Variables that are drawn anew for every element that is replaced: `uniform(a, b)`, \
+             `normal(mean, deviation)` or `choice(a, b, ...)`.",
+        ),
+        key(
+            "move",
+            Form::Either(&[
+                Form::Mapping(&MOVE),
+                Form::List(&Form::Mapping(&MOVE), 0, None),
+            ]),
+            "Moves points of the generator: one move, or a list of moves that act one after the \
+             other.",
+        ),
+        key(
+            "connected",
+            Form::Flag(true),
+            "Whether elements join each other at all; beside `elements` only.",
+        ),
+    ]],
+    ways: &[
+        Way {
+            needs: &["elements"],
+            excludes: &["parts"],
+        },
+        Way {
+            needs: &["parts"],
+            excludes: &["elements", "connected"],
+        },
+    ],
     hint: "a name from the library (generator: koch), a list of points, or {elements: [...]} or \
            {parts: [...]}",
 };
 
 const PART: Shape = Shape {
     what: "a part",
-    keys: &["seeds", "placed", "closed", "connected", "elements"],
+    keys: &[&[
+        key(
+            "seeds",
+            Form::Flag(false),
+            "Whether the part starts a new fractal of age 0, instead of taking the element's place.",
+        ),
+        key(
+            "placed",
+            Form::Words(&[AS_INITIATOR, IN_ELEMENT]),
+            "`initiator`: a seed as large and as upright as the initiator, where the element \
+             starts. `element`, or left out: in the element's own frame.",
+        ),
+        key(
+            "closed",
+            Form::Flag(false),
+            "Whether one more element runs from the last point back to the first; for a part that \
+             seeds.",
+        ),
+        key(
+            "connected",
+            Form::Flag(true),
+            "Whether elements join each other at all.",
+        ),
+        needed_key("elements", ELEMENTS, ABOUT_ELEMENTS),
+    ]],
+    ways: &[],
     hint: "- {seeds: true, elements: [...]}",
 };
 
 const MOVE: Shape = Shape {
     what: "a move",
-    keys: &["rotate", "scale", "shift", "about", "points"],
+    keys: &[&[
+        key(
+            "rotate",
+            Form::Number,
+            "An angle in degrees, counter-clockwise.",
+        ),
+        key(
+            "scale",
+            Form::Either(&[Form::Number, Form::Point]),
+            "A factor, or one along x and one along y.",
+        ),
+        key("shift", Form::Point, "What is added last: [x, y]."),
+        key(
+            "about",
+            Form::Point,
+            "The centre of scaling and turning; [0, 0] if left out.",
+        ),
+        key(
+            "points",
+            Form::Either(&[
+                Form::Words(&[ALL]),
+                Form::List(&Form::Whole(0, None), 0, None),
+            ]),
+            "The points that move: `all`, or their numbers from 0 in the order in which they are \
+             written; all but the two ends, if left out.",
+        ),
+    ]],
+    ways: &[],
     hint: "move: {rotate: tilt, about: [1/2, 1]}",
 };
+
+/// How a generator is given.
+pub(super) const GENERATOR_OF: Form = Form::Either(&[
+    Form::File(Shelf::Generators),
+    ELEMENTS,
+    Form::Mapping(&GENERATOR),
+]);
+
+const AS_INITIATOR: &str = "initiator";
+const IN_ELEMENT: &str = "element";
+/// All points move.
+const ALL: &str = "all";
 
 const SEVERAL: &str = "generators: {grow: [...], seed: [...]}";
 
@@ -134,7 +237,7 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
             generator.parts.extend(parts);
         }
         None => generator.parts.push(PartDocument {
-            connected: reader.flag(connected, true),
+            connected: reader.flag(&fields, "connected"),
             entries: required_entries(reader, &fields, GENERATOR.what),
             ..part
         }),
@@ -147,7 +250,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     let seeds = fields.take("seeds");
     // One that cannot be read may be true.
     let unreadable = seeds.is_some_and(|node| !matches!(node.value, Value::Bool(_)));
-    let seeds = reader.flag(seeds, unreadable);
+    let seeds = reader.flag(&fields, "seeds") || unreadable;
     let mut placement = if seeds {
         Placement::Seeds
     } else {
@@ -155,11 +258,11 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     };
     if let Some(placed) = fields.take("placed") {
         match &placed.value {
-            Value::Text(text) if text == "initiator" && seeds => {
+            Value::Text(text) if text == AS_INITIATOR && seeds => {
                 placement = Placement::SeedsAsInitiator;
             }
-            Value::Text(text) if text == "element" => {}
-            Value::Text(text) if text == "initiator" => reader.error_with_hint(
+            Value::Text(text) if text == IN_ELEMENT => {}
+            Value::Text(text) if text == AS_INITIATOR => reader.error_with_hint(
                 &placed.place,
                 "only a part that seeds can be placed as the initiator",
                 "{seeds: true, placed: initiator, elements: [...]}",
@@ -171,9 +274,8 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
             ),
         }
     }
-    let closed_node = fields.take("closed");
-    let closed = reader.flag(closed_node, false);
-    if let (true, false, Some(node)) = (closed, seeds, closed_node) {
+    let closed = reader.flag(&fields, "closed");
+    if let (true, false, Some(node)) = (closed, seeds, fields.take("closed")) {
         reader.error_with_hint(
             &node.place,
             "only a part that seeds can be closed",
@@ -184,7 +286,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
         placement,
         entries: required_entries(reader, &fields, PART.what),
         closed: closed && seeds,
-        connected: reader.flag(fields.take("connected"), true),
+        connected: reader.flag(&fields, "connected"),
         place: node.place.clone(),
     })
 }
@@ -238,7 +340,7 @@ fn read_move(reader: &mut Reader, node: &Node) -> Option<MoveDocument> {
         Some(Node {
             value: Value::Text(text),
             ..
-        }) if text == "all" => WhichPoints::All,
+        }) if text == ALL => WhichPoints::All,
         Some(node) => {
             let list = reader.list(node, "a list of point numbers, or `all`", "points: [1, 2]");
             WhichPoints::Numbers(list.iter().map(|entry| reader.number(entry)).collect())

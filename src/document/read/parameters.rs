@@ -3,15 +3,44 @@
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
 use crate::document::rule::ParameterDocument;
-use crate::document::shape::Shape;
+use crate::document::shape::{Form, Member, Needed, Shape, key};
 use crate::document::{Number, Written};
 use crate::expression::Expression;
 
-const PARAMETER: Shape = Shape {
+pub(in crate::document) const PARAMETER: Shape = Shape {
     what: "a parameter",
-    keys: &["value", "min", "max", "about"],
+    keys: &[&[
+        Member {
+            needed: Needed::Alone,
+            ..key(
+                "value",
+                Form::Number,
+                "Its value, where nothing else is set. It may use the parameters above it.",
+            )
+        },
+        key(
+            "min",
+            Form::Number,
+            "The least value that it may be set to.",
+        ),
+        key(
+            "max",
+            Form::Number,
+            "The largest value that it may be set to.",
+        ),
+        key("about", Form::Text, "What it means."),
+    ]],
+    ways: &[],
     hint: "angle: {value: 45, min: 5, max: 85, about: \"what it means\"}",
 };
+
+/// The parameters of a rule or component.
+pub(in crate::document) const PARAMS: Member = key(
+    "params",
+    Form::Names(&Form::Either(&[Form::Number, Form::Mapping(&PARAMETER)]), 0),
+    "Parameters by name: a value, or a value with its limits and meaning. Formulas use them, and \
+     `--set NAME=VALUE` changes them.",
+);
 
 pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<ParameterDocument> {
     let Some(node) = node else { return Vec::new() };

@@ -3,23 +3,64 @@
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
 use crate::document::rule::SelectDocument;
-use crate::document::shape::Shape;
+use crate::document::shape::{Form, Shape, Way, key, needed_key};
 
 use super::parameters::written;
 use super::rule::first_line;
 
 const SELECTION: Shape = Shape {
     what: "a selection",
-    keys: &["by_index", "at_random"],
+    keys: &[&[
+        key(
+            "by_index",
+            Form::List(&Form::Text, 1, None),
+            "Generators in turn: element 1 of a fractal takes the first, element 2 the second, and \
+             so on round.",
+        ),
+        key(
+            "at_random",
+            Form::Names(&Form::Positive, 1),
+            "Generators with their weights: each element draws one of them.",
+        ),
+    ]],
+    ways: &[
+        Way {
+            needs: &["by_index"],
+            excludes: &["at_random"],
+        },
+        Way {
+            needs: &["at_random"],
+            excludes: &["by_index"],
+        },
+    ],
     hint: "a list of {when: CONDITION, use: NAME} that ends with {use: NAME}, or \
            {by_index: [NAME, NAME]}, or {at_random: {NAME: WEIGHT}}",
 };
 
 const CASE: Shape = Shape {
     what: "a case of the selection",
-    keys: &["when", "use"],
+    keys: &[&[
+        key(
+            "when",
+            Form::Expression,
+            "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, \
+             `step` and `length`. The last case has none.",
+        ),
+        needed_key(
+            "use",
+            Form::Text,
+            "The generator that replaces the element.",
+        ),
+    ]],
+    ways: &[],
     hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
 };
+
+/// How a selection is given.
+pub(super) const SELECTION_OF: Form = Form::Either(&[
+    Form::List(&Form::Mapping(&CASE), 1, None),
+    Form::Mapping(&SELECTION),
+]);
 
 pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
     if let Value::Sequence(entries) = &node.value {

@@ -1,0 +1,224 @@
+//! The JSON Schema of rules and components, for editors: made of the shapes that files are read by.
+//!
+//! It is of draft 7, the newest that every release of the language servers for YAML understands.
+//! There a `$ref` stands alone, so that a key has its description beside an `allOf`. What a key may
+//! hold has no descriptions of its own: an editor would show them in place of the key's. For the same
+//! reason nothing has a title.
+
+mod json;
+
+use crate::catalogue::{Catalogue, Shelf};
+
+use super::read::{
+    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, INITIATOR, PARAMETER, PARAMS, RULE,
+};
+use super::shape::{Choice, Form, Needed, Shape};
+use json::{Json, Object, list};
+
+const DRAFT: &str = "http://json-schema.org/draft-07/schema#";
+
+// Components as files of their own: they describe themselves and may have parameters.
+
+const INITIATOR_FILE: Shape = Shape {
+    keys: &[&DESCRIPTION, &[PARAMS], INITIATOR.keys[0]],
+    ..INITIATOR
+};
+
+const GENERATOR_FILE: Shape = Shape {
+    keys: &[&DESCRIPTION, &[PARAMS], GENERATOR.keys[0]],
+    ..GENERATOR
+};
+
+const BASE_ELEMENT_FILE: Shape = Shape {
+    keys: &[&DESCRIPTION, &[PARAMS], BASE_ELEMENT.keys[0]],
+    ..BASE_ELEMENT
+};
+
+/// The JSON Schema (draft 7) of a kind of file, as text.
+///
+/// What it refuses, reading refuses. Names, expressions and what depends on several places are
+/// left to reading. The names of the embedded library are there to be offered.
+#[must_use]
+pub fn schema(shelf: Shelf) -> String {
+    let mut definitions = Definitions {
+        alone: shelf != Shelf::Rules,
+        named: Vec::new(),
+    };
+    let (about, body) = match shelf {
+        Shelf::Rules => (
+            "A production rule: what the growth starts from, and what replaces an element.",
+            definitions.rule(),
+        ),
+        Shelf::Initiators => (
+            "An initiator: what the growth starts from.",
+            definitions.either(&[ELEMENTS, Form::Mapping(&INITIATOR_FILE)]),
+        ),
+        Shelf::Generators => (
+            "A generator: what replaces an element.",
+            definitions.either(&[ELEMENTS, Form::Mapping(&GENERATOR_FILE)]),
+        ),
+        Shelf::BaseElements => (
+            "A base element: what an element looks like.",
+            definitions.mapping(&BASE_ELEMENT_FILE),
+        ),
+    };
+    let schema = Object::default()
+        .with("$schema", DRAFT)
+        .with("description", about)
+        .and(body)
+        .with("definitions", Object(definitions.named));
+    schema.to_text()
+}
+
+/// What a schema refers to by name, in the order of first use.
+struct Definitions {
+    named: Vec<(String, Json)>,
+    /// Whether the file extends no other, so that nothing can be left to that.
+    alone: bool,
+}
+
+impl Definitions {
+    /// A rule, which may leave to the one that it extends what a rule must have.
+    fn rule(&mut self) -> Object {
+        let extends = Object::default().with("required", list(["extends"]));
+        let values = Object::default().with("additionalProperties", required(&PARAMETER, true));
+        let alone = required(&RULE, true)
+            .with("properties", Object::default().with(PARAMS.name, values))
+            .and(ways(&RULE, true));
+        self.keys(&RULE)
+            .with("if", extends)
+            .with("then", ways(&RULE, false))
+            .with("else", alone)
+    }
+
+    fn mapping(&mut self, shape: &Shape) -> Object {
+        self.keys(shape)
+            .and(required(shape, self.alone))
+            .and(ways(shape, true))
+    }
+
+    /// The keys of a mapping and what they hold.
+    fn keys(&mut self, shape: &Shape) -> Object {
+        let mut properties = Object::default();
+        for member in shape.members() {
+            let form = self.form(&member.holds);
+            let form = if form.has("$ref") {
+                Object::default().with("allOf", list([form]))
+            } else {
+                form
+            };
+            let about = Object::default().with("description", member.about);
+            properties = properties.with(member.name, about.and(form));
+        }
+        of_type("object")
+            .with("properties", properties)
+            .with("additionalProperties", false)
+    }
+
+    fn either(&mut self, forms: &[Form]) -> Object {
+        let mut alternatives = Vec::new();
+        for form in forms {
+            if let Form::File(shelf) = form {
+                // Editors offer these names; a library of one's own may have others.
+                let entries = Catalogue::embedded().entries().into_iter();
+                let names = entries.filter(|entry| entry.shelf == *shelf);
+                let names = list(names.map(|entry| entry.name));
+                alternatives.push(Object::default().with("enum", names));
+                alternatives.push(of_type("string"));
+            } else {
+                alternatives.push(self.form(form));
+            }
+        }
+        Object::default().with("anyOf", list(alternatives))
+    }
+
+    /// What a value may be.
+    fn form(&mut self, form: &Form) -> Object {
+        match form {
+            Form::Text => of_types(["string", "number"]),
+            Form::Flag(default) => of_type("boolean").with("default", *default),
+            Form::Number => of_types(["number", "string"]),
+            // The limits are those of a number; an expression is text.
+            Form::Positive => self.form(&Form::Number).with("minimum", 0),
+            Form::Whole(least, most) => {
+                let number = of_types(["integer", "string"]).with("minimum", *least);
+                match most {
+                    Some(most) => number.with("maximum", *most),
+                    None => number,
+                }
+            }
+            Form::Expression => of_type("string"),
+            Form::Choice(choice) => one_of(choice()),
+            Form::Exactly(number) => Object::default().with("const", *number),
+            Form::Words(words) => Object::default().with("enum", list(words.iter().copied())),
+            Form::Colour => of_types(["string", "null"]),
+            Form::File(_) => self.either(std::slice::from_ref(form)),
+            Form::Point => self.defined("point", |definitions| {
+                definitions.form(&Form::List(&Form::Number, 2, Some(2)))
+            }),
+            Form::List(of, least, most) => {
+                let entries = of_type("array").with("items", self.form(of));
+                let entries = entries.with_some("minItems", (*least > 0).then_some(*least));
+                entries.with_some("maxItems", *most)
+            }
+            Form::Names(of, least) => {
+                let names = of_type("object").with("additionalProperties", self.form(of));
+                names.with_some("minProperties", (*least > 0).then_some(*least))
+            }
+            Form::Mapping(shape) => {
+                let name = shape.what.split(' ').skip(1).collect::<Vec<_>>().join("-");
+                self.defined(&name, |definitions| definitions.mapping(shape))
+            }
+            Form::Either(forms) => self.either(forms),
+        }
+    }
+
+    /// Refers to a definition, which is made at first use.
+    fn defined(&mut self, name: &str, make: impl FnOnce(&mut Self) -> Object) -> Object {
+        if !self.named.iter().any(|(known, _)| known == name) {
+            let definition = make(self);
+            self.named.push((name.into(), definition.into()));
+        }
+        Object::default().with("$ref", format!("#/definitions/{name}"))
+    }
+}
+
+/// The keys that must be there.
+fn required(shape: &Shape, alone: bool) -> Object {
+    let needed = |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
+    let members = shape.members().filter(|member| needed(member.needed));
+    let names: Vec<_> = members.map(|member| member.name).collect();
+    let names = (!names.is_empty()).then(|| list(names));
+    Object::default().with_some("required", names)
+}
+
+/// The sets of keys of which one must be there; only what they exclude, unless `needed`.
+fn ways(shape: &Shape, needed: bool) -> Object {
+    let ways = shape.ways.iter().map(|way| {
+        let needs = needed.then(|| list(way.needs.iter().copied()));
+        let excluded = way.excludes.iter();
+        let excluded = excluded.map(|key| ((*key).to_owned(), false.into()));
+        Object::default()
+            .with_some("required", needs)
+            .with("properties", Object(excluded.collect()))
+    });
+    let ways = (!shape.ways.is_empty()).then(|| list(ways));
+    Object::default().with_some("anyOf", ways)
+}
+
+fn of_type(name: &str) -> Object {
+    Object::default().with("type", name)
+}
+
+fn of_types(names: [&str; 2]) -> Object {
+    Object::default().with("type", list(names))
+}
+
+/// One of several names. Where `none` is one, nothing stands for it.
+fn one_of(choice: Choice) -> Object {
+    let none = choice.names.contains(&"none").then_some(Json::Null);
+    let names = choice.names.into_iter().map(Json::from).chain(none);
+    Object::default()
+        .with("enum", list(names))
+        .with("default", choice.default)
+}
