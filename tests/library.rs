@@ -364,6 +364,18 @@ fn printing_and_reading_again_is_the_identity() {
 }
 
 #[test]
+fn a_base_element_that_is_named_twice_is_printed_twice_and_read_as_one() {
+    let text = "initiator: segment\nbase_element: square\ngenerator:\n  \
+                - {from: [0, 0], to: [1/2, 0], base_element: triangle}\n  \
+                - {from: [1/2, 0], to: [1, 0], base_element: triangle}\n  \
+                - {from: [0, 1/2], to: [1/2, 1/2], base_element: square}\n";
+    let document = document_of(text);
+    let rule = resolved(&document, &[]);
+    assert_eq!(rule.base_elements().len(), 2);
+    assert_eq!(read_again(&document.to_yaml()), *rule);
+}
+
+#[test]
 fn a_picture_holds_the_rule_that_it_was_made_from() {
     for (name, rule) in rules() {
         let picture = svg_of(&name, &rule, &compiled(&rule, 1), 1);
