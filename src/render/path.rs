@@ -50,12 +50,17 @@ impl PathData {
     }
 
     pub(super) fn line_to(&mut self, to: Position) {
-        self.flush_held();
-        self.held = Some(to);
+        if self.held != Some(to) {
+            self.flush_held();
+            self.held = Some(to);
+        }
     }
 
     pub(super) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
         self.flush_held();
+        if [a, b, to] == [self.pen; 3] {
+            return;
+        }
         self.letter(b'c');
         let [x, y] = self.pen;
         for value in [a[0] - x, a[1] - y, b[0] - x, b[1] - y, to[0] - x, to[1] - y] {
