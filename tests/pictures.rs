@@ -72,6 +72,19 @@ fn a_ring_is_closed_and_its_last_vertex_is_not_written_twice() {
 }
 
 #[test]
+fn what_rounds_to_nothing_is_left_out() {
+    let thin = "initiator: {closed: true, elements: [[0, 0], [1, 0], [0, 1e-9], [1e-9, 0]]}\n\
+                generator: [[0, 0], [1/2, 0], [1, 0]]";
+    assert_eq!(paths(thin, 0), ["d=\"M0 50l10000 0z\""]);
+    let small = "initiator: [[0, 0], [1, 0], [1, 1e-9]]\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\n\
+                 base_element: {points: [[0, 0], {curve: [1, 0], control: [[1/2, 1]]}]}";
+    assert_eq!(
+        paths(small, 0),
+        ["d=\"M0 5000c3333-6667 6667-6667 10000 0\""]
+    );
+}
+
+#[test]
 fn what_is_invisible_or_not_connected_breaks_the_path() {
     let with = |entry: &str| {
         let text = format!("initiator: segment\ngenerator: [[0, 0], [1/4, 1/4], {entry}, [1, 0]]");

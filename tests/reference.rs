@@ -77,7 +77,12 @@ fn every_rule_of_the_library_is_held_against_the_reference() {
         .map(|entry| entry.rule_name().to_owned())
         .collect();
     for entry in Catalogue::embedded().entries() {
-        if entry.shelf == Shelf::Rules {
+        if entry.shelf != Shelf::Rules {
+            continue;
+        }
+        // Of our own rules nobody else has numbers.
+        let rule = resolved(&document(&entry.name), &[]);
+        if !rule.description().tags.iter().any(|tag| tag == "own") {
             assert!(
                 rules.contains(&entry.name),
                 "{} is not in the reference",

@@ -41,12 +41,17 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     }
 
     pub(crate) fn line_to(&mut self, to: Position) {
-        self.draw_held();
-        self.held = Some(to);
+        if self.held != Some(to) {
+            self.draw_held();
+            self.held = Some(to);
+        }
     }
 
     pub(crate) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
         self.draw_held();
+        if [a, b, to] == [self.pen; 3] {
+            return;
+        }
         self.surface.curve_to(a, b, to);
         self.pen = to;
         self.has_length = true;

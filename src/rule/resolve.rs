@@ -54,8 +54,8 @@ struct Resolver {
     /// The rule's parameters.
     constants: Scope,
     base_elements: Vec<BaseElement>,
-    /// Where the base elements were written, to know them again.
-    base_element_places: Vec<Place>,
+    /// Where base elements were written, and their numbers.
+    base_element_places: Vec<(Place, usize)>,
     generator_names: Vec<String>,
     generator_numbers: HashMap<String, usize>,
     /// Whether a parent or a component is missing, which may have other names.
@@ -91,8 +91,6 @@ impl Resolver {
             }
             None => {
                 self.base_elements.push(BaseElement::line());
-                let place = document.initiator.place.clone();
-                self.base_element_places.push(place);
             }
         }
         let names = document.generators.iter().map(|(name, _)| &name.value);

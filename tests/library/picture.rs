@@ -14,6 +14,8 @@ pub(crate) struct Picture {
 pub(crate) struct Subpath {
     /// The vertices; between two of them may be a curve, whose control points are not told.
     pub(crate) vertices: Vec<[i64; 2]>,
+    /// Whether each vertex but the first ends a curve.
+    pub(crate) is_curved: Vec<bool>,
     pub(crate) is_closed: bool,
     /// Whether it says of itself that it has no length.
     pub(crate) is_dot: bool,
@@ -97,12 +99,15 @@ fn subpaths(data: &str) -> Vec<Subpath> {
         assert!(!subpath.is_closed, "a subpath goes on after z");
         let [x, y] = *subpath.vertices.last().unwrap();
         match command {
-            'l' => subpath.vertices.push([x + number(), y + number()]),
-            'c' => {
-                for _ in 0..4 {
-                    number();
-                }
+            'l' => {
                 subpath.vertices.push([x + number(), y + number()]);
+                subpath.is_curved.push(false);
+            }
+            'c' => {
+                let [a, b, c, d, e, f] = std::array::from_fn(|_| number());
+                assert_ne!([a, b, c, d, e, f], [0; 6], "a curve of no extent");
+                subpath.vertices.push([x + e, y + f]);
+                subpath.is_curved.push(true);
             }
             'h' => {
                 assert_eq!(number(), 0);

@@ -8,14 +8,14 @@ use super::super::{BaseElement, Piece};
 use super::Resolver;
 
 impl Resolver {
-    /// The number of a base element, which is made if it is new.
+    /// The number of a base element, which is made if its place is new.
     pub(super) fn base_element(&mut self, document: &BaseElementDocument) -> usize {
         let known = self
             .base_element_places
             .iter()
-            .position(|place| *place == document.place);
-        if let Some(known) = known {
-            return known;
+            .find(|(place, _)| *place == document.place);
+        if let Some((_, known)) = known {
+            return *known;
         }
         let before = self.diagnostics.len();
         let (outline, frame) = (self.outline(document), self.base_frame(document));
@@ -37,10 +37,19 @@ impl Resolver {
             _ => None,
         };
         // Something harmless in the place of a wrong one, so that it is not reported again.
-        self.base_elements
-            .push(made.unwrap_or_else(BaseElement::line));
-        self.base_element_places.push(document.place.clone());
-        self.base_elements.len() - 1
+        let number = self.known_or_new(made.unwrap_or_else(BaseElement::line));
+        self.base_element_places
+            .push((document.place.clone(), number));
+        number
+    }
+
+    /// One number for all that look alike, whether named twice or written twice.
+    fn known_or_new(&mut self, made: BaseElement) -> usize {
+        let known = self.base_elements.iter().position(|known| *known == made);
+        known.unwrap_or_else(|| {
+            self.base_elements.push(made);
+            self.base_elements.len() - 1
+        })
     }
 
     fn outline(&mut self, document: &BaseElementDocument) -> Option<(DVec2, Vec<Piece>)> {
