@@ -131,8 +131,8 @@ fn a_page_of_no_command_is_a_wrong_command_line() {
 fn shells_learn_commands_options_and_rules() {
     for (shell, rules) in [
         ("bash", "koch koch-quadratic koch-snowflake"),
-        ("fish", "using_subcommand check\" -a \"base-element "),
-        ("zsh", "'rules:rule:(base-element "),
+        ("fish", "using_subcommand check\" -a \"archipelago "),
+        ("zsh", "'rules:rule:(archipelago "),
         ("elvish", "--color-by"),
         ("powershell", "--color-by"),
     ] {

@@ -1,0 +1,21 @@
+#!/bin/sh
+# Makes the pictures of this folder anew.
+set -eu
+cd "$(dirname "$0")"
+kfrac() { cargo run --quiet --release --manifest-path ../../Cargo.toml -- "$@" --quiet; }
+
+kfrac grow dahlia --size 480 -o dahlia.svg
+kfrac grow meadow --size 640 -o meadow.svg
+kfrac grow penrose-stars --size 480 -o penrose-stars.svg
+kfrac grow koch-snowflake --steps 5 --size 480 --stroke '#3b7ea1' --stroke-width 1.2 -o koch-snowflake.svg
+kfrac grow dragon --steps 11 --size 480 --color-by index --palette sunset -o dragon.svg
+kfrac grow pythagoras-squares --steps 9 --size 480 -o pythagoras-squares.svg
+kfrac grow rinceau --size 480 -o rinceau.svg
+kfrac grow snow-crystal --size 480 -o snow-crystal.svg
+kfrac grow monkeys-tree --size 480 -o monkeys-tree.svg
+kfrac grow terdragon-rose --size 480 -o terdragon-rose.svg
+kfrac grow sea-fan --seed 3 --size 360 -o sea-fan.png
+kfrac grow fern --size 480 -o fern.png
+kfrac grow cut-sheets --seed 7 --size 480 -o cut-sheets.svg
+kfrac grow archipelago --size 480 -o archipelago.png
+kfrac sheet pythagoras --steps 0..7 --size 150 --columns 4 -o pythagoras-sheet.svg
