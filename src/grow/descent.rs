@@ -327,7 +327,7 @@ impl<'g> Descent<'g> {
             step: f64::from(level),
             length: standing.length,
         };
-        let alternative = if let [only] = alternatives.as_slice() {
+        let alternative = if let [only] = &alternatives[..] {
             only
         } else {
             let generator = rule.selection().select(&moment, standing.path);

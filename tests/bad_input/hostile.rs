@@ -12,12 +12,12 @@ const SOON: Duration = Duration::from_secs(20);
 /// What is said of one file is at most this long.
 const MOST_SAID: usize = 100_000;
 
-struct Outcome {
-    status: Option<i32>,
-    said: String,
+pub(super) struct Outcome {
+    pub(super) status: Option<i32>,
+    pub(super) said: String,
 }
 
-fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
+pub(super) fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
     let mut command = Command::cargo_bin("kfrac").unwrap();
     let start = Instant::now();
     let output = command

@@ -1,0 +1,71 @@
+//! Small files that ask for much: told in bounded time and memory, or refused.
+
+use std::fs;
+
+use super::hostile::kfrac;
+
+/// Checks that the program finds nothing wrong with a file of this text.
+fn accepted(text: &str, arguments: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("many.yaml"), text).unwrap();
+    let outcome = kfrac(folder.path(), arguments);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.said);
+}
+
+const CHECK: [&str; 2] = ["check", "many.yaml"];
+const INFO: [&str; 4] = ["info", "many.yaml", "--steps", "2"];
+
+/// Two lists of equal numbers of elements, and many generators that name each other.
+fn entangled(count: usize) -> String {
+    let mut text = String::from("initiator: segment\ngenerators:\n");
+    for (name, y) in [("a", 0), ("b", 1)] {
+        text += &format!("  {name}: [[0, 0], [1/4, {y}/9], {{to: [1/2, 0], use: g1}}, [1, 0]]\n");
+    }
+    for i in 0..count {
+        let (next, other) = ((i + 1) % count, (i + 7) % count);
+        text += &format!(
+            "  g{i}: [[0, 0], {{to: [1/2, 0], use: g{next}}}, {{to: [1, 0], use: g{other}}}]\n"
+        );
+    }
+    text
+}
+
+#[test]
+fn what_many_elements_become_is_held_once() {
+    let generators: String = (0..3_000)
+        .map(|i| format!("  g{i}: [[0, 0], [1/2, 0]]\n"))
+        .collect();
+    let weights: String = (0..3_000).map(|i| format!("g{i}: 1, ")).collect();
+    let text = format!(
+        "initiator: segment\ngenerators:\n{generators}select: {{at_random: {{{weights}}}}}\n"
+    );
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    let looks: String = (0..3_000)
+        .map(|i| {
+            format!("  - {{to: [{i}/9999, 1/2], base_element: {{points: [[0, 0], [1, 0]]}}}}\n")
+        })
+        .collect();
+    let text = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{looks}");
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+}
+
+#[test]
+fn what_is_too_much_to_resolve_is_counted() {
+    let select = "select: [{when: i % 61 == 1, use: a}, {use: b}]\nsteps: 16\n";
+    let text = entangled(1_000) + select;
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    let points: String = (0..20)
+        .map(|i| format!("[{}/977, {i}/7], ", i * i))
+        .collect();
+    let cases: String = (2..20_000)
+        .map(|i| format!("  - {{when: length == {i}/99999, use: a}}\n"))
+        .collect();
+    let text = format!(
+        "initiator: segment\ngenerators: {{a: [{points}]}}\nselect:\n{cases}  - {{use: a}}\nsteps: 6\n"
+    );
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+}
