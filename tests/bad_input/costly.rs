@@ -69,3 +69,19 @@ fn what_is_too_much_to_resolve_is_counted() {
     accepted(&text, &CHECK);
     accepted(&text, &INFO);
 }
+
+#[test]
+fn many_generators_see_many_parameters() {
+    let params: String = (0..10_000).map(|i| format!("  p{i}: 1\n")).collect();
+    let generators: String = (0..10_000)
+        .map(|i| {
+            format!(
+                "  g{i}: {{random: {{t: \"uniform(0, p{i})\"}}, elements: [[0, 0], [t/2, 0]]}}\n"
+            )
+        })
+        .collect();
+    let text = format!(
+        "initiator: segment\nparams:\n{params}generators:\n{generators}select: {{by_index: [g0]}}\n"
+    );
+    accepted(&text, &CHECK);
+}
