@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::hostile::kfrac;
+use super::hostile::{kfrac, refused};
 
 /// Checks that the program finds nothing wrong with a file of this text.
 fn accepted(text: &str, arguments: &[&str]) {
@@ -84,4 +84,16 @@ fn many_generators_see_many_parameters() {
         "initiator: segment\nparams:\n{params}generators:\n{generators}select: {{by_index: [g0]}}\n"
     );
     accepted(&text, &CHECK);
+}
+
+#[test]
+fn components_count_as_often_as_they_are_named() {
+    let generators: String = (0..8_000)
+        .map(|i| format!("  g{i}: quadric-32\n"))
+        .collect();
+    let text = format!("initiator: segment\ngenerators:\n{generators}select: {{by_index: [g0]}}\n");
+    refused(
+        text.as_bytes(),
+        "with its components the rule holds more than 250,000 values",
+    );
 }

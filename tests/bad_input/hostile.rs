@@ -40,7 +40,7 @@ pub(super) fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
 }
 
 /// Checks that a file of these bytes is refused, by `check` and by `grow`, which leaves no file.
-fn refused(bytes: &[u8], message: &str) {
+pub(super) fn refused(bytes: &[u8], message: &str) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.yaml"), bytes).unwrap();
     for arguments in [&["check", "bad.yaml"][..], &["grow", "bad.yaml"]] {
