@@ -35,6 +35,8 @@ pub struct Forecast<'g> {
     /// By object.
     standing: BTreeMap<usize, Tally>,
     fractals: BigUint,
+    /// How many tallies have been added.
+    work: usize,
     outlines: Outlines,
     /// The area that the closed paths through the elements' end points enclose.
     path_area: f64,
@@ -90,9 +92,12 @@ pub struct TooLarge {
 /// Numbers of more bits than this are not worked out only to be refused.
 const MOST_BITS: u64 = 1 << 14;
 
+/// A forecast that takes more additions than this is given up.
+const MOST_WORK: usize = 2_000_000;
+
 impl Graph {
     /// Whether all approximants up to a step are within a number of elements; where the graph does
-    /// not tell, they are.
+    /// not tell, or not soon, they are.
     ///
     /// # Errors
     ///
@@ -114,13 +119,13 @@ impl Graph {
                     elements: Some(elements),
                     deepest,
                 });
-            } else if elements.bits() > MOST_BITS {
+            } else if elements.bits() > MOST_BITS || forecast.work > MOST_WORK {
                 return Err(TooLarge {
                     elements: None,
                     deepest,
                 });
             }
-            if step < steps && !forecast.advance() {
+            if !refused && forecast.work > MOST_WORK || step < steps && !forecast.advance() {
                 break;
             }
         }
@@ -228,6 +233,7 @@ impl<'g> Forecast<'g> {
             graph,
             standing: BTreeMap::new(),
             fractals: BigUint::from(1u8),
+            work: 0,
             outlines: graph.outlines(),
             path_area: area_under(&graph.initiator).abs(),
         };
@@ -255,6 +261,7 @@ impl<'g> Forecast<'g> {
             area: tally.square * self.own_area(object),
             ..tally
         };
+        self.work += 1;
         *self.standing.entry(object).or_default() += tally;
     }
 

@@ -1,6 +1,12 @@
 //! Small files that ask for much: told in bounded time and memory, or refused.
 
 use std::fs;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::Source;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
 
 use super::hostile::{kfrac, refused};
 
@@ -96,4 +102,32 @@ fn components_count_as_often_as_they_are_named() {
         text.as_bytes(),
         "with its components the rule holds more than 250,000 values",
     );
+}
+
+fn graph_of(text: &str, steps: u32) -> Graph {
+    let source = Source::new("hostile.yaml", text);
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    let (rule, _) = document.resolve(&[]).unwrap();
+    Graph::compile(&Arc::new(rule), steps).unwrap()
+}
+
+#[test]
+fn forecasts_of_many_steps_are_given_up() {
+    let steps = 1_000_000;
+    let listed: String = (0..2_000)
+        .map(|i| format!("  - {{to: [{}, 0], use: g{i}}}\n", i + 1))
+        .collect();
+    let generators: String = (0..2_000)
+        .map(|i| {
+            let next = (i + 1) % 2_000;
+            format!("  g{i}: [[0, 0], {{to: [1/2, 0], use: g{next}}}]\n")
+        })
+        .collect();
+    let text = format!(
+        "initiator:\n  - [0, 0]\n{listed}generators:\n{generators}select: {{by_index: [g0]}}\n"
+    );
+    let graph = graph_of(&text, steps);
+    assert_eq!(graph.check_size(steps, 2_000), Ok(()));
+    let refused = graph.check_size(steps, 1_000).unwrap_err();
+    assert_eq!((refused.elements, refused.deepest), (None, None));
 }
