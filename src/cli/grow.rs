@@ -279,6 +279,12 @@ fn explain(error: RenderError, loaded: &Loaded, path: &Path, limit: u64) -> Fail
             )
             .into()
         }
+        RenderError::Walk(error @ WalkError::TooLong { .. }) => anyhow::Error::new(error)
+            .context(format!(
+                "{} takes too long; --max-elements allows more",
+                loaded.name
+            ))
+            .into(),
         other => anyhow::Error::new(other).into(),
     }
 }

@@ -2,11 +2,13 @@
 
 use std::fs;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::graph::Graph;
+use kfrac::grow::{Growth, WalkError, extent};
 
 use super::hostile::{kfrac, refused};
 
@@ -130,4 +132,34 @@ fn forecasts_of_many_steps_are_given_up() {
     assert_eq!(graph.check_size(steps, 2_000), Ok(()));
     let refused = graph.check_size(steps, 1_000).unwrap_err();
     assert_eq!((refused.elements, refused.deepest), (None, None));
+}
+
+#[test]
+fn long_ways_to_few_elements_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let lone = "initiator: segment\ngenerator:\n  parts:\n    - elements: [[0, 0], [1/2, 0]]\n    \
+                - {seeds: true, elements: [[0, 1], {to: [1, 1], fertile: false}]}\nsteps: 20000\n";
+    fs::write(folder.path().join("lone.yaml"), lone).unwrap();
+    let outcome = kfrac(
+        folder.path(),
+        &["grow", "lone.yaml", "--max-elements", "100000"],
+    );
+    assert_eq!(outcome.status, Some(1));
+    let message = "lone takes too long; --max-elements allows more";
+    assert!(outcome.said.contains(message), "{}", outcome.said);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_walk_that_finds_nothing_can_be_cancelled() {
+    // All elements vanish in the last step.
+    let text = "initiator: segment\ngenerators:\n  a: [[0, 0], [1/4, 0], [1/2, 0], [3/4, 0], [1, 0]]\n  \
+                v: {parts: [{seeds: true, elements: [[0, 0], [1/2, 0]]}]}\n\
+                select: [{when: step == 40 and i > 0, use: v}, {use: a}]\n";
+    let graph = graph_of(text, 41);
+    let growth = Growth {
+        cancel: Some(&AtomicBool::new(true)),
+        ..Growth::steps(41)
+    };
+    assert_eq!(extent(&graph, &growth), Err(WalkError::Cancelled));
 }
