@@ -131,7 +131,8 @@ impl Catalogue {
         name: &str,
         chain: &[Arc<Source>],
     ) -> Result<Arc<Source>, Diagnostic> {
-        if without_extension(name) != name || name.contains(['/', '\\']) {
+        let is_path = without_extension(name) != name || name.contains(['/', '\\']);
+        if is_path {
             let folder = chain
                 .last()
                 .and_then(|rule| Path::new(rule.name()).parent());
@@ -139,9 +140,16 @@ impl Catalogue {
             if beside.is_file() {
                 return read_file(&beside, &beside.display().to_string());
             }
-            return self.rule(name);
+        }
+        // A rule that is read must not wait for what a pipe or a terminal says.
+        let special = |file: fs::Metadata| !file.is_file() && !file.is_dir();
+        if fs::metadata(name).is_ok_and(special) {
+            return Err(Diagnostic::error(format!("'{name}' is no regular file")));
         }
         let first = self.rule(name)?;
+        if is_path {
+            return Ok(first);
+        }
         if !chain.iter().any(|rule| is_same_file(rule, &first)) {
             return Ok(first);
         }

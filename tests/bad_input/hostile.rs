@@ -198,6 +198,12 @@ fn of_many_mistakes_the_first_are_said() {
     refused(wrong.as_bytes(), "\nand 19900 more");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_device_is_not_extended() {
+    refused(b"extends: /dev/null\n", "'/dev/null' is no regular file");
+}
+
 #[test]
 fn what_is_no_file_is_said() {
     let folder = tempfile::tempdir().unwrap();
