@@ -139,15 +139,23 @@ impl Catalogue {
         name: &str,
         chain: &[Arc<Source>],
     ) -> Result<Arc<Source>, Diagnostic> {
-        if without_extension(name) != name || name.contains(['/', '\\']) {
+        let is_path = without_extension(name) != name || name.contains(['/', '\\']);
+        if is_path {
             let folder = chain.last().and_then(|rule| rule.path().parent());
             let beside = folder.unwrap_or(Path::new("")).join(name);
             if beside.is_file() {
                 return read_file(&beside);
             }
-            return self.rule(name);
+        }
+        // A rule that is read must not wait for what a pipe or a terminal says.
+        let special = |file: fs::Metadata| !file.is_file() && !file.is_dir();
+        if fs::metadata(name).is_ok_and(special) {
+            return Err(Diagnostic::error(format!("'{name}' is no regular file")));
         }
         let first = self.rule(name)?;
+        if is_path {
+            return Ok(first);
+        }
         if !chain.iter().any(|rule| is_same_file(rule, &first)) {
             return Ok(first);
         }

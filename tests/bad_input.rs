@@ -6,6 +6,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
+#[path = "bad_input/costly.rs"]
+mod costly;
 #[path = "bad_input/hostile.rs"]
 mod hostile;
 #[path = "bad_input/mutations.rs"]

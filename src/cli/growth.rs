@@ -84,6 +84,12 @@ impl GrowthArguments {
                 )
                 .into()
             }
+            RenderError::Walk(error @ WalkError::TooLong { .. }) => anyhow::Error::new(error)
+                .context(format!(
+                    "{} takes too long; --max-elements allows more",
+                    loaded.name
+                ))
+                .into(),
             other => anyhow::Error::new(other).into(),
         }
     }

@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, nearest};
 use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, KIND, RULE, check_description};
+use super::yaml::{Budget, Size};
 
 /// A parent may have a parent, and so on, up to this many.
 const MOST_PARENTS: usize = 32;
@@ -28,10 +29,15 @@ pub(super) fn assemble(
         parameters: Vec::new(),
         components: Vec::new(),
         missing: 0,
+        budget: Budget::default(),
+        too_large: false,
         generation: 0,
         complete: true,
     };
     let (place, mut entries) = assembly.extended(source)?;
+    for (_, node) in &entries {
+        assembly.budget.own(Size::of(node));
+    }
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
     let complete = assembly.complete;
@@ -50,6 +56,9 @@ struct Assembly<'a> {
     components: Vec<Component>,
     /// How many of them were not found.
     missing: usize,
+    /// How much the rule holds with its components, and whether that is too much.
+    budget: Budget,
+    too_large: bool,
     /// The generation of the rule whose components are being put in.
     generation: usize,
     /// Whether everything that is named has been found.
@@ -264,10 +273,24 @@ impl Assembly<'_> {
                 component
             }
         };
+        let component = component.filter(|component| self.has_room(component, &node.place));
         *node = component.unwrap_or_else(|| {
             self.complete = false;
             harmless(shelf, &node.place)
         });
+    }
+
+    /// Whether one more component is not too much, which is said once.
+    fn has_room(&mut self, component: &Node, place: &Place) -> bool {
+        if self.too_large {
+            return false;
+        }
+        let room = self.budget.component(Size::of(component), place);
+        if let Err(error) = room {
+            self.diagnostics.push(error);
+            self.too_large = true;
+        }
+        !self.too_large
     }
 
     /// A component by name, without its description, and its parameters.

@@ -11,6 +11,7 @@ mod scalar;
 mod trouble;
 mod write;
 
+pub(super) use limits::{Budget, Size};
 pub(super) use read::read;
 pub(super) use scalar::number;
 pub(super) use write::write;

@@ -1,6 +1,7 @@
 //! Names: which may be used, which are reserved, and what to say about the rest.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use super::functions::{FUNCTIONS, Function};
 use super::{ExpressionError, Range};
@@ -33,6 +34,8 @@ pub(super) fn constant(name: &str) -> Option<f64> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scope {
     names: BTreeMap<String, Named>,
+    /// Where else names are looked for.
+    enclosing: Option<Arc<Scope>>,
     /// Whether other names stand for values that are not known.
     open: bool,
 }
@@ -52,6 +55,16 @@ impl Scope {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A scope with all the names of another one, to which names can be added at no cost to it.
+    #[must_use]
+    pub fn inside(enclosing: &Arc<Self>) -> Self {
+        Self {
+            names: BTreeMap::new(),
+            enclosing: Some(Arc::clone(enclosing)),
+            open: enclosing.open,
+        }
     }
 
     /// Adds a name for a value, in place of what had this name before.
@@ -79,20 +92,28 @@ impl Scope {
     /// Whether this name has been added.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
-        self.names.contains_key(name)
+        self.own(name).is_some()
+    }
+
+    fn own(&self, name: &str) -> Option<Named> {
+        let enclosed = || self.enclosing.as_ref().and_then(|scope| scope.own(name));
+        self.names.get(name).copied().or_else(enclosed)
     }
 
     pub(super) fn get(&self, name: &str) -> Option<Named> {
         constant(name)
             .map(Named::Constant)
-            .or_else(|| self.names.get(name).copied())
+            .or_else(|| self.own(name))
             .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }
 
     pub(super) fn unknown(&self, name: &str, range: Range<usize>) -> ExpressionError {
-        let own = self.names.keys().map(String::as_str);
+        let scopes = std::iter::successors(Some(self), |scope| scope.enclosing.as_deref());
+        let own: BTreeSet<&str> = scopes
+            .flat_map(|scope| scope.names.keys().map(String::as_str))
+            .collect();
         let constants = CONSTANTS.iter().map(|(name, _)| *name);
-        let known: Vec<&str> = own.chain(constants).collect();
+        let known: Vec<&str> = own.into_iter().chain(constants).collect();
         let words = KEYWORDS.iter().copied();
         let functions = FUNCTIONS.iter().map(|function| function.name);
         let candidates = known.iter().copied().chain(words).chain(functions);

@@ -242,6 +242,9 @@ impl Graph {
                     next.extend(
                         all.map(|instance| child(instance, state.vector, state.offset, state.lost)),
                     );
+                    if next.len() > MOST_WORK {
+                        return None;
+                    }
                 }
             }
             if next.is_empty() {

@@ -14,6 +14,11 @@ use super::{Alternative, Chain, CompileError, Graph, Object, Production, Replace
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;
 
+/// So is one with more instances, or one that takes more work: conditions that are tried, and
+/// numbers of elements that are carried along.
+const MOST_INSTANCES: usize = 2_000_000;
+const MOST_WORK: usize = 20_000_000;
+
 /// A graph that is not asked for more steps is resolved further only up to this many objects.
 const SOON: usize = 4_096;
 
@@ -50,7 +55,7 @@ impl Graph {
 
 /// Why a compilation stops.
 enum Stop {
-    /// The index cannot be resolved, or the objects are too many.
+    /// The index cannot be resolved, or that is too much work.
     Irregular,
     Error(CompileError),
 }
@@ -66,6 +71,11 @@ struct Compiler<'r> {
     objects: Vec<Object>,
     /// Numbers for whether an element is fertile, the generator that it names and its state.
     behaviours: HashMap<(bool, Option<usize>, State), usize>,
+    /// What is known of the behaviours.
+    replacements: HashMap<usize, Replacement>,
+    /// What has been used up of the most that is allowed.
+    instances: usize,
+    work: usize,
     /// The replacement matrix modulo m for an age and step: a column a kind.
     columns: HashMap<(u32, u32), Vec<Vec<u32>>>,
 }
@@ -92,6 +102,9 @@ impl<'r> Compiler<'r> {
             keys: Vec::new(),
             objects: Vec::new(),
             behaviours: HashMap::new(),
+            replacements: HashMap::new(),
+            instances: 0,
+            work: 0,
             columns: HashMap::new(),
         }
     }
@@ -168,6 +181,18 @@ impl<'r> Compiler<'r> {
         }
     }
 
+    /// Counts instances that are made and other work that is done. Where indices are counted, there
+    /// is no more of either than the file is long.
+    fn spend(&mut self, instances: usize, work: usize) -> Result<(), Stop> {
+        self.instances += instances;
+        self.work += work;
+        let too_much = self.instances > MOST_INSTANCES || self.work > MOST_WORK;
+        if too_much && !self.depends.index_is_free {
+            return Err(Stop::Irregular);
+        }
+        Ok(())
+    }
+
     fn kind(&self, fertile: bool, generator: Option<usize>) -> usize {
         if fertile { self.kinds[&generator] } else { 0 }
     }
@@ -215,6 +240,7 @@ impl<'r> Compiler<'r> {
         length: impl Fn(usize) -> f64,
     ) -> Result<Vec<usize>, Stop> {
         let count = part.elements.len();
+        self.spend(count, count * first.preceding.len())?;
         let mut objects = vec![0; count];
         let mut preceding = first.preceding.clone();
         for turn in 0..count {
@@ -252,6 +278,14 @@ impl<'r> Compiler<'r> {
         }
     }
 
+    /// The number of conditions that are tried where an element's generator is looked for.
+    fn conditions(&self, generator: Option<usize>) -> usize {
+        match generator {
+            Some(_) => 1,
+            None => self.rule.selection().programs().count() + 1,
+        }
+    }
+
     /// The generators that may replace an element.
     fn candidates(&self, generator: Option<usize>, moment: &Moment) -> Vec<usize> {
         if let Some(named) = generator {
@@ -278,10 +312,21 @@ impl<'r> Compiler<'r> {
     }
 
     fn replacement(&mut self, number: usize) -> Result<Replacement, Stop> {
+        let behaviour = self.objects[number].behaviour;
+        if let Some(known) = self.replacements.get(&behaviour) {
+            return Ok(known.clone());
+        }
+        let replacement = self.new_replacement(number)?;
+        self.replacements.insert(behaviour, replacement.clone());
+        Ok(replacement)
+    }
+
+    fn new_replacement(&mut self, number: usize) -> Result<Replacement, Stop> {
         let (class, state) = self.keys[number].clone();
         if !class.fertile {
             return Ok(Replacement::Kept);
         }
+        self.spend(0, self.conditions(class.generator))?;
         let modulus = self.depends.modulus;
         let index = state.preceding.iter().sum::<u32>() % modulus + 1;
         let moment = Self::moment(&state, index);
@@ -341,11 +386,11 @@ impl<'r> Compiler<'r> {
             if decided && self.is_fixed(generator) {
                 let mut production = Production::default();
                 production.set(listed.parts(), &points, &objects);
-                return Ok(Replacement::Fixed(production));
+                return Ok(Replacement::Fixed(Arc::new(production)));
             }
             alternatives.push(Alternative { generator, objects });
         }
-        Ok(Replacement::Evaluated(alternatives))
+        Ok(Replacement::Evaluated(alternatives.into()))
     }
 
     /// Whether a generator's points are the same wherever an object in this state stands.
@@ -382,6 +427,7 @@ impl<'r> Compiler<'r> {
         if modulus == 1 {
             return Ok(Vec::new());
         }
+        self.spend(0, state.preceding.len() * state.preceding.len())?;
         let when = (state.age, state.step);
         if !self.columns.contains_key(&when) {
             let columns = self.replacement_matrix(state)?;
@@ -400,17 +446,22 @@ impl<'r> Compiler<'r> {
     /// The replacement matrix modulo m: a column a kind, the numbers of children that stay by kind.
     ///
     /// Irregular where the generators that an element may get differ in these numbers.
-    fn replacement_matrix(&self, state: &State) -> Result<Vec<Vec<u32>>, Stop> {
+    fn replacement_matrix(&mut self, state: &State) -> Result<Vec<Vec<u32>>, Stop> {
         let modulus = self.depends.modulus;
         let size = self.kinds.len() + 1;
+        self.spend(0, size * size)?;
         let mut columns = vec![vec![0; size]; size];
         columns[0][0] = 1;
-        for (&names, &kind) in &self.kinds {
+        for (names, kind) in self.kinds.clone() {
             let mut known: Option<Vec<u32>> = None;
             for index in 1..=modulus {
+                self.spend(0, self.conditions(names))?;
                 for generator in self.candidates(names, &Self::moment(state, index)) {
+                    let rule = self.rule;
+                    let listed = &rule.generators()[generator];
+                    self.spend(0, size + listed.elements().count())?;
                     let mut column = vec![0; size];
-                    let parts = self.rule.generators()[generator].parts();
+                    let parts = listed.parts();
                     for part in parts.iter().filter(|part| !part.placement.seeds()) {
                         for element in &part.elements {
                             let kind = self.kind(element.fertile, element.generator);

@@ -3,7 +3,8 @@
 //! The numbers of elements of step n are the graph's matrix to the power n applied to the
 //! initiator; they are worked out step by step in whole numbers of any size.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::ops::AddAssign;
 
 use num_bigint::BigUint;
 
@@ -34,6 +35,8 @@ pub struct Forecast<'g> {
     /// By object.
     standing: BTreeMap<usize, Tally>,
     fractals: BigUint,
+    /// How many tallies have been added.
+    work: usize,
     outlines: Outlines,
     /// The area that the closed paths through the elements' end points enclose.
     path_area: f64,
@@ -53,6 +56,18 @@ struct Tally {
     root_square: f64,
     /// Of the areas of the closed base elements.
     area: f64,
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.count += other.count;
+        self.length += other.length;
+        self.square += other.square;
+        self.signed += other.signed;
+        self.root_length += other.root_length;
+        self.root_square += other.root_square;
+        self.area += other.area;
+    }
 }
 
 /// What kinds of outline a graph draws.
@@ -77,9 +92,12 @@ pub struct TooLarge {
 /// Numbers of more bits than this are not worked out only to be refused.
 const MOST_BITS: u64 = 1 << 14;
 
+/// A forecast that takes more additions than this is given up.
+const MOST_WORK: usize = 2_000_000;
+
 impl Graph {
     /// The number of elements of an approximant, if all up to it are within a number of elements;
-    /// where the graph does not tell, they are.
+    /// where the graph does not tell, or not soon, they are.
     ///
     /// # Errors
     ///
@@ -101,7 +119,7 @@ impl Graph {
                     elements: Some(elements),
                     deepest,
                 });
-            } else if elements.bits() > MOST_BITS {
+            } else if elements.bits() > MOST_BITS || forecast.work > MOST_WORK {
                 return Err(TooLarge {
                     elements: None,
                     deepest,
@@ -110,7 +128,7 @@ impl Graph {
             if step == steps {
                 return Ok(u64::try_from(elements).ok());
             }
-            if !forecast.advance() {
+            if !refused && forecast.work > MOST_WORK || !forecast.advance() {
                 break;
             }
         }
@@ -122,7 +140,7 @@ impl Graph {
     #[must_use]
     pub fn forecast(&self) -> Option<Forecast<'_>> {
         let known = self.is_regular()
-            && self.objects.iter().all(|object| match &object.replacement {
+            && self.behaviours().all(|object| match &object.replacement {
                 Replacement::Evaluated(alternatives) => self.are_equal(alternatives),
                 _ => true,
             });
@@ -218,6 +236,7 @@ impl<'g> Forecast<'g> {
             graph,
             standing: BTreeMap::new(),
             fractals: BigUint::from(1u8),
+            work: 0,
             outlines: graph.outlines(),
             path_area: area_under(&graph.initiator).abs(),
         };
@@ -245,14 +264,8 @@ impl<'g> Forecast<'g> {
             area: tally.square * self.own_area(object),
             ..tally
         };
-        let sum = self.standing.entry(object).or_default();
-        sum.count += tally.count;
-        sum.length += tally.length;
-        sum.square += tally.square;
-        sum.signed += tally.signed;
-        sum.root_length += tally.root_length;
-        sum.root_square += tally.root_square;
-        sum.area += tally.area;
+        self.work += 1;
+        *self.standing.entry(object).or_default() += tally;
     }
 
     /// The area of an object's base element where it is closed and drawn.
@@ -308,13 +321,30 @@ impl<'g> Forecast<'g> {
         !self.standing.keys().any(beyond)
     }
 
+    /// Takes what stands, what is replaced by the same as one.
+    fn standing_by_behaviour(&mut self) -> BTreeMap<usize, Tally> {
+        let mut first = HashMap::new();
+        let mut standing: BTreeMap<usize, Tally> = BTreeMap::new();
+        for (number, tally) in std::mem::take(&mut self.standing) {
+            let number = if self.is_fertile(number) {
+                *first
+                    .entry(self.graph.objects[number].behaviour)
+                    .or_insert(number)
+            } else {
+                number
+            };
+            *standing.entry(number).or_default() += tally;
+        }
+        standing
+    }
+
     /// Goes on to the next approximant. `false`, and nothing happens, where the graph ends.
     pub fn advance(&mut self) -> bool {
         if !self.is_resolved() {
             return false;
         }
         let graph = self.graph;
-        for (number, tally) in std::mem::take(&mut self.standing) {
+        for (number, tally) in self.standing_by_behaviour() {
             match &graph.objects[number].replacement {
                 Replacement::Fixed(production) => {
                     self.path_area += tally.signed * area_under(&production.body);

@@ -40,15 +40,15 @@ pub struct Object {
     pub replacement: Replacement,
 }
 
-/// What takes an object's place in the next step.
+/// What takes an object's place in the next step; objects of one behaviour share it.
 #[derive(Clone, Debug)]
 pub enum Replacement {
     /// Infertile: the element is kept.
     Kept,
     /// Fixed instances.
-    Fixed(Production),
+    Fixed(Arc<Production>),
     /// Instances that are worked out where the element stands, by one of these alternatives.
-    Evaluated(Vec<Alternative>),
+    Evaluated(Arc<[Alternative]>),
     /// Not resolved: the object is first reached at the depth that the graph was compiled for.
     Beyond,
 }
@@ -168,6 +168,17 @@ impl Graph {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
+    }
+
+    /// The first object of every behaviour.
+    pub(crate) fn behaviours(&self) -> impl Iterator<Item = &Object> {
+        // Behaviours are numbered in the order of the objects.
+        let mut next = 0;
+        self.objects.iter().filter(move |object| {
+            let first = object.behaviour == next;
+            next += usize::from(first);
+            first
+        })
     }
 
     /// Whether every production is a list of fixed maps.

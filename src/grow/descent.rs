@@ -68,6 +68,19 @@ pub(super) struct Found {
     pub(super) rank: u64,
 }
 
+/// What a descent comes to.
+pub(super) enum Next {
+    /// An element of the approximant.
+    Element(Found),
+    /// Elements that have been replaced, many of them: a chance to stop.
+    Pause,
+    /// The end of the fractal.
+    End,
+}
+
+/// Visits between two chances to stop.
+pub(super) const PATIENCE: u64 = 1 << 12;
+
 /// The chain that a level of the stack goes through.
 #[derive(Clone, Copy)]
 enum Source<'g> {
@@ -102,6 +115,7 @@ pub(super) struct Descent<'g> {
     free: Vec<usize>,
     slots: Vec<f64>,
     points: Vec<DVec2>,
+    /// The number of visits since the caller has last taken it.
     pub(super) visited: u64,
 }
 
@@ -173,11 +187,14 @@ impl<'g> Descent<'g> {
         self.joined
     }
 
-    /// The next element of approximant `target`.
-    pub(super) fn next(&mut self, start: &Start<'g>) -> Result<Option<Found>, CompileError> {
+    /// Goes on to the next element of approximant `target`.
+    pub(super) fn next(&mut self, start: &Start<'g>) -> Result<Next, CompileError> {
         loop {
+            if self.visited >= PATIENCE {
+                return Ok(Next::Pause);
+            }
             let Some(entry) = self.stack.last_mut() else {
-                return Ok(None);
+                return Ok(Next::End);
             };
             let chain = match entry.source {
                 Source::Start => start.chain(self.graph),
@@ -244,7 +261,7 @@ impl<'g> Descent<'g> {
                 if last {
                     self.pop();
                 }
-                return Ok(Some(Found {
+                return Ok(Next::Element(Found {
                     standing,
                     object,
                     level,
@@ -327,7 +344,7 @@ impl<'g> Descent<'g> {
             step: f64::from(level),
             length: standing.length,
         };
-        let alternative = if let [only] = alternatives.as_slice() {
+        let alternative = if let [only] = &alternatives[..] {
             only
         } else {
             let generator = rule.selection().select(&moment, standing.path);

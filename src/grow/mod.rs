@@ -84,6 +84,12 @@ pub enum WalkError<E> {
         /// The largest number allowed.
         limit: u64,
     },
+    /// The elements are few, but the way to them is long.
+    #[error("more than {limit} elements that are replaced lie on the way to those that are drawn")]
+    TooLong {
+        /// The largest number of replaced elements that are visited.
+        limit: u64,
+    },
     /// A generator has a point that is not finite.
     #[error(transparent)]
     NotFinite(#[from] CompileError),

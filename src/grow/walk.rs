@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::graph::{Graph, Replacement};
 
-use super::descent::{Descent, Found, Start};
+use super::descent::{Descent, Found, Next, PATIENCE, Start};
 use super::{Element, Fractal, Progress, Visitor, WalkError};
 
 /// How far to grow, and within what limits.
@@ -43,8 +43,10 @@ pub struct Walked {
     pub fractals: u64,
 }
 
-/// Visits between two looks at the flag that cancels, and between two words of progress.
-const PATIENCE: u64 = 1 << 12;
+/// A walk may visit so many elements for each that is allowed, those on the way counted, or so many
+/// in all if that is more.
+const VISITS_AN_ELEMENT: u64 = 20;
+const FEW_VISITS: u64 = 1 << 24;
 
 /// A fractal whose seeds are being looked for.
 struct Parent<'g> {
@@ -130,26 +132,28 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             if next.is_some() {
                 continue;
             }
-            match parent.descent.next(&parent.start)? {
-                Some(found) => {
+            let found = parent.descent.next(&parent.start)?;
+            let visited = std::mem::take(&mut parent.descent.visited);
+            match found {
+                Next::Element(found) => {
                     let replacement = &self.graph.objects()[found.object].replacement;
                     if !matches!(replacement, Replacement::Kept) {
                         parent.is_fertile = true;
                         parent.queue = parent.descent.seeds(&found)?;
                         parent.queue.reverse();
                     }
-                    let visited = std::mem::take(&mut parent.descent.visited);
-                    self.visit(visited)?;
                 }
-                None if parent.is_fertile && parent.step + 1 < self.growth.steps => {
+                Next::Pause => {}
+                Next::End if parent.is_fertile && parent.step + 1 < self.growth.steps => {
                     parent.is_fertile = false;
                     parent.step += 1;
                     parent.descent = Descent::new(self.graph, &parent.start, parent.step);
                 }
-                None => {
+                Next::End => {
                     parents.pop();
                 }
             }
+            self.visit(visited)?;
         }
     }
 
@@ -164,18 +168,24 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         self.visitor.begin(fractal).map_err(WalkError::Visitor)?;
         let mut descent = Descent::new(self.graph, start, self.growth.steps);
         let mut index = 0;
-        while let Some(found) = descent.next(start)? {
-            index += 1;
-            self.walked.elements += 1;
-            if self.walked.elements > self.growth.most_elements {
-                return Err(self.too_many());
-            }
+        loop {
+            let found = descent.next(start)?;
             self.visit(std::mem::take(&mut descent.visited))?;
-            self.visitor
-                .element(&self.element(&found, index))
-                .map_err(WalkError::Visitor)?;
+            match found {
+                Next::Element(found) => {
+                    index += 1;
+                    self.walked.elements += 1;
+                    if self.walked.elements > self.growth.most_elements {
+                        return Err(self.too_many());
+                    }
+                    self.visitor
+                        .element(&self.element(&found, index))
+                        .map_err(WalkError::Visitor)?;
+                }
+                Next::Pause => {}
+                Next::End => break,
+            }
         }
-        self.visit(descent.visited)?;
         self.visitor
             .end(descent.ends_joined())
             .map_err(WalkError::Visitor)
@@ -201,6 +211,10 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         }
         self.next_look = self.visited + PATIENCE;
         self.tell_progress();
+        let most = FEW_VISITS.max(self.growth.most_elements.saturating_mul(VISITS_AN_ELEMENT));
+        if self.visited > most {
+            return Err(WalkError::TooLong { limit: most });
+        }
         match self.growth.cancel {
             Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
             _ => Ok(()),

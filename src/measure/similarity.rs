@@ -51,7 +51,7 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
         return Similarity::none("there is no limit set: a generator does not shrink");
     }
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
-    let parts = parts(graph.objects().len(), &edges);
+    let parts = parts(graph.behaviours().count(), &edges);
     if parts.is_empty() {
         return Similarity::none("nothing stays fertile");
     }
@@ -71,19 +71,20 @@ struct Edge {
     ratio: f64,
 }
 
-/// The instances of fertile objects; `None` if one of them is a reset.
+/// The fertile instances of what is fertile, between behaviours: objects of one behaviour are
+/// replaced by the same. `None` if one of them is a reset.
 fn edges(graph: &Graph) -> Option<Vec<Edge>> {
     let mut edges = Vec::new();
     let fertile = |object: usize| !matches!(graph.objects()[object].replacement, Replacement::Kept);
-    for (from, object) in graph.objects().iter().enumerate() {
+    for object in graph.behaviours() {
         let Replacement::Fixed(production) = &object.replacement else {
             continue;
         };
         let mut add = |instance: &Instance| {
             if fertile(instance.object) {
                 edges.push(Edge {
-                    from,
-                    to: instance.object,
+                    from: object.behaviour,
+                    to: graph.objects()[instance.object].behaviour,
                     ratio: instance.length,
                 });
             }

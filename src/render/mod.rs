@@ -135,6 +135,7 @@ impl From<WalkError<io::Error>> for RenderError {
             WalkError::TooManyElements { limit } => {
                 Self::Walk(WalkError::TooManyElements { limit })
             }
+            WalkError::TooLong { limit } => Self::Walk(WalkError::TooLong { limit }),
             WalkError::NotFinite(error) => Self::Walk(WalkError::NotFinite(error)),
             WalkError::Cancelled => Self::Walk(WalkError::Cancelled),
         }

@@ -14,6 +14,7 @@ mod random;
 mod selection;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::document::{Number, RuleDocument, Setting};
@@ -102,6 +103,7 @@ impl Resolver {
         for (slot, name) in Moment::NAMES.into_iter().enumerate() {
             moment.variable(name, slot);
         }
+        let moment = Arc::new(moment);
         let (points, initiator) = self.initiator(document);
         let generators: Vec<_> = document
             .generators

@@ -12,12 +12,12 @@ const SOON: Duration = Duration::from_secs(120);
 /// What is said of one file is at most this long.
 const MOST_SAID: usize = 100_000;
 
-struct Outcome {
-    status: Option<i32>,
-    said: String,
+pub(super) struct Outcome {
+    pub(super) status: Option<i32>,
+    pub(super) said: String,
 }
 
-fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
+pub(super) fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
     let mut command = Command::cargo_bin("kfrac").unwrap();
     let start = Instant::now();
     let output = command
@@ -40,7 +40,7 @@ fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
 }
 
 /// Checks that a file of these bytes is refused, by `check` and by `grow`, which leaves no file.
-fn refused(bytes: &[u8], message: &str) {
+pub(super) fn refused(bytes: &[u8], message: &str) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.yaml"), bytes).unwrap();
     for arguments in [&["check", "bad.yaml"][..], &["grow", "bad.yaml"]] {
@@ -196,6 +196,12 @@ fn of_many_mistakes_the_first_are_said() {
     refused(wrong.as_bytes(), "\nand 900 more");
     let wrong = format!("{KOCH}tags: [{}]\n", "max(1, 2), ".repeat(20_000));
     refused(wrong.as_bytes(), "\nand 19900 more");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_is_not_extended() {
+    refused(b"extends: /dev/null\n", "'/dev/null' is no regular file");
 }
 
 #[test]

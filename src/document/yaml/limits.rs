@@ -1,4 +1,4 @@
-//! How much a file may hold once its aliases are expanded.
+//! How much a rule may hold once its aliases are expanded and its components are put in.
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::document::node::{Node, Value};
@@ -7,12 +7,12 @@ use crate::document::node::{Node, Value};
 pub(super) const MAX_DEPTH: usize = 64;
 /// Values, copies for aliases counted.
 const MAX_VALUES: usize = 250_000;
-/// Bytes of text in the copies for aliases.
+/// Bytes of text in the copies for aliases and in components.
 const MAX_COPIED: usize = 16 << 20;
 
 /// How large a node is.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Size {
+pub(in crate::document) struct Size {
     values: usize,
     bytes: usize,
     depth: usize,
@@ -20,7 +20,7 @@ pub(super) struct Size {
 
 impl Size {
     /// The size of a node and all it holds.
-    pub(super) fn of(node: &Node) -> Self {
+    pub(in crate::document) fn of(node: &Node) -> Self {
         let mut size = Self {
             values: 1,
             bytes: 0,
@@ -31,6 +31,7 @@ impl Size {
             Value::Sequence(items) => items.iter().for_each(|item| size.add_child(Self::of(item))),
             Value::Mapping(entries) => entries.iter().for_each(|(key, value)| {
                 size.bytes += key.name.len();
+                size.values += 1;
                 size.add_child(Self::of(value));
             }),
             Value::Null | Value::Bool(_) | Value::Number(_) => {}
@@ -47,7 +48,7 @@ impl Size {
 
 /// What has been read so far.
 #[derive(Default)]
-pub(super) struct Budget {
+pub(in crate::document) struct Budget {
     values: usize,
     copied: usize,
 }
@@ -75,6 +76,31 @@ impl Budget {
         }
         check_depth(depth + size.depth, place)?;
         self.spend(size.values, place)
+    }
+
+    /// Counts what a rule has of its own.
+    pub(in crate::document) fn own(&mut self, size: Size) {
+        self.values += size.values;
+    }
+
+    /// Counts a component that is put into a rule.
+    pub(in crate::document) fn component(
+        &mut self,
+        size: Size,
+        place: &Place,
+    ) -> Result<(), Diagnostic> {
+        self.values += size.values;
+        self.copied += size.bytes;
+        let most = if self.values > MAX_VALUES {
+            "250,000 values"
+        } else if self.copied > MAX_COPIED {
+            "16 MiB of text"
+        } else {
+            return Ok(());
+        };
+        let message = format!("with its components the rule holds more than {most}");
+        let hint = "each counts as often as it is named";
+        Err(Diagnostic::error(message).at(place).hint(hint))
     }
 
     fn spend(&mut self, values: usize, place: &Place) -> Result<(), Diagnostic> {

@@ -1,5 +1,7 @@
 //! Generators.
 
+use std::sync::Arc;
+
 use crate::diagnostic::Diagnostic;
 use crate::document::{Entry, GeneratorDocument, Number, Point, Written};
 use crate::expression::{Program, Scope};
@@ -13,9 +15,9 @@ impl Resolver {
         &mut self,
         name: &Written<String>,
         document: &GeneratorDocument,
-        moment: &Scope,
+        moment: &Arc<Scope>,
     ) -> Generator {
-        let mut scope = moment.clone();
+        let mut scope = Scope::inside(moment);
         let variables = self.variables(document, &mut scope);
         let mut written = Vec::new();
         let mut parts = Vec::new();

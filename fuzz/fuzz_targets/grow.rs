@@ -1,0 +1,170 @@
+//! Any bytes as a rule file: read, printed, read again, forecast, grown, drawn and written as a table.
+//!
+//! What must hold: nothing panics; what is wrong has a message, and messages are of bounded length;
+//! a printed file says the same; forecast and box agree with the walk; pictures are XML with finite
+//! numbers.
+
+#![no_main]
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::{Diagnostics, Source};
+use kfrac::document::Document;
+use kfrac::export;
+use kfrac::geometry::{Bounds, DVec2};
+use kfrac::graph::{Graph, Level};
+use kfrac::grow::{Growth, WalkError, Walked, extent};
+use kfrac::measure::similarity_dimension;
+use kfrac::render::{self, Format, Labels, Options, Size};
+use kfrac::rule::Rule;
+use libfuzzer_sys::fuzz_target;
+use num_bigint::BigUint;
+
+/// Few, so that an input takes milliseconds.
+const MOST_ELEMENTS: u64 = 1_000;
+const MOST_STEPS: u32 = 64;
+
+/// What is said of one file is at most this long.
+const MOST_SAID: usize = 1 << 20;
+
+/// How far boxes may be apart, as a multiple of the coordinates.
+const TOLERANCE: f64 = 1e-9;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(source) = Source::read("fuzz.yaml", bytes.to_vec()) else {
+        return;
+    };
+    let Some((document, rule)) = read(&source) else {
+        return;
+    };
+    let yaml = document.to_yaml();
+    let grown = grow(&rule);
+    // Aliases, written out, may be more than a file can hold.
+    if yaml.len() <= Source::MOST_BYTES {
+        let (again, rule) = read(&Source::new("fuzz.yaml", yaml.as_str()))
+            .unwrap_or_else(|| panic!("what was printed cannot be read:\n{yaml}"));
+        assert_eq!(again.to_yaml(), yaml);
+        assert_eq!(
+            grow(&rule),
+            grown,
+            "what was printed grows otherwise:\n{yaml}"
+        );
+    }
+});
+
+fn read(source: &Arc<Source>) -> Option<(Document, Arc<Rule>)> {
+    let read = Document::read(source, &Catalogue::embedded())
+        .and_then(|document| document.resolve(&[]).map(|resolved| (document, resolved)));
+    match read {
+        Ok((document, (rule, warnings))) => {
+            assert!(!warnings.has_errors(), "{warnings}");
+            said(&warnings);
+            Some((document, Arc::new(rule)))
+        }
+        Err(errors) => {
+            assert!(errors.has_errors(), "refused without an error");
+            said(&errors);
+            None
+        }
+    }
+}
+
+fn said(found: &Diagnostics) {
+    assert!(found.to_string().len() < MOST_SAID, "too much is said");
+}
+
+/// What a rule grows to, or why it does not.
+fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
+    let steps = rule.steps().unwrap_or(3).min(MOST_STEPS);
+    let graph = Graph::compile(rule, steps).map_err(|error| {
+        said(&error.diagnostic(rule).into());
+        error.to_string()
+    })?;
+    let _ = similarity_dimension(&graph);
+    let _ = graph.limit_bounds();
+    let bounds = graph.bounds(steps);
+    let level = forecast(&graph, steps);
+    let allowed = graph.check_size(steps, MOST_ELEMENTS).is_ok();
+    let growth = Growth {
+        most_elements: MOST_ELEMENTS,
+        ..Growth::steps(steps)
+    };
+    let mut table = Vec::new();
+    let walked = export::write(&graph, &growth, export::Format::Csv, &mut table);
+    if let Ok(walked) = walked {
+        assert!(allowed, "refused, but grown");
+        if let Some(level) = level {
+            agree(&level, walked);
+        }
+        let extent = extent(&graph, &growth).expect("the walk was complete before");
+        if let Some(bounds) = bounds {
+            near(&bounds, &extent);
+        }
+    } else if let (Some(level), Err(WalkError::TooManyElements { .. })) = (level, &walked) {
+        assert!(level.elements > BigUint::from(MOST_ELEMENTS));
+    }
+    let table = text(walked.map(|_| table))?;
+    Ok([table, text(picture(rule, &graph, &growth))?])
+}
+
+fn forecast(graph: &Graph, steps: u32) -> Option<Level> {
+    let mut forecast = graph.forecast()?;
+    (0..steps)
+        .all(|_| forecast.advance())
+        .then(|| forecast.level())
+}
+
+fn agree(level: &Level, walked: Walked) {
+    assert_eq!(level.elements, BigUint::from(walked.elements));
+    assert_eq!(level.fractals, BigUint::from(walked.fractals));
+    assert!(level.fertile <= level.elements);
+}
+
+fn near(bounds: &Bounds, extent: &Bounds) {
+    let near = |a: DVec2, b: DVec2| a.distance(b) <= TOLERANCE * (1.0 + a.length());
+    assert!(
+        near(bounds.min(), extent.min()) && near(bounds.max(), extent.max()),
+        "the graph says {bounds:?}, the walk {extent:?}"
+    );
+}
+
+fn text<E: Debug>(bytes: Result<Vec<u8>, E>) -> Result<String, String> {
+    let bytes = bytes.map_err(|error| format!("{error:?}"))?;
+    Ok(String::from_utf8(bytes).expect("what is written is text"))
+}
+
+fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, String> {
+    let description = rule.description();
+    let mut options = Options {
+        size: Size::Long(300),
+        labels: Labels {
+            title: description.title.clone().unwrap_or_default(),
+            description: description.about.clone().unwrap_or_default(),
+            provenance: String::new(),
+        },
+        ..Options::of(rule)
+    };
+    let mut svg = Vec::new();
+    render::write(graph, growth, &options, &mut svg).map_err(|error| error.to_string())?;
+    check_xml(&svg);
+    (options.format, options.size) = (Format::Png, Size::Long(60));
+    let mut png = Vec::new();
+    if render::write(graph, growth, &options, &mut png).is_ok() {
+        assert!(png.starts_with(b"\x89PNG") && png.ends_with(b"IEND\xaeB`\x82"));
+    }
+    Ok(svg)
+}
+
+fn check_xml(bytes: &[u8]) {
+    let text = str::from_utf8(bytes).expect("a picture is text");
+    let tree = roxmltree::Document::parse(text).expect("a picture is XML");
+    for node in tree.descendants() {
+        for attribute in ["d", "viewBox", "width", "height", "stroke-width"] {
+            let value = node.attribute(attribute).unwrap_or_default();
+            let number = |c: char| c.is_ascii_digit() || " .,-MmLlHhVvCcQqZz".contains(c);
+            assert!(value.chars().all(number), "{attribute} is {value:?}");
+        }
+    }
+}

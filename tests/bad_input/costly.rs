@@ -1,0 +1,165 @@
+//! Small files that ask for much: told in bounded time and memory, or refused.
+
+use std::fs;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::Source;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use kfrac::grow::{Growth, WalkError, extent};
+
+use super::hostile::{kfrac, refused};
+
+/// Checks that the program finds nothing wrong with a file of this text.
+fn accepted(text: &str, arguments: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("many.yaml"), text).unwrap();
+    let outcome = kfrac(folder.path(), arguments);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.said);
+}
+
+const CHECK: [&str; 2] = ["check", "many.yaml"];
+const INFO: [&str; 4] = ["info", "many.yaml", "--steps", "2"];
+
+/// Two lists of equal numbers of elements, and many generators that name each other.
+fn entangled(count: usize) -> String {
+    let mut text = String::from("initiator: segment\ngenerators:\n");
+    for (name, y) in [("a", 0), ("b", 1)] {
+        text += &format!("  {name}: [[0, 0], [1/4, {y}/9], {{to: [1/2, 0], use: g1}}, [1, 0]]\n");
+    }
+    for i in 0..count {
+        let (next, other) = ((i + 1) % count, (i + 7) % count);
+        text += &format!(
+            "  g{i}: [[0, 0], {{to: [1/2, 0], use: g{next}}}, {{to: [1, 0], use: g{other}}}]\n"
+        );
+    }
+    text
+}
+
+#[test]
+fn what_many_elements_become_is_held_once() {
+    let generators: String = (0..3_000)
+        .map(|i| format!("  g{i}: [[0, 0], [1/2, 0]]\n"))
+        .collect();
+    let weights: String = (0..3_000).map(|i| format!("g{i}: 1, ")).collect();
+    let text = format!(
+        "initiator: segment\ngenerators:\n{generators}select: {{at_random: {{{weights}}}}}\n"
+    );
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    let looks: String = (0..3_000)
+        .map(|i| {
+            format!("  - {{to: [{i}/9999, 1/2], base_element: {{points: [[0, 0], [1, 0]]}}}}\n")
+        })
+        .collect();
+    let text = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{looks}");
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+}
+
+#[test]
+fn what_is_too_much_to_resolve_is_counted() {
+    let select = "select: [{when: i % 61 == 1, use: a}, {use: b}]\nsteps: 16\n";
+    let text = entangled(1_000) + select;
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    let points: String = (0..20)
+        .map(|i| format!("[{}/977, {i}/7], ", i * i))
+        .collect();
+    let cases: String = (2..20_000)
+        .map(|i| format!("  - {{when: length == {i}/99999, use: a}}\n"))
+        .collect();
+    let text = format!(
+        "initiator: segment\ngenerators: {{a: [{points}]}}\nselect:\n{cases}  - {{use: a}}\nsteps: 6\n"
+    );
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+}
+
+#[test]
+fn many_generators_see_many_parameters() {
+    let params: String = (0..10_000).map(|i| format!("  p{i}: 1\n")).collect();
+    let generators: String = (0..10_000)
+        .map(|i| {
+            format!(
+                "  g{i}: {{random: {{t: \"uniform(0, p{i})\"}}, elements: [[0, 0], [t/2, 0]]}}\n"
+            )
+        })
+        .collect();
+    let text = format!(
+        "initiator: segment\nparams:\n{params}generators:\n{generators}select: {{by_index: [g0]}}\n"
+    );
+    accepted(&text, &CHECK);
+}
+
+#[test]
+fn components_count_as_often_as_they_are_named() {
+    let generators: String = (0..8_000)
+        .map(|i| format!("  g{i}: quadric-32\n"))
+        .collect();
+    let text = format!("initiator: segment\ngenerators:\n{generators}select: {{by_index: [g0]}}\n");
+    refused(
+        text.as_bytes(),
+        "with its components the rule holds more than 250,000 values",
+    );
+}
+
+fn graph_of(text: &str, steps: u32) -> Graph {
+    let source = Source::new("hostile.yaml", text);
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    let (rule, _) = document.resolve(&[]).unwrap();
+    Graph::compile(&Arc::new(rule), steps).unwrap()
+}
+
+#[test]
+fn forecasts_of_many_steps_are_given_up() {
+    let steps = 1_000_000;
+    let listed: String = (0..2_000)
+        .map(|i| format!("  - {{to: [{}, 0], use: g{i}}}\n", i + 1))
+        .collect();
+    let generators: String = (0..2_000)
+        .map(|i| {
+            let next = (i + 1) % 2_000;
+            format!("  g{i}: [[0, 0], {{to: [1/2, 0], use: g{next}}}]\n")
+        })
+        .collect();
+    let text = format!(
+        "initiator:\n  - [0, 0]\n{listed}generators:\n{generators}select: {{by_index: [g0]}}\n"
+    );
+    let graph = graph_of(&text, steps);
+    assert_eq!(graph.check_size(steps, 2_000), Ok(None));
+    let refused = graph.check_size(steps, 1_000).unwrap_err();
+    assert_eq!((refused.elements, refused.deepest), (None, None));
+}
+
+#[test]
+fn long_ways_to_few_elements_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let lone = "initiator: segment\ngenerator:\n  parts:\n    - elements: [[0, 0], [1/2, 0]]\n    \
+                - {seeds: true, elements: [[0, 1], {to: [1, 1], fertile: false}]}\nsteps: 20000\n";
+    fs::write(folder.path().join("lone.yaml"), lone).unwrap();
+    let outcome = kfrac(
+        folder.path(),
+        &["grow", "lone.yaml", "--max-elements", "100000"],
+    );
+    assert_eq!(outcome.status, Some(1));
+    let message = "lone takes too long; --max-elements allows more";
+    assert!(outcome.said.contains(message), "{}", outcome.said);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_walk_that_finds_nothing_can_be_cancelled() {
+    // All elements vanish in the last step.
+    let text = "initiator: segment\ngenerators:\n  a: [[0, 0], [1/4, 0], [1/2, 0], [3/4, 0], [1, 0]]\n  \
+                v: {parts: [{seeds: true, elements: [[0, 0], [1/2, 0]]}]}\n\
+                select: [{when: step == 40 and i > 0, use: v}, {use: a}]\n";
+    let graph = graph_of(text, 41);
+    let growth = Growth {
+        cancel: Some(&AtomicBool::new(true)),
+        ..Growth::steps(41)
+    };
+    assert_eq!(extent(&graph, &growth), Err(WalkError::Cancelled));
+}
