@@ -103,6 +103,16 @@ impl Variable {
         &self.distribution
     }
 
+    /// A value that stands for all: halfway between limits, the mean, the first choice.
+    #[must_use]
+    pub fn typical(&self, slots: &[f64]) -> f64 {
+        match &self.distribution {
+            Distribution::Uniform(low, high) => f64::midpoint(low.eval(slots), high.eval(slots)),
+            Distribution::Normal(mean, _) => mean.eval(slots),
+            Distribution::Choice(values) => values[0].eval(slots),
+        }
+    }
+
     /// The value that belongs to a path.
     #[must_use]
     pub fn draw(&self, path: Path, slots: &[f64]) -> f64 {
@@ -211,6 +221,21 @@ mod tests {
                 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 2, 0
             ]
         );
+    }
+
+    #[test]
+    fn typical_values_are_in_the_middle() {
+        let typical = |distribution| Variable::new("x", distribution).typical(&[]);
+        assert_eq!(
+            typical(Distribution::Uniform(program(2.0), program(5.0))),
+            3.5
+        );
+        assert_eq!(
+            typical(Distribution::Normal(program(1.0), program(9.0))),
+            1.0
+        );
+        let choice = Distribution::Choice(vec![program(7.0), program(1.0)]);
+        assert_eq!(typical(choice), 7.0);
     }
 
     /// Means and variances of many draws are those of the distributions, within four standard errors.

@@ -223,10 +223,30 @@ impl Generator {
         scratch: &mut Vec<f64>,
         points: &mut Vec<DVec2>,
     ) {
+        let draw = |variable: &Variable, slots: &[f64]| variable.draw(path, slots);
+        self.evaluate_with(moment, draw, scratch, points);
+    }
+
+    /// The points for draws that stand for all (see [`Variable::typical`]).
+    #[must_use]
+    pub fn typical(&self, moment: &Moment) -> Vec<DVec2> {
+        let (mut scratch, mut points) = (Vec::new(), Vec::new());
+        self.evaluate_with(moment, Variable::typical, &mut scratch, &mut points);
+        points
+    }
+
+    #[inline]
+    fn evaluate_with(
+        &self,
+        moment: &Moment,
+        draw: impl Fn(&Variable, &[f64]) -> f64,
+        scratch: &mut Vec<f64>,
+        points: &mut Vec<DVec2>,
+    ) {
         scratch.clear();
         scratch.extend(moment.slots());
         for variable in &self.variables {
-            let value = variable.draw(path, scratch);
+            let value = draw(variable, scratch);
             scratch.push(value);
         }
         points.clear();
