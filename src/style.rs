@@ -14,6 +14,12 @@ impl Colour {
     /// Black.
     pub const BLACK: Self = Self([0, 0, 0, 255]);
 
+    /// Red, green, blue and opacity.
+    #[must_use]
+    pub const fn of_rgba(rgba: [u8; 4]) -> Self {
+        Self(rgba)
+    }
+
     /// A grey from 0, black, to 255, white.
     #[must_use]
     pub const fn grey(value: u8) -> Self {

@@ -396,6 +396,39 @@ fn a_picture_tells_how_to_make_it_again() {
 }
 
 #[test]
+fn a_rule_is_shown_as_a_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let shown = run(folder.path(), &["show", "dragon.yaml"]).success();
+    let said = stderr(&shown);
+    assert!(
+        said.starts_with("dragon-rule.svg: the rule of dragon, ") && said.lines().count() == 1,
+        "{said}"
+    );
+    let svg = fs::read_to_string(folder.path().join("dragon-rule.svg")).unwrap();
+    assert!(
+        svg.contains(r#"aria-label="odd i: gen0""#) && svg.contains("# kfrac show dragon.yaml")
+    );
+    let arguments = [
+        "show",
+        "cesaro",
+        "--set",
+        "angle=60",
+        "--size=300",
+        "--background=teal",
+        "-o",
+        "c.png",
+        "-q",
+    ];
+    let shown = run(folder.path(), &arguments).success();
+    assert_eq!(stderr(&shown), "");
+    let png = fs::read(folder.path().join("c.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG") && png[16..20] == 300u32.to_be_bytes());
+    assert_eq!(files(folder.path()), ["c.png", "dragon-rule.svg"]);
+    let unknown = run(folder.path(), &["show", "koch", "-o", "koch.gif"]).code(2);
+    assert!(stderr(&unknown).contains("the format '.gif' is not known here"));
+}
+
+#[test]
 fn check_tells_all_that_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(

@@ -35,9 +35,10 @@ Examples:
 ";
 
 /// The commands that take a rule, and the argument that is it.
-const OF_RULES: [(&str, &str); 5] = [
+const OF_RULES: [(&str, &str); 6] = [
     ("grow", "rule"),
     ("sheet", "rule"),
+    ("show", "rule"),
     ("info", "rule"),
     ("cat", "rule"),
     ("check", "files"),

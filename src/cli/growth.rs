@@ -68,12 +68,7 @@ impl GrowthArguments {
     /// Why `path` has not been written.
     pub(super) fn explain(&self, error: RenderError, loaded: &Loaded, path: &Path) -> Failure {
         match error {
-            RenderError::Io(error) => anyhow::Error::new(error)
-                .context(match path == Path::new("-") {
-                    true => output::NO_STANDARD_OUTPUT.into(),
-                    false => format!("'{}' cannot be written", path.display()),
-                })
-                .into(),
+            RenderError::Io(error) => output::failed(error, path),
             RenderError::Walk(WalkError::Cancelled) => Failure::Interrupted,
             RenderError::Walk(WalkError::NotFinite(error)) => error.diagnostic(&loaded.rule).into(),
             RenderError::Walk(WalkError::TooManyElements { .. }) => {

@@ -17,6 +17,7 @@ mod progress;
 mod rule;
 mod schema;
 mod sheet;
+mod show;
 mod steps;
 mod stop;
 mod text;
@@ -52,6 +53,7 @@ struct Arguments {
 enum Command {
     Grow(grow::Arguments),
     Sheet(sheet::Arguments),
+    Show(show::Arguments),
     Info(info::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
@@ -169,6 +171,7 @@ pub fn run() -> ExitCode {
     };
     let result = match &arguments.command {
         Command::Grow(arguments) => grow::run(arguments, &catalogue),
+        Command::Show(arguments) => show::run(arguments, &catalogue),
         Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),

@@ -74,6 +74,8 @@ impl Output {
         if !folder.exists() {
             anyhow::bail!("there is no folder '{}'", folder.display());
         }
+        // From here on a signal must not end the program before the file is removed.
+        let _ = stop::flag();
         let mut builder = tempfile::Builder::new();
         builder.prefix(".kfrac-").suffix(".part");
         #[cfg(unix)]
@@ -177,6 +179,16 @@ pub(super) fn write<T>(
     let told = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
     out.inner.finish()?;
     Ok((told, out.bytes))
+}
+
+/// That a path cannot be written.
+pub(super) fn failed(error: io::Error, path: &Path) -> Failure {
+    let message = if path == Path::new("-") {
+        NO_STANDARD_OUTPUT.into()
+    } else {
+        format!("'{}' cannot be written", path.display())
+    };
+    anyhow::Error::new(error).context(message).into()
 }
 
 /// An output, as messages call it.

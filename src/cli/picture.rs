@@ -138,7 +138,7 @@ fn window(text: &str) -> Result<[f64; 4], String> {
     }
 }
 
-fn colour(text: &str) -> Result<Colour, String> {
+pub(super) fn colour(text: &str) -> Result<Colour, String> {
     Colour::parse(text)
         .ok_or_else(|| "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161)".into())
 }

@@ -14,7 +14,7 @@ use crate::style::{Colour, Style};
 use crate::wording::counted;
 
 use super::LABEL;
-use super::text::Font;
+use super::text::{Anchor, Font};
 
 /// The size of captions, and what lies around cells, in pixels.
 const CAPTION: f64 = 14.0;
@@ -150,7 +150,8 @@ impl Drawing for Sheet<'_> {
             surface.leave()?;
             let middle = f64::from(left) + f64::from(self.column) / 2.0;
             let at = DVec2::new(middle, f64::from(top + height) + CAPTION + 2.0);
-            self.font.draw(surface, caption, CAPTION, at, LABEL)?;
+            self.font
+                .draw(surface, caption, CAPTION, at, Anchor::Middle, LABEL)?;
         }
         Ok(())
     }

@@ -14,6 +14,15 @@ pub(super) struct Font {
     face: Face<'static>,
 }
 
+/// Where a label stands on its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Anchor {
+    /// The label begins there.
+    Start,
+    /// Its middle is there.
+    Middle,
+}
+
 impl Font {
     pub(super) fn new() -> Self {
         match Face::parse(notosans::REGULAR_TTF, 0) {
@@ -41,17 +50,44 @@ impl Font {
         glyphs.map(|glyph| self.advance(glyph)).sum::<f64>() * self.scale(size)
     }
 
-    /// Draws a text of `size` pixels an em with the middle of its baseline at `at`, in pixels,
-    /// y down.
+    /// A text broken into lines that are no wider than `width` pixels: between words, and within
+    /// those that are too long.
+    pub(super) fn wrap(&self, text: &str, size: f64, width: f64) -> Vec<String> {
+        let mut lines = Vec::new();
+        let mut line = String::new();
+        for word in text.split_whitespace() {
+            if !line.is_empty() && self.width(&format!("{line} {word}"), size) > width {
+                lines.push(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            for character in word.chars() {
+                line.push(character);
+                if self.width(&line, size) > width && line.chars().count() > 1 {
+                    line.pop();
+                    lines.push(std::mem::replace(&mut line, character.into()));
+                }
+            }
+        }
+        lines.extend((!line.is_empty()).then_some(line));
+        lines
+    }
+
+    /// Draws a text of `size` pixels an em with its baseline at `at`, in pixels, y down.
     pub(super) fn draw(
         &self,
         surface: &mut impl Surface,
         text: &str,
         size: f64,
         at: DVec2,
+        anchor: Anchor,
         colour: Colour,
     ) -> io::Result<()> {
-        let before = self.width(text, size) / 2.0;
+        let before = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => self.width(text, size) / 2.0,
+        };
         surface.label(text);
         let mut outline = Outline {
             tracer: Tracer::new(surface),
@@ -131,4 +167,24 @@ impl<S: Surface> OutlineBuilder for Outline<'_, S> {
 
 fn point(x: f32, y: f32) -> DVec2 {
     DVec2::new(x.into(), y.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Font;
+
+    #[test]
+    fn lines_are_no_wider_than_they_may_be_and_lose_nothing() {
+        let font = Font::new();
+        let text = "  some words,\nand averyverylongwordthatfitsinnoline λ ";
+        let lines = font.wrap(text, 10.0, 60.0);
+        assert!(lines.len() > 3, "{lines:?}");
+        assert!(lines.iter().all(|line| font.width(line, 10.0) <= 60.0));
+        let letters = |text: &str| text.split_whitespace().collect::<String>();
+        assert_eq!(letters(&lines.concat()), letters(text));
+        assert_eq!(font.wrap(text, 10.0, 1e3).len(), 1);
+        assert_eq!(font.wrap("", 10.0, 60.0), Vec::<String>::new());
+        // What is narrower than a letter gets a letter a line.
+        assert_eq!(font.wrap("ab", 10.0, 1.0), ["a", "b"]);
+    }
 }

@@ -20,7 +20,7 @@ pub use png::TooManyPixels;
 pub use survey::Survey;
 
 pub(crate) use scene::Scene;
-pub(crate) use surface::{FINE, Paint, Pen, Position, Surface};
+pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface};
 pub(crate) use tracer::Tracer;
 
 use std::convert::Infallible;

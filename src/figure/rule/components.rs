@@ -1,0 +1,154 @@
+//! The three components, each as a block.
+
+use crate::document::RuleDocument;
+use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::rule::draw::Path;
+use crate::rule::{Moment, Rule, Selection};
+
+use super::super::text::Font;
+use super::block::{Block, Item, Outline};
+use super::page::{WORDS, shortened};
+use super::panel::{Common, Extent, Panel};
+use super::{ink, lines, words};
+
+/// The width of words beside generators in pixels, and the most lines that there are.
+const WORDS_WIDTH: f64 = 215.0;
+const MOST_LINES: usize = 40;
+
+/// Draws of a random generator that lie behind the typical one.
+const DRAWS: u32 = 6;
+
+/// The initiator.
+pub(super) fn initiator(rule: &Rule, common: &Common<'_>) -> Block {
+    let panel = Panel {
+        parts: std::slice::from_ref(rule.initiator()),
+        points: rule.initiator_points().to_vec(),
+        draws: Vec::new(),
+        named: Vec::new(),
+        replaces: false,
+        common,
+    };
+    let mut bounds = Bounds::EMPTY;
+    panel.points.iter().for_each(|&point| bounds.add(point));
+    panel.block(Extent {
+        unit: 130.0 / bounds.size().max_element(),
+        most: DVec2::splat(240.0),
+    })
+}
+
+/// The generators, below each other, between the selection and what else is to be said of them.
+pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'_>) -> Block {
+    let font = &common.font;
+    let several = rule.generators().len() > 1;
+    let mut panels = Vec::new();
+    let written = document.generators.iter().map(|(_, written)| written);
+    let both = rule.generators().iter().zip(written);
+    for (number, (generator, document)) in both.enumerate() {
+        let moment = moment(rule, number);
+        let said = words::generator(generator, document, &moment);
+        let draws = if generator.is_random() { DRAWS } else { 0 };
+        let draws = (0..draws).map(|draw| {
+            let (mut scratch, mut points) = (Vec::new(), Vec::new());
+            let path = Path::of_seed(0).child(draw);
+            generator.evaluate(&moment, path, &mut scratch, &mut points);
+            points
+        });
+        let panel = Panel {
+            parts: generator.parts(),
+            points: generator.typical(&moment),
+            draws: draws.collect(),
+            named: said.named,
+            replaces: true,
+            common,
+        };
+        let mut drawn = panel.block(Extent {
+            unit: 190.0,
+            most: DVec2::new(480.0, 440.0),
+        });
+        if several {
+            let width = drawn.size.x.max(WORDS_WIDTH);
+            let name = font.wrap(&shortened(generator.name()), WORDS, width);
+            let name = Block::text(font, name, WORDS, true);
+            drawn = Block::column(vec![name, drawn], 2.0, true);
+        }
+        panels.push((drawn, paragraphs(&said.lines, font)));
+    }
+    let widths = panels.iter().map(|(drawn, _)| drawn.size.x);
+    let widest = widths.fold(0.0, f64::max);
+    // Words begin below each other.
+    let rows = panels
+        .into_iter()
+        .map(|(drawn, words)| Block::row(vec![drawn.centred_in(widest), words], 18.0));
+    let rows = Block::column(rows.collect(), 22.0, false);
+    let selection = match rule.selection() {
+        Selection::AtRandom(weights) => words::shares(rule.generators(), weights),
+        _ => words::selection(document),
+    };
+    Block::row(vec![paragraphs(&selection, font), rows], 18.0)
+}
+
+/// Lines of words, those that are too long broken, and those that are too many left out.
+fn paragraphs(lines: &[String], font: &Font) -> Block {
+    let more = (lines.len() > MOST_LINES).then(|| "…".into());
+    let blocks = lines.iter().take(MOST_LINES).chain(more.as_ref());
+    let blocks = blocks.map(|line| {
+        let lines = font.wrap(&shortened(line), WORDS, WORDS_WIDTH);
+        Block::text(font, lines, WORDS, false)
+    });
+    Block::column(blocks.collect(), 5.0, false)
+}
+
+/// The first moment at which a generator is selected and all of its points are finite.
+fn moment(rule: &Rule, generator: usize) -> Moment {
+    let at = |step: u32, index: u32| Moment {
+        index: index.into(),
+        age: step.into(),
+        step: step.into(),
+        length: 1.0,
+    };
+    let is_finite = |moment: &Moment| {
+        let points = rule.generators()[generator].typical(moment);
+        points.iter().all(|point| point.is_finite())
+    };
+    let is_selected = |moment: &Moment| {
+        let selected = rule.selection().select(moment, Path::of_seed(0));
+        selected == generator && is_finite(moment)
+    };
+    let mut moments = (0..=20).flat_map(|step| (1..=12).map(move |index| at(step, index)));
+    let found = moments.clone().find(is_selected);
+    let found = found.or_else(|| moments.find(is_finite));
+    found.unwrap_or(at(0, 1))
+}
+
+/// The base elements, each over the line between its ends.
+pub(super) fn base_elements(common: &Common<'_>) -> Block {
+    let blocks = common.base_elements.iter().map(|base| {
+        let mut bounds = Bounds::new(DVec2::ZERO, DVec2::X);
+        base.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
+        let unit = (110.0 / bounds.size().x)
+            .min(140.0 / bounds.size().y)
+            .min(96.0);
+        let pad = DVec2::splat(6.0);
+        let map = DAffine2::from_translation(pad)
+            * DAffine2::from_scale(DVec2::new(unit, -unit))
+            * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
+        let ends = [DVec2::ZERO, DVec2::X].map(|end| map.transform_point2(end));
+        let outline = lines::outline(base).transformed(&map);
+        let rings = ends.map(|end| Outline::circle(end, 4.6));
+        let mut items = vec![Item::Path(
+            vec![outline],
+            ink::base_element(base.is_closed()),
+            None,
+        )];
+        if !base.is_line() {
+            let side = Outline::line(ends[0], ends[1]);
+            items.insert(0, Item::Path(vec![side], ink::side(), None));
+        }
+        items.push(Item::Path(rings.into(), ink::side_end(), None));
+        Block {
+            size: bounds.size() * unit + 2.0 * pad,
+            items,
+        }
+    });
+    Block::column(blocks.collect(), 18.0, true)
+}

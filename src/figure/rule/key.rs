@@ -1,0 +1,103 @@
+//! What is drawn, explained: samples of the lines, and notes.
+
+use crate::geometry::{DVec2, Direction};
+use crate::rule::Rule;
+
+use super::super::text::Font;
+use super::block::{Block, Item, Outline};
+use super::ink::{self, Kind};
+use super::page::SMALL;
+use super::panel::MOST_MARKS;
+use super::{marks, words};
+
+/// Samples of the lines that occur, each with what it means.
+pub(super) fn key(rule: &Rule, font: &Font, width: f64) -> Block {
+    let (from, to) = (DVec2::new(1.0, 8.0), DVec2::new(31.0, 8.0));
+    let line = || vec![Outline::line(from, to)];
+    let mut entries: Vec<(Vec<Item>, &str)> = Vec::new();
+    let lists = || {
+        let generators = rule.generators().iter().flat_map(|it| it.parts());
+        generators.chain([rule.initiator()])
+    };
+    let has = |kind: Kind| {
+        lists().any(|part| {
+            let mut elements = part.elements.iter();
+            elements.any(|it| Kind::of(it.fertile, part.placement.seeds()) == kind)
+        })
+    };
+    for (kind, meaning) in [
+        (Kind::Fertile, "fertile"),
+        (Kind::Infertile, "infertile"),
+        (Kind::Seed, "seeds a new fractal"),
+        (Kind::InfertileSeed, "seeds a new fractal, infertile"),
+    ] {
+        if has(kind) {
+            let mut items = vec![Item::Path(line(), kind.element(true), None)];
+            if matches!(kind, Kind::Fertile | Kind::Seed) {
+                let at = from.midpoint(to) - DVec2::new(0.0, 6.5);
+                let (strokes, paint) = marks::asterisk(at, 0.85, kind.colour());
+                items.push(Item::Path(strokes, paint, None));
+            }
+            entries.push((items, meaning));
+        }
+    }
+    let mut elements = lists().flat_map(|part| &part.elements);
+    if elements.any(|element| !element.visible) {
+        let dotted = Item::Path(line(), Kind::Fertile.element(false), None);
+        entries.push((vec![dotted], "invisible"));
+    }
+    let side = Item::Path(line(), ink::side(), None);
+    let rings = [from, to].map(|end| Outline::circle(end, 3.0));
+    let ends = Item::Path(rings.into(), ink::side_end(), None);
+    entries.push((vec![side, ends], "the side that is replaced"));
+    let blocks = entries.into_iter().map(|(items, meaning)| {
+        let sample = Block {
+            size: DVec2::new(34.0, 16.0),
+            items,
+        };
+        let text = Block::text(font, vec![meaning.into()], SMALL, false);
+        Block::row(vec![sample, text], 5.0)
+    });
+    Block::flow(blocks.collect(), DVec2::new(22.0, 2.0), width)
+}
+
+/// What the figure says below itself.
+pub(super) fn notes(rule: &Rule) -> Vec<String> {
+    let mut notes = Vec::new();
+    let elements = rule.generators().iter().flat_map(|it| it.elements());
+    let elements: Vec<_> = elements.chain(&rule.initiator().elements).collect();
+    let used = Direction::ALL
+        .into_iter()
+        .filter(|direction| elements.iter().any(|it| it.direction == *direction));
+    let used: Vec<_> = used.collect();
+    if used.iter().any(|&direction| direction != Direction::Normal) {
+        let names = used.iter().map(|direction| {
+            let name = match direction {
+                Direction::Normal => "normal",
+                Direction::YReflected => "y reflected",
+                Direction::XReflected => "x reflected",
+                Direction::BothReflected => "x and y reflected",
+            };
+            format!("{} {name}", direction.number())
+        });
+        let names: Vec<_> = names.collect();
+        notes.push(format!("Directions: {}.", names.join(", ")));
+    }
+    if !rule.parameters().is_empty() {
+        let values = words::parameters(rule.parameters());
+        notes.push(format!("Drawn for {values}."));
+    }
+    if rule.generators().iter().any(|it| it.is_random()) {
+        let how =
+            "Random functions are drawn at the middle of their draws, with some draws behind.";
+        notes.push(how.into());
+    }
+    let generators = rule.generators().iter().map(|it| it.elements().count());
+    let mut counts = generators.chain([rule.initiator().elements.len()]);
+    if counts.any(|count| count > MOST_MARKS) {
+        notes.push(format!(
+            "Components of more than {MOST_MARKS} elements have no marks."
+        ));
+    }
+    notes
+}

@@ -1,0 +1,117 @@
+//! The lines of a panel.
+
+use crate::geometry::{DAffine2, DVec2};
+use crate::rule::{BaseElement, Piece};
+
+use super::block::{Item, Outline};
+use super::ink::{self, Kind};
+use super::panel::{Drawn, Panel};
+
+impl Panel<'_> {
+    /// All lines, what lies below first.
+    pub(super) fn lines(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Item> {
+        let place = |point: DVec2| map.transform_point2(point);
+        let mut items = Vec::new();
+        let covers = |it: &Drawn<'_>| it.ends == [DVec2::ZERO, DVec2::X];
+        if self.replaces && !drawn.iter().any(covers) {
+            let side = Outline::line(place(DVec2::ZERO), place(DVec2::X));
+            items.push(Item::Path(vec![side], ink::side(), None));
+        }
+        // The looks that there are, in the order in which they first occur.
+        let mut looks: Vec<(Kind, bool)> = Vec::new();
+        for element in drawn {
+            let look = (element.kind, element.element.visible);
+            if !looks.contains(&look) {
+                looks.push(look);
+            }
+        }
+        let of = |(kind, visible): (Kind, bool)| {
+            let is = move |it: &&Drawn<'_>| it.kind == kind && it.element.visible == visible;
+            drawn.iter().filter(is)
+        };
+        for &look in &looks {
+            let draws = self
+                .draws
+                .iter()
+                .flat_map(|points| self.ends(points, look.0));
+            let draws: Vec<_> = draws
+                .map(|[from, to]| Outline::line(place(from), place(to)))
+                .collect();
+            if !draws.is_empty() {
+                items.push(Item::Path(draws, look.0.draw(), None));
+            }
+        }
+        for &look in &looks {
+            for closed in [true, false] {
+                let outlines = of(look).filter_map(|element| self.outline(element));
+                let outlines = outlines.filter(|outline| outline.closed == closed);
+                let outlines: Vec<_> = outlines.map(|it| it.transformed(map)).collect();
+                if !outlines.is_empty() {
+                    items.push(Item::Path(outlines, look.0.outline(closed), None));
+                }
+            }
+        }
+        for &look in &looks {
+            let ends = || of(look).map(|element| (element, element.ends.map(place)));
+            let lines = ends().map(|(_, [from, to])| Outline::line(from, to));
+            items.push(Item::Path(lines.collect(), look.0.element(look.1), None));
+            let arrows = ends().filter(|(element, _)| element.arrow);
+            let arrows: Vec<_> = arrows.filter_map(|(_, ends)| arrowhead(ends)).collect();
+            if !arrows.is_empty() {
+                items.push(Item::Path(arrows, look.0.element(true), None));
+            }
+            let mut points: Vec<_> = ends().flat_map(|(_, ends)| ends).collect();
+            points.dedup();
+            let dots = points.into_iter().map(|point| Outline::line(point, point));
+            let dots = dots.collect();
+            let paint = ink::dots(look.0.colour(), 4.6);
+            items.push(Item::Path(dots, paint, None));
+        }
+        if self.replaces {
+            let rings = [DVec2::ZERO, DVec2::X].map(|end| Outline::circle(place(end), 4.6));
+            items.push(Item::Path(rings.into(), ink::side_end(), None));
+        }
+        items
+    }
+}
+
+/// The outline of a base element in the unit frame.
+pub(super) fn outline(base: &BaseElement) -> Outline {
+    Outline {
+        start: base.start(),
+        pieces: base.pieces().to_vec(),
+        closed: base.is_closed(),
+    }
+}
+
+/// An open arrowhead behind the middle of an element, if that is long enough for one.
+pub(super) fn arrowhead([from, to]: [DVec2; 2]) -> Option<Outline> {
+    const SIZE: f64 = 5.5;
+    let along = (to - from).normalize_or_zero();
+    let tip = from.lerp(to, 0.6) + along * 0.4 * SIZE;
+    let (back, aside) = (tip - along * SIZE, along.perp() * 0.7 * SIZE);
+    (from.distance(to) > 3.0 * SIZE).then(|| Outline {
+        start: back + aside,
+        pieces: vec![Piece::Line(tip), Piece::Line(back - aside)],
+        closed: false,
+    })
+}
+
+/// Straight lines along an outline.
+pub(super) fn flattened(outline: &Outline) -> impl Iterator<Item = [DVec2; 2]> + use<> {
+    let mut points = vec![outline.start];
+    let mut from = outline.start;
+    for piece in &outline.pieces {
+        if let Piece::Cubic(a, b, to) = *piece {
+            points.extend((1..8u32).map(|eighth| {
+                let t = f64::from(eighth) / 8.0;
+                let (p, q, r) = (from.lerp(a, t), a.lerp(b, t), b.lerp(to, t));
+                p.lerp(q, t).lerp(q.lerp(r, t), t)
+            }));
+        }
+        from = piece.end();
+        points.push(from);
+    }
+    let next = points.clone().into_iter().skip(1);
+    points.into_iter().zip(next).map(|(a, b)| [a, b])
+}

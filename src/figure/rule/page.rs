@@ -1,0 +1,119 @@
+//! The page: title, three components side by side, and a key to what is drawn.
+
+use crate::document::RuleDocument;
+use crate::geometry::DVec2;
+use crate::rule::Rule;
+
+use super::super::text::Font;
+use super::block::{Block, Item, Outline};
+use super::panel::{self, Common};
+use super::{components, ink, key};
+
+/// Sizes of text in pixels.
+const TITLE: f64 = 21.0;
+const HEADING: f64 = 14.0;
+pub(super) const WORDS: f64 = 13.0;
+pub(super) const SMALL: f64 = 11.5;
+
+/// What lies around the page, and between its parts; the least width of parts.
+const MARGIN: f64 = 20.0;
+const GUTTER: f64 = 26.0;
+const LEAST_WIDTH: f64 = 480.0;
+const LEAST_COLUMN: f64 = 96.0;
+
+/// Texts longer than this are cut.
+const MOST_CHARACTERS: usize = 600;
+
+/// Lays a rule out, under a title.
+pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
+    let lists = rule.generators().iter().map(|generator| generator.parts());
+    let mut lists = lists.chain([std::slice::from_ref(rule.initiator())]);
+    let common = Common {
+        font: Font::new(),
+        base_elements: rule.base_elements(),
+        names: rule.generators().iter().map(|it| it.name()).collect(),
+        directions: lists.any(panel::has_directions),
+    };
+    let font = &common.font;
+    let (generators, bases) = (rule.generators().len(), rule.base_elements().len());
+    let columns = [
+        ("initiator", components::initiator(rule, &common)),
+        (
+            plural(generators, "generator", "generators"),
+            components::generators(rule, document, &common),
+        ),
+        (
+            plural(bases, "base element", "base elements"),
+            components::base_elements(&common),
+        ),
+    ];
+    let columns = beside(columns, font);
+    let width = columns.size.x.max(LEAST_WIDTH);
+    let paragraph = |text: &str, size: f64| {
+        let lines = font.wrap(&shortened(text), size, width);
+        Block::text(font, lines, size, false)
+    };
+    let source = rule.description().source.as_deref().unwrap_or_default();
+    let head = vec![paragraph(title, TITLE), paragraph(source, SMALL)];
+    let mut foot = vec![key::key(rule, font, width)];
+    let notes = key::notes(rule);
+    foot.extend(notes.iter().map(|note| paragraph(note, SMALL)));
+    let content = vec![
+        Block::column(head, 2.0, false),
+        across(width),
+        columns.centred_in(width),
+        across(width),
+        Block::column(foot, 4.0, false),
+    ];
+    let mut page = Block::default();
+    page.put(Block::column(content, 12.0, false), DVec2::splat(MARGIN));
+    page.size = (page.size + MARGIN).ceil();
+    page
+}
+
+fn plural(count: usize, one: &'static str, several: &'static str) -> &'static str {
+    if count == 1 { one } else { several }
+}
+
+/// A text, cut if it is very long.
+pub(super) fn shortened(text: &str) -> String {
+    let mut shortened: String = text.chars().take(MOST_CHARACTERS).collect();
+    if shortened.len() < text.len() {
+        shortened.push('…');
+    }
+    shortened
+}
+
+/// A line across.
+fn across(width: f64) -> Block {
+    let line = Outline::line(DVec2::new(0.0, 0.5), DVec2::new(width, 0.5));
+    Block {
+        size: DVec2::new(width, 1.0),
+        items: vec![Item::Path(vec![line], ink::hairline(), None)],
+    }
+}
+
+/// Columns with their headings, and lines between them.
+fn beside<const N: usize>(columns: [(&str, Block); N], font: &Font) -> Block {
+    let heights = columns.iter().map(|(_, block)| block.size.y);
+    let height = heights.fold(0.0, f64::max).ceil();
+    let top = (1.4 * HEADING).round() + 12.0;
+    let mut row = Block::default();
+    for (heading, block) in columns {
+        if row.size.x > 0.0 {
+            let x = row.size.x.round() + GUTTER + 0.5;
+            let line = Outline::line(DVec2::new(x, 0.0), DVec2::new(x, top + height));
+            let line = Item::Path(vec![line], ink::hairline(), None);
+            row.items.push(line);
+            row.size.x = x + GUTTER;
+        }
+        let heading = Block::text(font, vec![heading.into()], HEADING, true);
+        let width = block.size.x.max(heading.size.x).max(LEAST_COLUMN);
+        let left = row.size.x;
+        let down = top + ((height - block.size.y) / 2.0).round();
+        row.put(heading.centred_in(width), DVec2::new(left, 0.0));
+        row.put(block.centred_in(width), DVec2::new(left, down));
+        row.size.y = top + height;
+    }
+    row
+}

@@ -1,0 +1,282 @@
+//! A list of elements as it stands: the initiator, or a generator over the side that it replaces.
+
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, placement};
+use crate::rule::{BaseElement, ListedElement, Part};
+
+use super::super::text::Font;
+use super::block::{Block, Outline};
+use super::ink::Kind;
+use super::lines::{arrowhead, flattened, outline};
+use super::marks::{self, Anchor, Mark, Obstacle};
+
+/// Lists with more elements than this are drawn without marks.
+pub(super) const MOST_MARKS: usize = 400;
+
+/// Coordinates beyond this are not drawn.
+const FARTHEST: f64 = 1e100;
+
+/// What a component shows, in the units of the rule.
+pub(super) struct Panel<'a> {
+    pub(super) parts: &'a [Part],
+    pub(super) points: Vec<DVec2>,
+    /// The points for some other draws.
+    pub(super) draws: Vec<Vec<DVec2>>,
+    /// The points that are told apart by their number.
+    pub(super) named: Vec<usize>,
+    /// Whether it stands over the side from (0, 0) to (1, 0).
+    pub(super) replaces: bool,
+    pub(super) common: &'a Common<'a>,
+}
+
+/// What all panels of a figure share.
+pub(super) struct Common<'a> {
+    pub(super) font: Font,
+    pub(super) base_elements: &'a [BaseElement],
+    /// The names of the generators, where elements tell theirs.
+    pub(super) names: Vec<&'a str>,
+    /// Whether elements tell their directions.
+    pub(super) directions: bool,
+}
+
+/// How large a panel is to be, in pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    /// The length of a unit, if nothing else asks for more or less.
+    pub(super) unit: f64,
+    /// The width and height that it fits into, unless marks need more.
+    pub(super) most: DVec2,
+}
+
+/// An element with its ends.
+pub(super) struct Drawn<'a> {
+    pub(super) element: &'a ListedElement,
+    pub(super) kind: Kind,
+    pub(super) ends: [DVec2; 2],
+    /// Whether it has an arrowhead.
+    pub(super) arrow: bool,
+}
+
+/// How much larger a panel and how much smaller its marks become until marks cover nothing.
+const ATTEMPTS: [(f64, f64); 9] = [
+    (1.0, 1.0),
+    (1.0, 0.85),
+    (1.25, 0.85),
+    (1.25, 0.72),
+    (1.6, 0.85),
+    (1.6, 0.72),
+    (2.0, 0.72),
+    (2.0, 0.6),
+    (2.6, 0.6),
+];
+
+/// What is done if some cover something all the same.
+const LAST_ATTEMPT: (f64, f64) = (2.0, 0.6);
+
+impl<'a> Panel<'a> {
+    /// Draws it.
+    pub(super) fn block(&self, extent: Extent) -> Block {
+        let drawn = self.drawn();
+        let bounds = self.bounds(&drawn);
+        let unit = self.unit(&drawn, &bounds, extent);
+        let attempt = |(zoom, size): (f64, f64), clear: bool| {
+            let scale = DVec2::new(unit, -unit) * zoom;
+            let map = DAffine2::from_scale(scale)
+                * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
+            let marks = self.marks(&drawn, &map);
+            let obstacles = self.obstacles(&drawn, &map);
+            let placed = marks::place(&self.common.font, &marks, &obstacles, size, clear);
+            Some((placed?, map))
+        };
+        let found = ATTEMPTS.into_iter().find_map(|it| attempt(it, true));
+        let found = found.or_else(|| attempt(LAST_ATTEMPT, false));
+        let Some((placed, map)) = found else {
+            unreachable!("marks need not be clear in the last attempt");
+        };
+        let mut items = self.lines(&drawn, &map);
+        items.extend(placed.block.items);
+        // As much room on either side, so that what is drawn stays in the middle.
+        let size = map.matrix2 * (bounds.max() - bounds.min());
+        let size = DVec2::new(size.x, -size.y);
+        let corners = placed.corners.iter();
+        let beyond = corners.fold(DVec2::ZERO, |beyond, &corner| {
+            beyond.max(-corner).max(corner - size)
+        });
+        let inside = Block { size, items };
+        let room = (beyond + 5.0).ceil();
+        let mut block = Block::default();
+        block.put(inside, room);
+        block.size += room;
+        block
+    }
+
+    /// The elements that can be drawn.
+    fn drawn(&self) -> Vec<Drawn<'a>> {
+        let mut drawn = Vec::new();
+        for part in self.parts {
+            let polygons = part
+                .elements
+                .iter()
+                .any(|element| self.base(element).is_closed());
+            let chain = part.elements.iter().skip(1).all(|element| element.joined);
+            let all = self.common.directions || polygons || !chain;
+            for (number, element) in part.elements.iter().enumerate() {
+                let ends = [self.points[element.from], self.points[element.to]];
+                if ends.into_iter().all(can_be_drawn) {
+                    drawn.push(Drawn {
+                        element,
+                        kind: Kind::of(element.fertile, part.placement.seeds()),
+                        ends,
+                        arrow: all || number == 0,
+                    });
+                }
+            }
+        }
+        drawn
+    }
+
+    fn base(&self, element: &ListedElement) -> &'a BaseElement {
+        &self.common.base_elements[element.base_element]
+    }
+
+    /// The outline of an element's base element, if that is more than the element's line.
+    pub(super) fn outline(&self, drawn: &Drawn<'_>) -> Option<Outline> {
+        let base = self.base(drawn.element);
+        if base.is_line() || !drawn.element.visible || drawn.ends[0] == drawn.ends[1] {
+            return None;
+        }
+        let [from, to] = drawn.ends;
+        let map = placement(from, to, drawn.element.direction);
+        Some(outline(base).transformed(&map))
+    }
+
+    fn bounds(&self, drawn: &[Drawn<'_>]) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        if self.replaces || drawn.is_empty() {
+            bounds.add(DVec2::ZERO);
+            bounds.add(DVec2::X);
+        }
+        for element in drawn {
+            element.ends.iter().for_each(|&end| bounds.add(end));
+            let [from, to] = element.ends;
+            if self.outline(element).is_some() {
+                let map = placement(from, to, element.element.direction);
+                self.base(element.element).add_to(&mut bounds, &map, 0.0);
+            }
+        }
+        for kind in Kind::ALL {
+            for points in &self.draws {
+                let ends = self.ends(points, kind);
+                ends.iter().flatten().for_each(|&end| bounds.add(end));
+            }
+        }
+        bounds
+    }
+
+    /// The ends of all elements of a kind for other points, where they can be drawn.
+    pub(super) fn ends(&self, points: &[DVec2], kind: Kind) -> Vec<[DVec2; 2]> {
+        let mut ends = Vec::new();
+        for part in self.parts {
+            let seeds = part.placement.seeds();
+            let elements = part.elements.iter();
+            let alike = elements.filter(|it| Kind::of(it.fertile, seeds) == kind);
+            ends.extend(alike.map(|it| [points[it.from], points[it.to]]));
+        }
+        ends.retain(|ends| ends.iter().all(|&end| can_be_drawn(end)));
+        ends
+    }
+
+    /// Pixels a unit: more where elements are short, less where the whole is large.
+    fn unit(&self, drawn: &[Drawn<'_>], bounds: &Bounds, extent: Extent) -> f64 {
+        let mut lengths: Vec<_> = drawn
+            .iter()
+            .map(|element| element.ends[0].distance(element.ends[1]))
+            .collect();
+        lengths.sort_by(f64::total_cmp);
+        let short = lengths.get(lengths.len() / 5).copied().unwrap_or(1.0);
+        let room = if self.common.directions { 70.0 } else { 44.0 };
+        let size = bounds.size();
+        let most = (extent.most.x / size.x).min(extent.most.y / size.y);
+        extent.unit.max(room / short).min(most)
+    }
+
+    fn marks(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Mark> {
+        if drawn.len() > MOST_MARKS {
+            return Vec::new();
+        }
+        let place = |point: DVec2| map.transform_point2(point);
+        let mut marks = Vec::new();
+        for Drawn {
+            element,
+            kind,
+            ends,
+            ..
+        } in drawn
+        {
+            let number = element.direction.number().to_string();
+            let name = element.generator.and_then(|it| self.common.names.get(it));
+            marks.push(Mark {
+                anchor: Anchor::Element(place(ends[0]), place(ends[1])),
+                number: if self.common.directions {
+                    number
+                } else {
+                    String::new()
+                },
+                fertile: element.fertile,
+                name: name.map(|name| (*name).into()).unwrap_or_default(),
+                colour: kind.colour(),
+            });
+        }
+        marks.retain(|mark| mark.fertile || !mark.number.is_empty());
+        for &number in self.named.iter().take(MOST_MARKS) {
+            let point = self.points[number];
+            if point.is_finite() {
+                marks.push(Mark {
+                    anchor: Anchor::Point(place(point)),
+                    number: String::new(),
+                    fertile: false,
+                    name: format!("p{number}"),
+                    colour: super::LABEL,
+                });
+            }
+        }
+        marks
+    }
+
+    /// What marks keep clear of.
+    fn obstacles(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Obstacle> {
+        let place = |point: DVec2| map.transform_point2(point);
+        let mut obstacles = Vec::new();
+        for element in drawn {
+            let [from, to] = element.ends.map(place);
+            obstacles.push(Obstacle::element(from, to));
+            let arrow = element.arrow.then(|| arrowhead([from, to])).flatten();
+            let legs = arrow.iter().flat_map(flattened);
+            obstacles.extend(legs.map(|[from, to]| Obstacle::element(from, to)));
+            if let Some(outline) = self.outline(element) {
+                let lines = flattened(&outline.transformed(map));
+                obstacles.extend(lines.map(|ends| Obstacle { ends, cost: 12.0 }));
+            }
+        }
+        let draws = self.draws.iter();
+        let draws = draws.flat_map(|points| Kind::ALL.map(|kind| self.ends(points, kind)));
+        obstacles.extend(draws.flatten().map(|ends| Obstacle {
+            ends: ends.map(place),
+            cost: 3.0,
+        }));
+        if self.replaces {
+            let ends = [place(DVec2::ZERO), place(DVec2::X)];
+            obstacles.push(Obstacle { ends, cost: 25.0 });
+        }
+        obstacles
+    }
+}
+
+fn can_be_drawn(point: DVec2) -> bool {
+    point.is_finite() && point.abs().max_element() < FARTHEST
+}
+
+/// Whether a list uses directions.
+pub(super) fn has_directions(parts: &[Part]) -> bool {
+    let mut elements = parts.iter().flat_map(|part| &part.elements);
+    elements.any(|element| element.direction != Direction::Normal)
+}

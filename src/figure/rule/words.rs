@@ -1,0 +1,217 @@
+//! What a figure says in words: the selection, random functions, seeding.
+
+use crate::diagnostic::Place;
+use crate::document::{
+    GeneratorDocument, MoveDocument, Number, Point, RuleDocument, SelectDocument, WhichPoints,
+    Written,
+};
+use crate::expression::{Dependence, Expression};
+use crate::rule::{Generator, Moment, Parameter, Placement};
+
+/// More points than this are not told one by one.
+const MOST_POINTS: usize = 6;
+
+/// The selection, line by line; nothing where there is but one generator.
+pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
+    match &document.select {
+        None if document.generators.len() > 1 => vec!["every side names its own".into()],
+        None => Vec::new(),
+        Some(SelectDocument::Cases(cases, _)) => {
+            let line = |(when, name): &(Option<Number>, Option<Written<String>>)| {
+                let name = name.as_ref().map_or("?", |name| name.value.as_str());
+                match when {
+                    Some(when) => format!("{}: {name}", when.value),
+                    None if cases.len() == 1 => format!("always: {name}"),
+                    None => format!("otherwise: {name}"),
+                }
+            };
+            cases.iter().map(line).collect()
+        }
+        Some(SelectDocument::ByIndex(names, _)) => {
+            let names: Vec<_> = names.iter().map(|name| name.value.as_str()).collect();
+            match names.as_slice() {
+                [one] => vec![format!("always: {one}")],
+                [odd, even] => vec![format!("odd i: {odd}"), format!("even i: {even}")],
+                several => vec![format!("in turn: {}", several.join(", "))],
+            }
+        }
+        Some(SelectDocument::AtRandom(_, _)) => Vec::new(),
+    }
+}
+
+/// The shares of a selection at random, line by line.
+pub(super) fn shares(generators: &[Generator], weights: &[(f64, usize)]) -> Vec<String> {
+    let total: f64 = weights.iter().map(|(weight, _)| weight).sum();
+    let share = |&(weight, generator): &(f64, usize)| {
+        let percent = number((1000.0 * weight / total).round() / 10.0);
+        format!("{percent} %: {}", generators[generator].name())
+    };
+    std::iter::once("at random:".into())
+        .chain(weights.iter().map(share))
+        .collect()
+}
+
+/// What is to be said of a generator.
+#[derive(Default)]
+pub(super) struct Said {
+    /// Line by line.
+    pub(super) lines: Vec<String>,
+    /// The points that are told by their numbers.
+    pub(super) named: Vec<usize>,
+}
+
+/// The random function of a generator, what depends on the moment, and its seeds.
+pub(super) fn generator(
+    generator: &Generator,
+    document: &GeneratorDocument,
+    moment: &Moment,
+) -> Said {
+    let mut said = Said::default();
+    for (name, distribution) in &document.random {
+        let drawn = self::distribution(&distribution.value);
+        said.lines.push(format!("{}: {drawn}", name.value));
+    }
+    let slots = Moment::NAMES.len() + generator.variables.len();
+    let varies = |&number: &usize| {
+        let mut programs = generator.points[number].iter();
+        programs.any(|it| (0..slots).any(|slot| it.dependence(slot) != Dependence::None))
+    };
+    let varying: Vec<_> = (0..generator.points.len()).filter(varies).collect();
+    for &number in varying.iter().take(MOST_POINTS) {
+        let [x, y] = &generator.origin.points[number];
+        let (x, y) = (written(x), written(y));
+        said.lines.push(format!("p{number} = ({x}, {y})"));
+        said.named.push(number);
+    }
+    if let Some(more @ 1..) = varying.len().checked_sub(MOST_POINTS) {
+        said.lines.push(format!("and {more} more points that vary"));
+    }
+    for (written, moving) in document.moves.iter().zip(&generator.moves) {
+        said.lines.push(self::moving(written, &moving.points));
+        if let WhichPoints::Numbers(_) = written.points {
+            said.named.extend_from_slice(&moving.points);
+        }
+    }
+    said.named.sort_unstable();
+    said.named.dedup();
+    said.lines.extend(seeds(generator));
+    let depends = |slot: &usize| {
+        let mut programs = generator.programs();
+        programs.any(|program| program.dependence(*slot) != Dependence::None)
+    };
+    let slots = (0..Moment::NAMES.len()).filter(depends);
+    let values = slots.map(|slot| format!("{} = {}", Moment::NAMES[slot], moment.slots()[slot]));
+    let values: Vec<_> = values.collect();
+    if !values.is_empty() {
+        said.lines.push(format!("drawn for {}", values.join(", ")));
+    }
+    said
+}
+
+fn distribution(expression: &Expression) -> String {
+    match expression.as_call() {
+        Some(("uniform", [low, high])) => format!("uniform from {low} to {high}"),
+        Some(("normal", [mean, deviation])) => {
+            format!("normal with mean {mean}, deviation {deviation}")
+        }
+        Some((_, values)) => {
+            let values: Vec<_> = values.iter().map(ToString::to_string).collect();
+            format!("one of {}", values.join(", "))
+        }
+        None => expression.to_string(),
+    }
+}
+
+/// An expression as it stands in a file, without what the file needs around it.
+fn written(place: &Place) -> String {
+    let text = place.text();
+    match Expression::parse(text) {
+        Ok(expression) => expression.to_string(),
+        Err(_) => text.trim_matches(['"', '\'']).into(),
+    }
+}
+
+fn moving(moving: &MoveDocument, points: &[usize]) -> String {
+    let subject = match &moving.points {
+        WhichPoints::Inner => "all points but the ends".into(),
+        WhichPoints::All => "all points".into(),
+        WhichPoints::Numbers(_) => {
+            let names = points.iter().map(|number| format!("p{number}"));
+            names.collect::<Vec<_>>().join(", ")
+        }
+    };
+    let pair = |point: &Point| format!("({}, {})", point.x.value, point.y.value);
+    let about = moving.about.as_ref();
+    let about = about.map_or(String::new(), |point| format!(" about {}", pair(point)));
+    let mut verbs = Vec::new();
+    if let Some([x, y]) = &moving.scale {
+        let (x, y) = (&x.value, &y.value);
+        let factors = if x == y {
+            x.to_string()
+        } else {
+            format!("({x}, {y})")
+        };
+        verbs.push(format!("scaled by {factors}"));
+    }
+    if let Some(angle) = &moving.rotate {
+        verbs.push(format!("turned by {}°", bound(&angle.value)));
+    }
+    if let Some(last) = verbs.last_mut() {
+        last.push_str(&about);
+    }
+    if let Some(shift) = &moving.shift {
+        verbs.push(format!("shifted by {}", pair(shift)));
+    }
+    format!("{subject}: {}", verbs.join(", "))
+}
+
+/// An expression as a unit can follow it.
+fn bound(expression: &Expression) -> String {
+    let text = expression.to_string();
+    let is_simple = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    if text.trim_start_matches('-').chars().all(is_simple) {
+        text
+    } else {
+        format!("({text})")
+    }
+}
+
+/// What the seeding parts do.
+fn seeds(generator: &Generator) -> Vec<String> {
+    let parts = generator.parts();
+    let mut lines = Vec::new();
+    for placement in [Placement::Seeds, Placement::SeedsAsInitiator] {
+        let of = (1usize..).zip(parts);
+        let of = of.filter(|(_, part)| part.placement == placement);
+        let numbers: Vec<_> = of.map(|(number, _)| number.to_string()).collect();
+        let subject = match (numbers.len(), parts.len()) {
+            (0, _) => continue,
+            (1, 1) => "it seeds a new fractal".into(),
+            (1, _) => format!("part {} seeds a new fractal", numbers[0]),
+            (2, 2) => "both parts seed new fractals".into(),
+            (some, all) if some == all => "all parts seed new fractals".into(),
+            _ => format!("parts {} seed new fractals", numbers.join(", ")),
+        };
+        let how = match placement {
+            Placement::SeedsAsInitiator => {
+                ", as large and as upright as the initiator, measured from where the side begins"
+            }
+            _ => "",
+        };
+        lines.push(format!("{subject}{how}"));
+    }
+    lines
+}
+
+/// "angle = 45, ratio = 0.5".
+pub(super) fn parameters(parameters: &[Parameter]) -> String {
+    let values = parameters.iter();
+    let values = values.map(|it| format!("{} = {}", it.name, number(it.value)));
+    values.collect::<Vec<_>>().join(", ")
+}
+
+/// A number to six digits.
+fn number(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse::<f64>();
+    rounded.unwrap_or(value).to_string()
+}

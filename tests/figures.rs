@@ -1,0 +1,257 @@
+//! Figures of production rules: what they show, and that it can be read.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+#[path = "figures/svg.rs"]
+mod svg;
+
+use common::{document, document_of, resolved};
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::document::Document;
+use kfrac::figure::rule::{self, Options};
+use kfrac::render::{Format, Labels, Size};
+use kfrac::rule::Rule;
+use svg::Path;
+
+fn names() -> impl Iterator<Item = String> {
+    let entries = Catalogue::embedded().entries().into_iter();
+    let rules = entries.filter(|entry| entry.shelf == Shelf::Rules);
+    rules.map(|entry| entry.name)
+}
+
+/// The figure of a rule as a file, with its size.
+fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
+    let (rule, _) = document.resolve(&[]).unwrap();
+    let title = rule.description().title.clone().unwrap_or_default();
+    let options = Options {
+        format,
+        size,
+        labels: Labels {
+            title,
+            ..Labels::default()
+        },
+        ..Options::default()
+    };
+    let mut bytes = Vec::new();
+    let size = rule::write(&rule, document.rule(), &options, &mut bytes).unwrap();
+    (bytes, size)
+}
+
+fn svg_of(document: &Document) -> String {
+    String::from_utf8(figure(document, Format::Svg, None).0).unwrap()
+}
+
+/// What a figure says, one label a line.
+fn said(text: &str) -> String {
+    let (_, paths) = svg::read(&svg_of(&document_of(text)));
+    let labels: Vec<_> = paths.into_iter().filter_map(|path| path.label).collect();
+    labels.join("\n")
+}
+
+/// A figure without the outlines of letters, which are long and tell nothing.
+fn reduced(name: &str) -> String {
+    let mut reduced = String::new();
+    for piece in svg_of(&document(name)).split_inclusive("/>\n") {
+        let label = piece.contains("aria-label") && !piece.contains(r#""*""#);
+        match piece.find(" d=\"").filter(|_| label) {
+            Some(data) => {
+                let start = piece[data + 5..].split(['l', 'c']).next().unwrap();
+                reduced.push_str(&format!("{} at=\"{start}\"/>\n", &piece[..data]));
+            }
+            None => reduced.push_str(piece),
+        }
+    }
+    reduced
+}
+
+#[test]
+fn the_koch_curve_has_four_fertile_sides() {
+    insta::assert_snapshot!("koch-rule", reduced("koch"));
+}
+
+#[test]
+fn the_dragon_has_two_generators() {
+    insta::assert_snapshot!("dragon-rule", reduced("dragon"));
+}
+
+#[test]
+fn the_monkeys_tree_tells_its_directions() {
+    insta::assert_snapshot!("monkeys-tree-rule", reduced("monkeys-tree"));
+}
+
+fn fertile_sides(rule: &Rule) -> usize {
+    let generators = rule.generators().iter().flat_map(|it| it.elements());
+    let all = generators.chain(&rule.initiator().elements);
+    all.filter(|element| element.fertile).count()
+}
+
+#[test]
+fn every_rule_of_the_library_can_be_read() {
+    for name in names() {
+        let document = document(&name);
+        let (size, paths) = svg::read(&svg_of(&document));
+        let labels: Vec<_> = paths.iter().filter(|path| path.label.is_some()).collect();
+        let stars = labels.iter().filter(|it| it.label.as_deref() == Some("*"));
+        let rule = resolved(&document, &[]);
+        assert_eq!(stars.count(), fertile_sides(&rule), "{name}");
+        for heading in ["initiator", "generator", "base element", "fertile"] {
+            let says = |path: &&&Path| path.label.as_ref().unwrap().starts_with(heading);
+            assert!(labels.iter().any(|path| says(&path)), "{name}: {heading}");
+        }
+        for (number, label) in labels.iter().enumerate() {
+            let what = format!("{name}: {:?}", label.label);
+            let within = |side: usize| label.min[side] >= 0 && label.max[side] <= 100 * size[side];
+            assert!(within(0) && within(1), "{what}");
+            for other in &labels[..number] {
+                assert!(!overlap(label, other), "{what} and {:?}", other.label);
+            }
+            let drawn = paths.iter().filter(|path| is_element(path));
+            for line in drawn.flat_map(|path| &path.lines) {
+                assert!(!crosses(label, *line), "{what} lies on an element");
+            }
+        }
+    }
+}
+
+fn overlap(a: &Path, b: &Path) -> bool {
+    (0..2).all(|side| a.min[side] < b.max[side] && b.min[side] < a.max[side])
+}
+
+/// Whether these are the lines of elements: solid, and of the widths that only those have.
+fn is_element(path: &Path) -> bool {
+    let width = path.width.as_deref();
+    path.label.is_none()
+        && !path.is_filled
+        && !path.is_dashed
+        && (width.is_none() || width == Some("150.0"))
+}
+
+/// Whether a line passes through the box of a path.
+fn crosses(path: &Path, line: [[i64; 2]; 2]) -> bool {
+    // The part of the line, from 0 to 1, that is within the box (Liang and Barsky 1984).
+    let (mut first, mut last) = (0.0f64, 1.0f64);
+    for side in 0..2 {
+        let [from, to] = line.map(|point| point[side] as f64);
+        let [min, max] = [path.min[side] as f64, path.max[side] as f64];
+        if from == to {
+            if from <= min || from >= max {
+                return false;
+            }
+        } else {
+            let (a, b) = ((min - from) / (to - from), (max - from) / (to - from));
+            first = first.max(a.min(b));
+            last = last.min(a.max(b));
+        }
+    }
+    first < last
+}
+
+#[test]
+fn both_formats_have_the_size_that_is_asked_for() {
+    let document = document("dragon");
+    for (asked, expected) in [
+        (None, None),
+        (Some(Size::Long(400)), None),
+        (Some(Size::Exactly(300, 200)), Some([300, 200])),
+    ] {
+        let (png, size) = figure(&document, Format::Png, asked);
+        let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+        assert_eq!([side(16), side(20)], size);
+        let (svg, svg_size) = figure(&document, Format::Svg, asked);
+        assert_eq!(svg_size, size);
+        let (written, _) = svg::read(&String::from_utf8(svg).unwrap());
+        assert_eq!(written, size.map(i64::from));
+        if let Some(Size::Long(side)) = asked {
+            assert_eq!(size.into_iter().max(), Some(side));
+        }
+        assert!(expected.is_none_or(|expected| expected == size));
+    }
+}
+
+#[test]
+fn selections_are_said() {
+    let two = "initiator: segment\ngenerators: {a: koch, b: levy, c: dragon}\nselect: ";
+    let by_index = said(&format!("{two}{{by_index: [b, a]}}"));
+    assert!(by_index.contains("odd i: b\neven i: a\n"), "{by_index}");
+    let in_turn = said(&format!("{two}{{by_index: [a, b, c, b]}}"));
+    assert!(in_turn.contains("in turn: a, b, c, b\n"), "{in_turn}");
+    let cases = said(&format!("{two}[{{when: age>2, use: a}}, {{use: c}}]"));
+    assert!(cases.contains("age > 2: a\notherwise: c\n"), "{cases}");
+    let random = said(&format!("{two}{{at_random: {{a: 3, b: 1}}}}"));
+    assert!(
+        random.contains("at random:\n75 %: a\n25 %: b\n"),
+        "{random}"
+    );
+    let named = said(
+        "initiator: [[0, 0], {to: [1, 0], use: b}]
+generators:
+  a: [[0, 0], {to: [1/2, 1/2], use: b}, {to: [1, 0], use: a}]
+  b: [[0, 0], {to: [1/2, 1/3], use: a}, {to: [1, 0], fertile: false}]",
+    );
+    assert!(named.contains("every side names its own\n"), "{named}");
+    assert!(named.contains("*\na\n"), "{named}");
+}
+
+#[test]
+fn random_functions_and_seeds_are_said() {
+    let said = said(
+        "initiator: segment
+generator:
+  random:
+    tilt: uniform(-20, 20 + i)
+    top: normal(0.5, 0.1)
+    side: choice(1, 2)
+  move:
+    - {rotate: tilt, about: [1/2, 0], points: [1]}
+    - {scale: side/2, shift: [0, top/9]}
+  parts:
+    - elements: [[0, 0], [1/2, top], [1, 0]]
+    - {seeds: true, elements: [[0, -1/3], [1/3, -1/3]]}
+    - {seeds: true, placed: initiator, elements: [[1/2, -1/3], [1, -1/3]]}",
+    );
+    let joined = said.replace('\n', " ");
+    for line in [
+        "tilt: uniform from -20 to 20 + i",
+        "top: normal with mean 0.5, deviation 0.1",
+        "side: one of 1, 2",
+        "p1 = (1/2, top)",
+        "p1: turned by tilt° about (1/2, 0)",
+        "all points but the ends: scaled by side/2, shifted by (0, top/9)",
+        "part 2 seeds a new fractal",
+        "part 3 seeds a new fractal, as large and as upright as the initiator, measured from where the side begins",
+        "drawn for i = 1",
+    ] {
+        assert!(joined.contains(line), "{line}\n{said}");
+    }
+    // The point is told where it stands, too.
+    assert!(said.split('\n').any(|label| label == "p1"), "{said}");
+}
+
+/// A generator may be finite only at the moments at which it is selected.
+#[test]
+fn a_generator_is_drawn_for_a_moment_that_selects_it() {
+    let text = "initiator: segment
+generators:
+  young: [[0, 0], [1/2, 1/3], [1, 0]]
+  old: [[0, 0], [1/2, 1/age], [1, 0]]
+select: [{when: age < 2, use: young}, {use: old}]";
+    let said = said(text);
+    assert!(said.contains("drawn for age = 2\n"), "{said}");
+}
+
+#[test]
+fn what_is_odd_is_drawn_all_the_same() {
+    for text in [
+        "initiator: [[0, 0], {to: [1, 0], fertile: false}]\ngenerator: koch",
+        "initiator: [[0, 0], [0, 1e300]]\ngenerator: [[0, 0], [1e-300, 0], [1, 0]]",
+        "title: 分形 ⁂ \\t\ninitiator: segment\ngenerator: koch\nbase_element: half-circle",
+        "initiator: segment\ngenerator: [[0, 0], {to: [1/2, 1/2], visible: false}, [1/2, 0]]",
+        "initiator: segment\ngenerator: [[0, 0], [1/2, 1/(i - i)], [1, 0]]",
+    ] {
+        let document = document_of(text);
+        let (bytes, _) = figure(&document, Format::Svg, None);
+        let (size, _) = svg::read(&String::from_utf8(bytes).unwrap());
+        assert!(size[0] < 2000 && size[1] < 2000, "{text}");
+    }
+}
