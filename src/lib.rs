@@ -22,13 +22,14 @@
 //!     ▼
 //!  elements, in order, streamed
 //!     ├── render    pictures: SVG, PNG
-//!     ├── figure    figures about a rule: sheets of approximants
+//!     ├── figure    figures: the rule itself, approximants side by side
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
-//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each
-//! other; [`cli`] uses what is public here and nothing else. What a program [`build`]s is written
-//! as a file and read as such. Names and files are the [`catalogue`]'s work, mistakes in files are
+//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
+//! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
+//! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
+//! Names and files are the [`catalogue`]'s work, mistakes in files are
 //! [`diagnostic`]s, numbers in files are [`expression`]s.
 
 pub mod build;

@@ -19,3 +19,4 @@ kfrac grow fern --size 480 -o fern.png
 kfrac grow cut-sheets --seed 7 --size 480 -o cut-sheets.svg
 kfrac grow archipelago --size 480 -o archipelago.png
 kfrac sheet pythagoras --steps 0..7 --size 150 --columns 4 -o pythagoras-sheet.svg
+kfrac show monkeys-tree -o monkeys-tree-rule.svg
