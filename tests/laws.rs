@@ -10,7 +10,7 @@ mod rules;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use kfrac::catalogue::Catalogue;
+use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
@@ -305,5 +305,90 @@ fn directions_multiply_like_the_klein_four_group() {
                     .abs_diff_eq(frames[2].map, 1e-15)
             );
         }
+    }
+}
+
+/// The same elements, taken by blocks.
+struct Blocks(Collected);
+
+impl Visitor for Blocks {
+    type Error = Infallible;
+
+    const BLOCKS: bool = true;
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        self.0.begin(fractal)
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.0.element(element)
+    }
+
+    fn end(&mut self, joined: bool) -> Result<(), Infallible> {
+        self.0.end(joined)
+    }
+}
+
+/// Holds a walk by blocks against one by elements.
+fn blocks_agree(graph: &Graph, growth: &Growth<'_>) {
+    let (mut single, mut blocks) = (Collected::default(), Blocks(Collected::default()));
+    let walked = walk(graph, growth, &mut single).unwrap();
+    assert_eq!(walk(graph, growth, &mut blocks).unwrap(), walked);
+    assert_eq!(single.fractals.len(), blocks.0.fractals.len());
+    for ((fractal, elements, end), (fractal_, elements_, end_)) in
+        single.fractals.iter().zip(&blocks.0.fractals)
+    {
+        assert_eq!(
+            (fractal, end, elements.len()),
+            (fractal_, end_, elements_.len())
+        );
+        for (element, block) in elements.iter().zip(elements_) {
+            let same = |e: &Element| {
+                (
+                    e.frame.direction,
+                    e.index,
+                    e.object,
+                    e.born,
+                    e.fertile,
+                    e.joined,
+                )
+            };
+            assert_eq!(same(element), same(block));
+            let ([from, to], [from_, to_]) = (element.frame.ends(), block.frame.ends());
+            assert!(close(from, from_) && close(to, to_));
+            let size = element.frame.map.matrix2.y_axis;
+            assert!(close(size, block.frame.map.matrix2.y_axis));
+            assert!((element.length - block.length).abs() <= 1e-12 * element.length);
+        }
+    }
+}
+
+#[test]
+fn blocks_of_the_library_are_the_elements_one_by_one() {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries();
+    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        let source = catalogue.open(entry).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let rule = Arc::new(document.resolve(&[]).unwrap().0);
+        let steps = rule.steps().unwrap_or(6);
+        let graph = Graph::compile(&rule, steps).unwrap();
+        blocks_agree(
+            &graph,
+            &Growth {
+                seed: 3,
+                ..Growth::steps(steps)
+            },
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn blocks_are_the_elements_one_by_one(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {
+        let graph = Graph::compile(&read(&text), steps).unwrap();
+        blocks_agree(&graph, &Growth { seed, ..Growth::steps(steps) });
     }
 }

@@ -59,7 +59,7 @@ pub fn write(
     let steps = cells.iter().map(|cell| cell.growth.steps).max();
     let mut surveys = Vec::new();
     for cell in cells {
-        surveys.push(Survey::walk(
+        surveys.push(Survey::of(
             cell.graph,
             &cell.growth,
             style,

@@ -6,7 +6,7 @@ use std::io;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 use crate::geometry::DVec2;
-use crate::render::{FINE, Paint, Position, Surface, Tracer};
+use crate::render::{FINE, Paint, Position, Surface, Tracer, position};
 use crate::style::Colour;
 
 /// The font of all labels.
@@ -120,13 +120,8 @@ struct Outline<'s, S> {
 }
 
 impl<S: Surface> Outline<'_, S> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "casts from floats saturate"
-    )]
     fn position(&self, point: DVec2) -> Position {
-        let pixel = self.origin + DVec2::new(point.x, -point.y) * self.scale;
-        [pixel.x, pixel.y].map(|value| (value * FINE).round() as i64)
+        position((self.origin + DVec2::new(point.x, -point.y) * self.scale) * FINE)
     }
 }
 

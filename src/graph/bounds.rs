@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use crate::geometry::{Bounds, DVec2};
 use crate::rule::Placement;
 
-use super::{Graph, Instance, Replacement};
+use super::{Graph, Instance, Object, Replacement};
 
 /// More states than this, at one level and at all of them, are given up.
 const MOST_STATES: usize = 20_000;
@@ -37,6 +37,8 @@ struct Reach {
     ratio: f64,
     /// Objects that surely draw something.
     alive: Vec<bool>,
+    /// What lies around every object, as a multiple of its length.
+    pads: Vec<f64>,
 }
 
 impl Reach {
@@ -62,10 +64,15 @@ impl Graph {
     /// was compiled for fewer steps.
     #[must_use]
     pub fn bounds(&self, steps: u32) -> Option<Bounds> {
+        self.padded_bounds(steps, |_| 0.0)
+    }
+
+    /// The same with so much around every object, as a multiple of its length.
+    pub(crate) fn padded_bounds(&self, steps: u32, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
         if self.depth.is_some_and(|depth| depth < steps) {
             return None;
         }
-        self.bounds_at(Some(steps))
+        self.bounds_at(Some(steps), pad)
     }
 
     /// The box of the limit set: of the limit of the approximants as drawn, to which infertile
@@ -77,10 +84,10 @@ impl Graph {
         if self.depth.is_some() || self.longest_ratio() >= 1.0 {
             return None;
         }
-        self.bounds_at(None)
+        self.bounds_at(None, |_| 0.0)
     }
 
-    fn bounds_at(&self, steps: Option<u32>) -> Option<Bounds> {
+    fn bounds_at(&self, steps: Option<u32>, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -88,9 +95,10 @@ impl Graph {
             return None;
         }
         let reach = Reach {
-            spread: self.spread(),
+            spread: self.spread(&pad),
             ratio: self.longest_ratio(),
             alive: self.alive(steps.is_none()),
+            pads: self.objects.iter().map(pad).collect(),
         };
         let support = |direction| self.support(direction, steps, &reach);
         let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
@@ -133,7 +141,7 @@ impl Graph {
     }
 
     /// How far what an object draws, or where its instances stand, may lie from its origin.
-    fn spread(&self) -> f64 {
+    fn spread(&self, pad: impl Fn(&Object) -> f64) -> f64 {
         let shape = |object: usize| {
             let base_element = &self.base_elements()[self.objects[object].base_element];
             let axes = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y];
@@ -142,6 +150,7 @@ impl Graph {
                 .map(f64::abs)
                 .fold(0.0, f64::max)
                 * std::f64::consts::SQRT_2
+                + pad(&self.objects[object])
         };
         let mut constant = (0..self.objects.len()).map(shape).fold(0.0, f64::max);
         for (_, instance) in self.instances() {
@@ -208,7 +217,8 @@ impl Graph {
                 let kept = matches!(object.replacement, Replacement::Kept);
                 if (kept || last) && object.visible {
                     let base_element = &self.base_elements()[object.base_element];
-                    let reached = base_element.support(state.vector) + state.lost;
+                    let pad = reach.pads[state.object] * state.vector.length();
+                    let reached = base_element.support(state.vector) + state.lost + pad;
                     best = best.max(state.offset + reached);
                 }
                 let size = state.vector.length() * radius;

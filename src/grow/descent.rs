@@ -1,9 +1,13 @@
 //! One fractal at one step: its elements in order of traversal, depth-first.
 
-use crate::geometry::{DAffine2, DVec2, Frame};
+use std::rc::Rc;
+
+use crate::geometry::{DAffine2, DVec2, Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Placement};
+
+use super::block::{Block, Blocks};
 
 /// Where an element stands, and what its descendants need to know of it.
 #[derive(Clone, Copy, Debug)]
@@ -68,10 +72,23 @@ pub(super) struct Found {
     pub(super) rank: u64,
 }
 
+/// A block that a descent has come to instead of its elements.
+pub(super) struct FoundRun {
+    pub(super) block: Rc<Block>,
+    pub(super) frame: Frame,
+    pub(super) length: f64,
+    /// The step of birth of the object that became the block.
+    pub(super) level: u32,
+    /// Whether the pen stands where the object starts.
+    pub(super) joined: bool,
+}
+
 /// What a descent comes to.
 pub(super) enum Next {
     /// An element of the approximant.
     Element(Found),
+    /// Elements in a row, where blocks are wanted.
+    Run(FoundRun),
     /// Elements that have been replaced, many of them: a chance to stop.
     Pause,
     /// The end of the fractal.
@@ -182,13 +199,32 @@ impl<'g> Descent<'g> {
         }
     }
 
+    /// A walk over what an object becomes in a number of steps, alone in the unit frame. The pen
+    /// stands where the object starts.
+    pub(super) fn below(graph: &'g Graph, object: usize, steps: u32, direction: Direction) -> Self {
+        let mut start = Start::initiator(0);
+        start.standing.frame.direction = direction;
+        let mut descent = Self::new(graph, &start, steps);
+        descent.stack.clear();
+        descent.joined = true;
+        if let Replacement::Fixed(_) = graph.objects()[object].replacement {
+            // Fixed productions are there without being worked out.
+            let _ = descent.push(start.standing, object, 0, 0, true);
+        }
+        descent
+    }
+
     /// Whether the last element joins the first one of a ring; to be asked at the end.
     pub(super) fn ends_joined(&self) -> bool {
         self.joined
     }
 
-    /// Goes on to the next element of approximant `target`.
-    pub(super) fn next(&mut self, start: &Start<'g>) -> Result<Next, CompileError> {
+    /// Goes on to the next element of approximant `target`, or to the next block of elements.
+    pub(super) fn next(
+        &mut self,
+        start: &Start<'g>,
+        mut blocks: Option<&mut Blocks>,
+    ) -> Result<Next, CompileError> {
         loop {
             if self.visited >= PATIENCE {
                 return Ok(Next::Pause);
@@ -272,6 +308,22 @@ impl<'g> Descent<'g> {
             if last {
                 // The chain is done: what follows the child's last element follows the chain's.
                 self.pop();
+            }
+            let reversed = standing.frame.direction.is_reversed();
+            let steps = self.target - level;
+            if let Some(blocks) = &mut blocks
+                && let Some(block) = blocks.get(self.graph, object, steps, reversed)
+            {
+                let joined = self.joined;
+                self.joined = block.meets_end && meets_end;
+                self.visited += block.len();
+                return Ok(Next::Run(FoundRun {
+                    block,
+                    frame: standing.frame,
+                    length: standing.length,
+                    level,
+                    joined,
+                }));
             }
             self.push(standing, object, level, rank, meets_end)?;
         }

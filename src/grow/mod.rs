@@ -4,11 +4,13 @@
 //! with the number of steps and not with the number of elements. Where new fractals are seeded, a
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds.
 
+mod block;
 mod descent;
 mod extent;
 mod progress;
 mod walk;
 
+pub use block::Run;
 pub use extent::extent;
 pub use progress::Progress;
 pub use walk::{Growth, Walked, walk};
@@ -52,6 +54,10 @@ pub trait Visitor {
     /// What may go wrong in it.
     type Error;
 
+    /// Whether elements whose places are fixed come by runs, as many of them do then. Their frames
+    /// may differ in the last bits from those of elements that come one by one.
+    const BLOCKS: bool = false;
+
     /// A fractal begins.
     ///
     /// # Errors
@@ -65,6 +71,16 @@ pub trait Visitor {
     ///
     /// Whatever ends the walk.
     fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
+
+    /// Elements of the fractal in a row, where [`Visitor::BLOCKS`] is set.
+    ///
+    /// # Errors
+    ///
+    /// Whatever ends the walk.
+    fn run(&mut self, run: &Run<'_>) -> Result<(), Self::Error> {
+        run.elements()
+            .try_for_each(|element| self.element(&element))
+    }
 
     /// The fractal ends. `joined` tells whether its last element is drawn to the very end of the
     /// chain that started it: the fractal is a closed path if its first element is joined as well.

@@ -2,6 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::graph::{Graph, Replacement};
 
+use super::block::{Blocks, Run};
 use super::descent::{Descent, Found, Next, PATIENCE, Start};
 use super::{Element, Fractal, Progress, Visitor, WalkError};
 
@@ -69,6 +70,8 @@ struct Walk<'g, 'v, V> {
     told: u64,
     visited: u64,
     next_look: u64,
+    /// Where the visitor takes elements by blocks.
+    blocks: Option<Blocks>,
 }
 
 /// Walks over the elements of an approximant, fractal by fractal.
@@ -102,6 +105,7 @@ pub fn walk<V: Visitor>(
         told: 0,
         visited: 0,
         next_look: PATIENCE,
+        blocks: V::BLOCKS.then(|| Blocks::of(graph)),
     };
     walk.run(Start::initiator(growth.seed))?;
     walk.tell_progress();
@@ -132,7 +136,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             if next.is_some() {
                 continue;
             }
-            let found = parent.descent.next(&parent.start)?;
+            let found = parent.descent.next(&parent.start, None)?;
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
                 Next::Element(found) => {
@@ -143,6 +147,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
                         parent.queue.reverse();
                     }
                 }
+                Next::Run(_) => unreachable!("seeds are looked for without blocks"),
                 Next::Pause => {}
                 Next::End if parent.is_fertile && parent.step + 1 < self.growth.steps => {
                     parent.is_fertile = false;
@@ -169,18 +174,29 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         let mut descent = Descent::new(self.graph, start, self.growth.steps);
         let mut index = 0;
         loop {
-            let found = descent.next(start)?;
+            let found = descent.next(start, self.blocks.as_mut())?;
             self.visit(std::mem::take(&mut descent.visited))?;
             match found {
                 Next::Element(found) => {
                     index += 1;
-                    self.walked.elements += 1;
-                    if self.walked.elements > self.growth.most_elements {
-                        return Err(self.too_many());
-                    }
+                    self.count(1)?;
                     self.visitor
                         .element(&self.element(&found, index))
                         .map_err(WalkError::Visitor)?;
+                }
+                Next::Run(found) => {
+                    self.count(found.block.len())?;
+                    let run = Run {
+                        block: &found.block,
+                        frame: found.frame,
+                        length: found.length,
+                        born: found.level,
+                        index: index + 1,
+                        joined: found.joined,
+                        graph: self.graph,
+                    };
+                    self.visitor.run(&run).map_err(WalkError::Visitor)?;
+                    index += found.block.len();
                 }
                 Next::Pause => {}
                 Next::End => break,
@@ -204,6 +220,17 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         }
     }
 
+    /// Counts elements that come next.
+    fn count(&mut self, elements: u64) -> Result<(), WalkError<V::Error>> {
+        self.walked.elements += elements;
+        if self.walked.elements > self.growth.most_elements {
+            return Err(WalkError::TooManyElements {
+                limit: self.growth.most_elements,
+            });
+        }
+        Ok(())
+    }
+
     fn visit(&mut self, count: u64) -> Result<(), WalkError<V::Error>> {
         self.visited += count;
         if self.visited < self.next_look {
@@ -225,12 +252,6 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         if let Some(progress) = self.growth.progress {
             progress.count(self.walked.elements - self.told);
             self.told = self.walked.elements;
-        }
-    }
-
-    fn too_many(&self) -> WalkError<V::Error> {
-        WalkError::TooManyElements {
-            limit: self.growth.most_elements,
         }
     }
 }

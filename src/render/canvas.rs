@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
 use crate::style::View;
 
 use super::Survey;
@@ -160,6 +160,15 @@ impl Canvas {
             (point.x - self.corner.x) * self.scale,
             (self.corner.y - point.y) * self.scale,
         )
+    }
+
+    /// The map from the plane to the picture, in so many units a pixel.
+    pub(super) fn map(&self, units: f64) -> DAffine2 {
+        let scale = self.scale * units;
+        DAffine2 {
+            matrix2: DMat2::from_diagonal(DVec2::new(scale, -scale)),
+            translation: DVec2::new(-self.corner.x, self.corner.y) * scale,
+        }
     }
 }
 

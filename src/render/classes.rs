@@ -1,9 +1,17 @@
 use crate::graph::Graph;
-use crate::grow::{Element, Fractal};
+use crate::grow::{Element, Fractal, Run};
 use crate::style::{ColorBy, Colour, Style};
 
 /// Colours that vary continuously are quantised to this many classes at most.
 const MOST_CLASSES: u64 = 64;
+
+/// How many of some elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Share {
+    All,
+    Some,
+    None,
+}
 
 /// The classes of colour of an approximant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +73,43 @@ impl Classes {
                 .map_or(0, |generator| generator as u64 + 1),
             ColorBy::Direction => u64::from(element.frame.direction.number()) - 1,
         };
+        self.of_value(value)
+    }
+
+    /// How many elements of a run are in a class.
+    pub(super) fn share(
+        &self,
+        run: &Run<'_>,
+        fractal: &Fractal,
+        graph: &Graph,
+        class: u64,
+    ) -> Share {
+        let of = |element: Element| self.of(&element, fractal, graph);
+        let classes = run.elements().map(of);
+        let (Some(first), Some(last)) = (run.first().map(of), run.last().map(of)) else {
+            return Share::None;
+        };
+        let (all, any) = match self.by {
+            _ if self.keep_fractals_whole() => (first == class, first == class),
+            // Ranks grow along the way.
+            ColorBy::Index => (
+                first == class && last == class,
+                (first..=last).contains(&class),
+            ),
+            _ => classes.fold((true, false), |(all, any), of| {
+                (all && of == class, any || of == class)
+            }),
+        };
+        match (all, any) {
+            (true, _) => Share::All,
+            (false, true) => Share::Some,
+            (false, false) => Share::None,
+        }
+    }
+
+    /// The class of a value of what the colours tell.
+    #[inline]
+    pub(super) fn of_value(&self, value: u64) -> u64 {
         if self.largest < MOST_CLASSES {
             value
         } else {

@@ -6,6 +6,7 @@
 
 mod canvas;
 mod classes;
+mod known;
 mod painter;
 mod png;
 mod scene;
@@ -20,7 +21,7 @@ pub use png::TooManyPixels;
 pub use survey::Survey;
 
 pub(crate) use scene::Scene;
-pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface};
+pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
 pub(crate) use tracer::Tracer;
 
 use std::convert::Infallible;
@@ -172,7 +173,7 @@ pub fn write(
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
     let Options { style, view, .. } = options;
-    let survey = Survey::walk(graph, growth, style, growth.steps)?;
+    let survey = Survey::of(graph, growth, style, growth.steps)?;
     let canvas = Canvas::of(std::slice::from_ref(&survey), view, options.size)?;
     let scene = Scene::new(&survey, growth, canvas);
     write_drawing(&scene, options.format, &options.labels, out)?;

@@ -1,12 +1,13 @@
 use std::io;
 
-use crate::geometry::DVec2;
-use crate::grow::{Element, Fractal, Visitor};
+use crate::geometry::{DAffine2, DVec2};
+use crate::grow::{Element, Fractal, Run, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Width};
 
+use super::classes::Share;
 use super::scene::{Pass, Scene};
-use super::surface::{FINE, Paint, Position, Stroke, Surface};
+use super::surface::{FINE, Paint, Position, Stroke, Surface, position};
 use super::tracer::Tracer;
 use super::{WIDTHS_AN_OCTAVE, pen};
 
@@ -65,6 +66,8 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
 pub(super) struct Painter<'a, 's, S> {
     scene: &'a Scene<'a>,
     pass: Pass,
+    /// From the plane to positions.
+    map: DAffine2,
     /// The class's colour, where colours tell something.
     colour: Option<Colour>,
     tracer: Tracer<'s, S>,
@@ -81,6 +84,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Self {
             scene,
             pass,
+            map: scene.canvas.map(FINE),
             colour: match pass {
                 Pass::Areas => None,
                 Pass::Class(class) => scene.classes.colour(class, scene.style),
@@ -100,13 +104,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "casts from floats saturate"
-    )]
     fn position(&self, point: DVec2) -> Position {
-        let fine = self.scene.canvas.pixel(point) * FINE;
-        [fine.x.round() as i64, fine.y.round() as i64]
+        position(self.map.transform_point2(point))
     }
 
     /// Goes on with the open path if it looks alike, or begins a new one.
@@ -244,6 +243,21 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
+    /// Lines of one class that end in these points, one after another.
+    fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) -> io::Result<()> {
+        self.element(first)?;
+        let map = self.map * *run.map();
+        for &end in &ends[1..] {
+            self.tracer.line_to(position(map.transform_point2(end)));
+        }
+        self.previous = ends.last().map(|&end| Previous {
+            end: run.map().transform_point2(end),
+            meets_frame: true,
+            drawn: true,
+        });
+        self.tracer.hand_on()
+    }
+
     #[inline]
     fn piece(&mut self, piece: &Piece) {
         match *piece {
@@ -272,6 +286,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
 impl<S: Surface> Visitor for Painter<'_, '_, S> {
     type Error = io::Error;
+
+    const BLOCKS: bool = true;
 
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
         self.fractal = fractal;
@@ -303,6 +319,26 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
         }
         self.is_first = false;
         self.tracer.hand_on()
+    }
+
+    fn run(&mut self, run: &Run<'_>) -> io::Result<()> {
+        let Scene { graph, classes, .. } = self.scene;
+        let share = match self.pass {
+            Pass::Areas => Share::Some,
+            Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
+        };
+        match (share, run.line(), run.first(), run.last()) {
+            // Of what is not painted only the end matters, where the next line may begin.
+            (Share::None, _, _, Some(last)) => self.element(&last),
+            (Share::All, Some(ends), Some(first), _)
+                if matches!(self.scene.style.width, Width::Pixels(_)) =>
+            {
+                self.lines(run, ends, &first)
+            }
+            _ => run
+                .elements()
+                .try_for_each(|element| self.element(&element)),
+        }
     }
 
     fn end(&mut self, joined: bool) -> io::Result<()> {

@@ -43,7 +43,8 @@ impl<'a> Scene<'a> {
         let passes: Vec<_> = areas.into_iter().chain(painted).collect();
         if let Some(progress) = growth.progress {
             // The survey, and a walk for everything that is painted apart.
-            progress.expect(survey.elements * (1 + passes.len() as u64));
+            let walks = u64::from(survey.walked) + passes.len() as u64;
+            progress.expect(survey.elements * walks);
         }
         Self {
             graph,
@@ -81,14 +82,19 @@ impl Drawing for Scene<'_> {
 }
 
 impl<'a> Survey<'a> {
-    /// Walks over an approximant once. Colours that tell steps span `steps` of them.
-    pub(crate) fn walk(
+    /// What the graph tells of an approximant, or a walk over it where it does not. Colours that
+    /// tell steps span `steps` of them.
+    pub(crate) fn of(
         graph: &'a Graph,
         growth: &Growth<'_>,
         style: &'a Style,
         steps: u32,
     ) -> Result<Self, WalkError<Infallible>> {
+        if let Some(known) = Self::known(graph, growth, style, steps) {
+            return Ok(known);
+        }
         let mut survey = Self::new(graph, style, steps);
+        survey.walked = true;
         walk(graph, growth, &mut survey)?;
         Ok(survey)
     }

@@ -1,5 +1,6 @@
 use std::io;
 
+use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
 /// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
@@ -10,6 +11,24 @@ pub(crate) type Position = [i64; 2];
 
 /// Units of positions to a pixel.
 pub(crate) const FINE: f64 = 100.0;
+
+/// The position nearest to a point that is given in their units.
+///
+/// Halves are decided a hair before they are reached: so rounding in the last bits, which depends on
+/// the way that a point is computed, does not decide them.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "casts from floats saturate; what is on a picture is exact"
+)]
+pub(crate) fn position(point: DVec2) -> Position {
+    const HALF: f64 = 0.5 + 1e-6;
+    [point.x + HALF, point.y + HALF].map(|value| {
+        let towards_zero = value as i64;
+        towards_zero - i64::from(value < towards_zero as f64)
+    })
+}
 
 /// How a path is painted: filled first, then stroked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

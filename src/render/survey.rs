@@ -1,7 +1,7 @@
 use std::convert::Infallible;
 
 use crate::geometry::Bounds;
-use crate::graph::Graph;
+use crate::graph::{Graph, Object};
 use crate::grow::{Element, Fractal, Visitor};
 use crate::style::{Cap, Join, Style, Width};
 
@@ -22,6 +22,8 @@ pub struct Survey<'g> {
     pub fractals: u64,
     /// The largest rank of an element in its fractal.
     pub largest_index: u64,
+    /// Whether there was a walk to learn it.
+    pub(super) walked: bool,
     fractal: Fractal,
     classes: Classes,
     /// The classes that something visible is in.
@@ -41,6 +43,7 @@ impl<'g> Survey<'g> {
             elements: 0,
             fractals: 0,
             largest_index: 0,
+            walked: false,
             fractal: Fractal::default(),
             used: classes.all().map(|_| false).collect(),
             classes,
@@ -68,6 +71,37 @@ impl<'g> Survey<'g> {
         (classes, classes.all().collect())
     }
 
+    pub(super) fn is_stroked(&self, object: &Object) -> bool {
+        let base_element = &self.graph.base_elements()[object.base_element];
+        !base_element.is_closed() || self.style.outlines_polygons()
+    }
+
+    /// How far the stroke of an object reaches beyond its outline, as a multiple of its length,
+    /// where its width is relative.
+    pub(super) fn pad(&self, object: &Object) -> f64 {
+        match self.style.width {
+            Width::Relative(width) if self.is_stroked(object) => {
+                // The width that is drawn may be a little larger than that.
+                let rounding = libm::exp2(0.5 / WIDTHS_AN_OCTAVE);
+                width * rounding * overhang(self.style)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The class of a value, where that is known without a survey.
+    pub(super) fn class_of(&self, value: u64) -> u64 {
+        self.classes.of_value(value)
+    }
+
+    /// Something visible is in a class.
+    pub(super) fn use_class(&mut self, class: u64) {
+        let used = usize::try_from(class).ok();
+        if let Some(used) = used.and_then(|class| self.used.get_mut(class)) {
+            *used = true;
+        }
+    }
+
     /// The pixels by which strokes of a width in pixels reach beyond their paths.
     #[must_use]
     pub fn overhang(&self) -> f64 {
@@ -93,6 +127,8 @@ fn overhang(style: &Style) -> f64 {
 impl Visitor for Survey<'_> {
     type Error = Infallible;
 
+    const BLOCKS: bool = true;
+
     fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
         self.fractal = fractal;
         self.fractals += 1;
@@ -104,26 +140,11 @@ impl Visitor for Survey<'_> {
         self.largest_index = self.largest_index.max(element.index);
         let object = &self.graph.objects()[element.object];
         if object.visible {
-            if self.classes.need_no_survey() {
-                let class = self.classes.of(element, &self.fractal, self.graph);
-                if let Some(used) = usize::try_from(class)
-                    .ok()
-                    .and_then(|class| self.used.get_mut(class))
-                {
-                    *used = true;
-                }
-            }
+            let class = self.classes.of(element, &self.fractal, self.graph);
+            self.use_class(class);
             let base_element = &self.graph.base_elements()[object.base_element];
-            let stroked = !base_element.is_closed() || self.style.outlines_polygons();
-            let pad = match self.style.width {
-                Width::Relative(width) if stroked => {
-                    // The width that is drawn may be a little larger than that.
-                    let rounding = libm::exp2(0.5 / WIDTHS_AN_OCTAVE);
-                    width * rounding * element.frame.length() * overhang(self.style)
-                }
-                _ => 0.0,
-            };
-            self.strokes |= stroked;
+            self.strokes |= self.is_stroked(object);
+            let pad = self.pad(object) * element.frame.length();
             base_element.add_to(&mut self.bounds, &element.frame.map, pad);
         }
         Ok(())

@@ -1,0 +1,193 @@
+//! What a survey would learn, told by the graph without a walk.
+
+use std::collections::BTreeSet;
+
+use crate::geometry::Direction;
+use crate::graph::{Chain, Graph, Object, Replacement};
+use crate::grow::Growth;
+use crate::style::{ColorBy, Style};
+
+use super::Survey;
+
+/// A forecast of more steps than this is left to the walk.
+const MOST_STEPS: u32 = 10_000;
+
+impl<'g> Survey<'g> {
+    /// The survey of an approximant whose graph tells all of it; colours that tell steps span
+    /// `steps` of them.
+    pub(super) fn known(
+        graph: &'g Graph,
+        growth: &Growth<'_>,
+        style: &'g Style,
+        steps: u32,
+    ) -> Option<Self> {
+        let level = level(graph, growth)?;
+        let mut survey = Self::new(graph, style, steps);
+        let stands = Standing::at(graph, growth.steps);
+        let pad = |object: &Object| survey.pad(object);
+        survey.bounds = graph.padded_bounds(growth.steps, pad)?;
+        survey.elements = level.elements;
+        survey.fractals = level.fractals;
+        survey.largest_index = level.elements;
+        let seeds = level.fractals > 1;
+        let one = |known: bool, value: u64| (!seeds || known).then(|| vec![value]);
+        let used: Vec<u64> = match style.color_by {
+            ColorBy::None => vec![0],
+            ColorBy::Age => one(false, u64::from(growth.steps))?,
+            ColorBy::Fractal => Vec::new(),
+            ColorBy::Index => one(false, 0)?,
+            ColorBy::Step => stands.values(|stands| u64::from(stands.born)),
+            ColorBy::Generator => {
+                stands.values(|stands| stands.origin(graph).map_or(0, |origin| origin as u64 + 1))
+            }
+            ColorBy::Direction => stands.values(|stands| u64::from(stands.direction.number()) - 1),
+        };
+        for value in used {
+            survey.use_class(survey.class_of(value));
+        }
+        survey.strokes = stands
+            .0
+            .iter()
+            .any(|stands| survey.is_stroked(&graph.objects()[stands.object]));
+        Some(survey)
+    }
+}
+
+/// The numbers of an approximant.
+struct Numbers {
+    elements: u64,
+    fractals: u64,
+}
+
+fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
+    if !graph.is_plain() || graph.counts_index() || growth.steps > MOST_STEPS {
+        return None;
+    }
+    let mut forecast = graph.forecast()?;
+    for _ in 0..growth.steps {
+        if !forecast.advance() {
+            return None;
+        }
+    }
+    let level = forecast.level();
+    let elements = u64::try_from(level.elements).ok()?;
+    (elements <= growth.most_elements).then_some(Numbers {
+        elements,
+        fractals: u64::try_from(level.fractals).ok()?,
+    })
+}
+
+/// A kind of element that stands in an approximant and is visible.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Kind {
+    object: usize,
+    direction: Direction,
+    born: u32,
+}
+
+impl Kind {
+    fn origin(&self, graph: &Graph) -> Option<usize> {
+        graph.objects()[self.object].origin
+    }
+}
+
+/// All kinds that stand in an approximant.
+struct Standing(BTreeSet<Kind>);
+
+impl Standing {
+    fn at(graph: &Graph, steps: u32) -> Self {
+        let mut stand = BTreeSet::new();
+        let mut born = BTreeSet::new();
+        let add = |chain: &Chain, direction: Direction, to: &mut BTreeSet<_>| {
+            for instance in &chain.instances {
+                to.insert((instance.object, direction * instance.frame.direction));
+            }
+        };
+        add(graph.initiator(), Direction::Normal, &mut born);
+        for level in 0..=steps {
+            let mut next = BTreeSet::new();
+            for &(object, direction) in &born {
+                let replacement = &graph.objects()[object].replacement;
+                if level == steps || matches!(replacement, Replacement::Kept) {
+                    if graph.objects()[object].visible {
+                        stand.insert(Kind {
+                            object,
+                            direction,
+                            born: level,
+                        });
+                    }
+                } else if let Replacement::Fixed(production) = replacement {
+                    add(&production.body, direction, &mut next);
+                    for seed in &production.seeds {
+                        // A part that is placed as the initiator has its own direction.
+                        add(&seed.chain, direction, &mut next);
+                    }
+                }
+            }
+            born = next;
+        }
+        Self(stand)
+    }
+
+    fn values(&self, value: impl Fn(&Kind) -> u64) -> Vec<u64> {
+        self.0.iter().map(value).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::Survey;
+    use crate::catalogue::{Catalogue, Shelf};
+    use crate::document::Document;
+    use crate::graph::Graph;
+    use crate::grow::{Growth, walk};
+    use crate::style::{ColorBy, Named, Style, Width};
+
+    #[test]
+    fn what_the_graph_tells_is_what_a_walk_finds() {
+        let catalogue = Catalogue::embedded();
+        let entries = catalogue.entries();
+        let mut told = 0;
+        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+            let source = catalogue.open(entry).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            let rule = Arc::new(document.resolve(&[]).unwrap().0);
+            let graph = Graph::compile(&rule, 4).unwrap();
+            for (_, color_by) in ColorBy::NAMES {
+                for width in [Width::Pixels(1.0), Width::Relative(0.2)] {
+                    let style = Style {
+                        width,
+                        color_by: *color_by,
+                        ..rule.style().clone()
+                    };
+                    for steps in [0, 1, 4] {
+                        let growth = Growth::steps(steps);
+                        let Some(known) = Survey::known(&graph, &growth, &style, 4) else {
+                            continue;
+                        };
+                        told += 1;
+                        let mut walked = Survey::new(&graph, &style, 4);
+                        walk(&graph, &growth, &mut walked).unwrap();
+                        let what = format!("{} at {steps} by {color_by:?}", entry.name);
+                        let far = |a: crate::geometry::DVec2, b| (a - b).length();
+                        assert!(
+                            far(known.bounds.min(), walked.bounds.min()) < 1e-12,
+                            "{what}"
+                        );
+                        assert!(
+                            far(known.bounds.max(), walked.bounds.max()) < 1e-12,
+                            "{what}"
+                        );
+                        assert_eq!(known.elements, walked.elements, "{what}");
+                        assert_eq!(known.fractals, walked.fractals, "{what}");
+                        assert_eq!(known.strokes, walked.strokes, "{what}");
+                        assert_eq!(known.classes(), walked.classes(), "{what}");
+                    }
+                }
+            }
+        }
+        assert!(told > 1000, "{told}");
+    }
+}
