@@ -141,6 +141,7 @@ mod tests {
     use super::Survey;
     use crate::catalogue::{Catalogue, Shelf};
     use crate::document::Document;
+    use crate::geometry::DVec2;
     use crate::graph::Graph;
     use crate::grow::{Growth, walk};
     use crate::style::{ColorBy, Named, Style, Width};
@@ -154,7 +155,7 @@ mod tests {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
             let rule = Arc::new(document.resolve(&[]).unwrap().0);
-            let graph = Graph::compile(&rule, 4).unwrap();
+            let graph = Graph::compile(&rule, 3).unwrap();
             for (_, color_by) in ColorBy::NAMES {
                 for width in [Width::Pixels(1.0), Width::Relative(0.2)] {
                     let style = Style {
@@ -162,16 +163,16 @@ mod tests {
                         color_by: *color_by,
                         ..rule.style().clone()
                     };
-                    for steps in [0, 1, 4] {
+                    for steps in [0, 1, 3] {
                         let growth = Growth::steps(steps);
-                        let Some(known) = Survey::known(&graph, &growth, &style, 4) else {
+                        let Some(known) = Survey::known(&graph, &growth, &style, 3) else {
                             continue;
                         };
                         told += 1;
-                        let mut walked = Survey::new(&graph, &style, 4);
+                        let mut walked = Survey::new(&graph, &style, 3);
                         walk(&graph, &growth, &mut walked).unwrap();
                         let what = format!("{} at {steps} by {color_by:?}", entry.name);
-                        let far = |a: crate::geometry::DVec2, b| (a - b).length();
+                        let far = |a: DVec2, b: DVec2| (a - b).length();
                         assert!(
                             far(known.bounds.min(), walked.bounds.min()) < 1e-12,
                             "{what}"
