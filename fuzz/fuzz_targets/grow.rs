@@ -6,6 +6,8 @@
 
 #![no_main]
 
+mod mutate;
+
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -19,7 +21,8 @@ use kfrac::grow::{Growth, WalkError, Walked, extent};
 use kfrac::measure::similarity_dimension;
 use kfrac::render::{self, Format, Labels, Options, Size};
 use kfrac::rule::Rule;
-use libfuzzer_sys::fuzz_target;
+use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+use mutate::{Random, mutated};
 use num_bigint::BigUint;
 
 /// Few, so that an input takes milliseconds.
@@ -51,6 +54,19 @@ fuzz_target!(|bytes: &[u8]| {
             grown,
             "what was printed grows otherwise:\n{yaml}"
         );
+    }
+});
+
+fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
+    let mut random = Random::new(seed);
+    match str::from_utf8(&data[..size]) {
+        Ok(text) if random.below(3) > 0 => {
+            let text = mutated(text, &mut random);
+            let size = text.len().min(max_size);
+            data[..size].copy_from_slice(&text.as_bytes()[..size]);
+            size
+        }
+        _ => fuzzer_mutate(data, size, max_size),
     }
 });
 

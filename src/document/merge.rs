@@ -1,5 +1,7 @@
 //! What a rule takes over from the one that it extends.
 
+use std::collections::HashMap;
+
 use super::node::{Key, Node, Value};
 
 /// The entries of a mapping.
@@ -38,8 +40,10 @@ pub(super) fn merge(own: &mut Entries, parents: Entries) {
 
 /// Merges entry by entry; a parameter's value replaces the parent's and keeps its limits.
 pub(super) fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
+    let names = own.iter().map(|(key, _)| key.name.clone());
+    let numbers: HashMap<String, usize> = names.zip(0..).collect();
     for (key, inherited) in parents {
-        match own.iter_mut().find(|(known, _)| known.name == key.name) {
+        match numbers.get(&key.name).map(|&number| &mut own[number]) {
             None => own.push((key, inherited)),
             Some((own_key, node)) if params => {
                 if !matches!(node.value, Value::Mapping(_)) {

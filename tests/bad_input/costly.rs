@@ -106,6 +106,18 @@ fn components_count_as_often_as_they_are_named() {
     );
 }
 
+#[test]
+fn many_parameters_are_inherited() {
+    let folder = tempfile::tempdir().unwrap();
+    let params: String = (0..60_000).map(|i| format!("  p{i}: 1\n")).collect();
+    for (name, extends) in [("a", "koch"), ("b", "a.yaml"), ("many", "b.yaml")] {
+        let text = format!("extends: {extends}\nparams:\n{params}");
+        fs::write(folder.path().join(format!("{name}.yaml")), text).unwrap();
+    }
+    let outcome = kfrac(folder.path(), &CHECK);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.said);
+}
+
 fn graph_of(text: &str, steps: u32) -> Graph {
     let source = Source::new("hostile.yaml", text);
     let document = Document::read(&source, &Catalogue::embedded()).unwrap();
