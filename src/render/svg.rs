@@ -170,7 +170,7 @@ impl<W: Write> Surface for Svg<W> {
 
     fn end(&mut self) -> io::Result<()> {
         self.path.drain(&mut self.buffer);
-        self.path = PathData::default();
+        self.path.clear();
         self.buffer.extend_from_slice(b"\"/>\n");
         if self.buffer.len() > CHUNK {
             self.out.write_all(&self.buffer)?;

@@ -7,10 +7,50 @@ use crate::render::surface::Position;
 /// Lines are broken near this column, so that files can be read and compared.
 const LINE: usize = 100;
 
+/// Numbers up to this one, and down to its negative, are copied from a table.
+const SMALL: i64 = 999;
+
+const NUMBERS: usize = 1999;
+
+/// The text of every small number in the low bytes of a word, and its length in the highest.
+static DIGITS: [[u8; 8]; NUMBERS] = digits();
+
+#[expect(clippy::cast_possible_truncation, reason = "digits are small")]
+const fn digits() -> [[u8; 8]; NUMBERS] {
+    let mut table = [[0; 8]; NUMBERS];
+    let mut number = -SMALL;
+    while number <= SMALL {
+        let mut word = [0; 8];
+        let mut length = 0;
+        if number < 0 {
+            word[0] = b'-';
+            length = 1;
+        }
+        let value = number.unsigned_abs();
+        let mut power = 100;
+        while power > 0 {
+            if value >= power || power == 1 {
+                word[length] = b'0' + (value / power % 10) as u8;
+                length += 1;
+            }
+            power /= 10;
+        }
+        word[7] = length as u8;
+        table[(number + SMALL) as usize] = word;
+        number += 1;
+    }
+    table
+}
+
+/// No command is longer than this, with its numbers.
+const ROOM: usize = 256;
+
 /// Writes path data into a buffer.
 #[derive(Default)]
 pub(super) struct PathData {
+    /// The text, and room behind it.
     text: Vec<u8>,
+    end: usize,
     line_start: usize,
     /// The letter that the next numbers may follow without repeating it.
     command: u8,
@@ -22,14 +62,21 @@ pub(super) struct PathData {
 impl PathData {
     /// The number of bytes that wait to be written out.
     pub(super) fn len(&self) -> usize {
-        self.text.len()
+        self.end
     }
 
     /// Takes what has been written so far.
     pub(super) fn drain(&mut self, out: &mut Vec<u8>) {
-        let column = self.text.len().wrapping_sub(self.line_start);
-        out.append(&mut self.text);
+        let column = self.end.wrapping_sub(self.line_start);
+        out.extend_from_slice(&self.text[..self.end]);
+        self.end = 0;
         self.line_start = 0usize.wrapping_sub(column);
+    }
+
+    /// Begins a new path.
+    pub(super) fn clear(&mut self) {
+        (self.end, self.line_start) = (0, 0);
+        (self.command, self.after_number) = (0, false);
     }
 
     #[inline]
@@ -63,16 +110,32 @@ impl PathData {
     }
 
     pub(super) fn close(&mut self) {
-        self.text.push(b'z');
+        self.make_room();
+        self.push(b'z');
         self.command = 0;
         self.after_number = false;
         self.pen = self.start;
     }
 
     #[inline]
+    fn make_room(&mut self) {
+        if self.text.len() < self.end + ROOM {
+            self.text.resize(2 * (self.end + ROOM), 0);
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, byte: u8) {
+        self.text[self.end] = byte;
+        self.end += 1;
+    }
+
+    /// Begins a command.
+    #[inline]
     fn letter(&mut self, letter: u8) {
+        self.make_room();
         if self.command != letter || letter == b'M' {
-            self.text.push(letter);
+            self.push(letter);
             self.command = letter;
             self.after_number = false;
         }
@@ -81,15 +144,45 @@ impl PathData {
     #[inline]
     fn number(&mut self, value: i64) {
         if self.after_number {
-            if self.text.len().wrapping_sub(self.line_start) > LINE {
-                self.text.push(b'\n');
-                self.line_start = self.text.len();
+            if self.end.wrapping_sub(self.line_start) > LINE {
+                self.push(b'\n');
+                self.line_start = self.end;
             } else if value >= 0 {
-                self.text.push(b' ');
+                self.push(b' ');
             }
         }
-        let mut buffer = itoa::Buffer::new();
-        self.text.extend_from_slice(buffer.format(value).as_bytes());
         self.after_number = true;
+        let place = usize::try_from(value.wrapping_add(SMALL)).ok();
+        if let Some(word) = place.and_then(|place| DIGITS.get(place)) {
+            self.text[self.end..self.end + 8].copy_from_slice(word);
+            self.end += usize::from(word[7]);
+        } else {
+            let mut buffer = itoa::Buffer::new();
+            let text = buffer.format(value).as_bytes();
+            self.text[self.end..self.end + text.len()].copy_from_slice(text);
+            self.end += text.len();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PathData;
+
+    #[test]
+    fn numbers_are_written_as_they_are_everywhere() {
+        for range in [-1_100..1_100, -1_000_010..-999_990, i64::MAX - 2..i64::MAX] {
+            for value in range {
+                let mut path = PathData::default();
+                path.move_to([value, value]);
+                let mut text = Vec::new();
+                path.drain(&mut text);
+                let space = if value < 0 { "" } else { " " };
+                assert_eq!(
+                    String::from_utf8(text).unwrap(),
+                    format!("M{value}{space}{value}")
+                );
+            }
+        }
     }
 }
