@@ -492,15 +492,20 @@ fn a_full_device_is_an_error() {
 #[test]
 fn a_closed_pipe_is_no_failure() {
     let folder = tempfile::tempdir().unwrap();
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
-        .current_dir(folder.path())
-        .args(["grow", "koch", "--steps", "9", "--format", "csv", "-o", "-"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    assert_eq!(child.wait().unwrap().code(), Some(0));
+    for format in ["csv", "json", "svg", "png"] {
+        let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
+            .current_dir(folder.path())
+            .args([
+                "grow", "dragon", "--steps", "14", "--size", "2000", "-o", "-",
+            ])
+            .args(["--format", format])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{format}");
+    }
 }
 
 #[cfg(unix)]

@@ -88,10 +88,13 @@ impl Png {
 
     /// Encodes the picture.
     pub(super) fn write(mut self, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
-        match self.parts.pop() {
-            Some((pixmap, _)) => encode::encode(&pixmap, labels, out),
-            None => Ok(()),
-        }
+        let Some((pixmap, _)) = self.parts.pop() else {
+            return Ok(());
+        };
+        // Into memory first: the encoder would not tell why `out` fails.
+        let mut bytes = Vec::new();
+        encode::encode(&pixmap, labels, &mut bytes)?;
+        out.write_all(&bytes)
     }
 
     /// The pixels that are drawn on.
