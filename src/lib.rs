@@ -44,6 +44,7 @@ pub mod geometry;
 pub mod graph;
 pub mod grow;
 pub mod measure;
+pub mod parallel;
 pub mod render;
 pub mod rule;
 pub mod style;

@@ -235,6 +235,8 @@ fn the_command_line_has_its_own_exit_status() {
         &["grow"][..],
         &["grow", "koch", "--steps", "-1"],
         &["grow", "koch", "--size", "0x0"],
+        &["grow", "koch", "--threads", "0"],
+        &["sheet", "koch", "--threads", "-1"],
         &["grow", "koch", "--stroke", "blurple"],
         &["grow", "koch", "--palette", "virids"],
         &["grow", "koch", "-o", "koch.bmp"],
@@ -486,6 +488,35 @@ fn a_full_device_is_an_error() {
         "{}",
         stderr(&full)
     );
+}
+
+/// Files of many chunks are the same to the byte.
+#[test]
+fn what_is_written_does_not_depend_on_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for (rule, steps) in [
+        ("koch", "8"),
+        ("dragon", "15"),
+        ("vegetation", "14"),
+        ("carpet", "5"),
+    ] {
+        for format in ["svg", "png", "csv", "json"] {
+            let mut written = ["1", "2", "5"].map(|threads| {
+                let file = folder.path().join("file");
+                let arguments = [
+                    "grow", rule, "--steps", steps, "--size", "500", "-o", "file",
+                ];
+                kfrac(folder.path())
+                    .args(arguments)
+                    .args(["--format", format, "--threads", threads])
+                    .assert()
+                    .success();
+                fs::read(file).unwrap()
+            });
+            let one = std::mem::take(&mut written[0]);
+            assert!(one == written[1] && one == written[2], "{rule} as {format}");
+        }
+    }
 }
 
 #[cfg(unix)]

@@ -8,6 +8,7 @@ mod lists;
 mod rules;
 
 use std::convert::Infallible;
+use std::num::NonZero;
 use std::sync::Arc;
 
 use kfrac::catalogue::{Catalogue, Shelf};
@@ -253,16 +254,17 @@ proptest! {
     /// The same input gives the same bytes.
     #[test]
     fn two_runs_give_the_same_bytes(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
-        let draw = || {
+        let draw = |threads| {
             let rule = read(&text);
             let graph = Graph::compile(&rule, steps).unwrap();
             let mut bytes = Vec::new();
             let growth = Growth { seed, ..Growth::steps(steps) };
-            let options = Options { size: Size::Long(300), ..Options::of(&rule) };
+            let options = Options { size: Size::Long(300), threads, ..Options::of(&rule) };
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)
         };
-        prop_assert_eq!(draw(), draw());
+        let [one, three] = [1, 3].map(|threads| NonZero::new(threads).unwrap());
+        prop_assert_eq!(draw(one), draw(three));
     }
 }
 

@@ -19,6 +19,7 @@ use kfrac::geometry::Bounds;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
+use kfrac::parallel::all_cores;
 use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
 use num_bigint::BigUint;
@@ -91,7 +92,8 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
 
 fn table_of(graph: &Graph, steps: u32, format: Format) -> String {
     let mut bytes = Vec::new();
-    export::write(graph, &Growth::steps(steps), format, &mut bytes).unwrap();
+    let growth = Growth::steps(steps);
+    export::write(graph, &growth, format, all_cores(), &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()
 }
 

@@ -9,6 +9,7 @@
 mod mutate;
 
 use std::fmt::Debug;
+use std::num::NonZero;
 use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
@@ -108,7 +109,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
         ..Growth::steps(steps)
     };
     let mut table = Vec::new();
-    let walked = export::write(&graph, &growth, export::Format::Csv, &mut table);
+    let walked = export::write(&graph, &growth, export::Format::Csv, NonZero::<usize>::MIN, &mut table);
     if let Ok(walked) = walked {
         assert!(allowed, "refused, but grown");
         if let Some(level) = level {
@@ -160,6 +161,7 @@ fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, S
             description: description.about.clone().unwrap_or_default(),
             provenance: String::new(),
         },
+        threads: NonZero::<usize>::MIN,
         ..Options::of(rule)
     };
     let mut svg = Vec::new();

@@ -7,8 +7,7 @@ use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
 use crate::export;
-use crate::graph::Graph;
-use crate::grow::Growth;
+use crate::grow::Walked;
 use crate::render::{self, RenderError, Size};
 use crate::style::Named;
 use crate::wording;
@@ -108,7 +107,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 let options = arguments.options(&loaded, steps, format);
                 render::write(&graph, &growth, &options, out).map(Wrote::from)
             }
-            Format::Table(format) => write_table(&graph, &growth, format, out),
+            Format::Table(format) => {
+                let threads = arguments.growth.threads();
+                let walked = export::write(&graph, &growth, format, threads, out);
+                walked.map(Wrote::from).map_err(RenderError::from)
+            }
         }
         .map_err(|error| arguments.growth.explain(error, &loaded, path))
     })?;
@@ -140,6 +143,7 @@ impl Arguments {
             style: self.picture.style(&loaded.rule),
             view: self.picture.view(&loaded.rule),
             size: self.size,
+            threads: self.growth.threads(),
             labels: labels(loaded, &format!("Step {steps}"), "grow", options),
         }
     }
@@ -162,6 +166,16 @@ impl From<render::Picture> for Wrote {
     }
 }
 
+impl From<Walked> for Wrote {
+    fn from(walked: Walked) -> Self {
+        Self {
+            elements: walked.elements,
+            fractals: walked.fractals,
+            pixels: None,
+        }
+    }
+}
+
 impl Wrote {
     fn summary(&self) -> String {
         let mut summary = wording::counted(&self.elements.into(), "element");
@@ -174,18 +188,4 @@ impl Wrote {
         }
         summary
     }
-}
-
-fn write_table(
-    graph: &Graph,
-    growth: &Growth<'_>,
-    format: export::Format,
-    out: &mut impl std::io::Write,
-) -> Result<Wrote, RenderError> {
-    let walked = export::write(graph, growth, format, out)?;
-    Ok(Wrote {
-        elements: walked.elements,
-        fractals: walked.fractals,
-        pixels: None,
-    })
 }

@@ -1,11 +1,13 @@
 //! What commands that grow a rule have in common.
 
+use std::num::NonZero;
 use std::path::Path;
 
 use anyhow::anyhow;
 
 use crate::graph::{Graph, TooLarge};
 use crate::grow::{Growth, Progress, WalkError};
+use crate::parallel::all_cores;
 use crate::render::RenderError;
 use crate::wording::{counted, grouped};
 
@@ -23,12 +25,33 @@ pub(super) struct GrowthArguments {
     /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N", default_value_t = 50_000_000)]
     max_elements: u64,
+    /// How many threads work [default: as many as there are cores]
+    ///
+    /// What is written does not depend on it.
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    threads: Option<NonZero<usize>>,
     /// Says nothing but what is wrong
     #[arg(long, short)]
     pub(super) quiet: bool,
 }
 
+/// Reads a number of threads.
+fn threads(text: &str) -> Result<NonZero<usize>, String> {
+    const MOST: usize = 1024;
+    match text.parse::<NonZero<usize>>() {
+        Ok(threads) if threads.get() <= MOST => Ok(threads),
+        _ => Err(format!(
+            "a number of threads is a whole number from 1 to {MOST}"
+        )),
+    }
+}
+
 impl GrowthArguments {
+    /// The number of threads.
+    pub(super) fn threads(&self) -> NonZero<usize> {
+        self.threads.unwrap_or_else(all_cores)
+    }
+
     /// Refuses a step that has too many elements, as far as that can be told before.
     pub(super) fn check(&self, steps: u32, graph: &Graph, loaded: &Loaded) -> Result<(), Failure> {
         let checked = graph.check_size(steps, self.max_elements);

@@ -1,7 +1,10 @@
 use std::io::{self, Write};
+use std::num::NonZero;
 
+use crate::geometry::{DVec2, Direction};
 use crate::graph::Graph;
 use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, Walked, walk};
+use crate::parallel::{Line, in_order};
 
 /// How the rows of a table are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +32,8 @@ const COLUMNS: [&str; 10] = [
 
 /// Grows a graph and writes the elements of the approximant, a row each, in order of traversal.
 ///
-/// Coordinates are the shortest decimals that read back as the same doubles.
+/// Coordinates are the shortest decimals that read back as the same doubles. The bytes do not depend
+/// on the number of threads.
 ///
 /// # Errors
 ///
@@ -38,6 +42,7 @@ pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
     format: Format,
+    threads: NonZero<usize>,
     out: &mut impl Write,
 ) -> Result<Walked, WalkError<io::Error>> {
     if format == Format::Csv {
@@ -48,35 +53,92 @@ pub fn write(
     {
         progress.expect(elements);
     }
-    let mut rows = Rows {
-        graph,
-        format,
-        fractal: Fractal::default(),
-        row: Vec::new(),
-        out,
-    };
-    walk(graph, growth, &mut rows)
+    in_order(
+        threads,
+        |rows: &mut Rows| rows.format(format),
+        |line| {
+            let mut writer = Writer {
+                graph,
+                fractal: Fractal::default(),
+                rows: Rows::default(),
+                line,
+                out,
+            };
+            let walked = walk(graph, growth, &mut writer)?;
+            writer.finish().map_err(WalkError::Visitor)?;
+            Ok(walked)
+        },
+    )
 }
 
-struct Rows<'a, W: Write> {
-    graph: &'a Graph,
-    format: Format,
+/// So many rows are written at once.
+const MANY: usize = 4096;
+
+/// What a row tells.
+struct Row {
     fractal: Fractal,
-    row: Vec<u8>,
-    out: &'a mut W,
+    index: u64,
+    ends: [DVec2; 2],
+    fertile: bool,
+    direction: Direction,
+    visible: bool,
 }
 
-impl<W: Write> Rows<'_, W> {
+/// Rows, and the text that they become.
+#[derive(Default)]
+struct Rows {
+    rows: Vec<Row>,
+    text: Vec<u8>,
+}
+
+impl Rows {
+    fn format(&mut self, format: Format) {
+        self.text.clear();
+        let mut line = Cells {
+            format,
+            text: &mut self.text,
+        };
+        for row in &self.rows {
+            line.row(row);
+        }
+    }
+}
+
+/// Writes the cells of rows.
+struct Cells<'t> {
+    format: Format,
+    text: &'t mut Vec<u8>,
+}
+
+impl Cells<'_> {
+    fn row(&mut self, row: &Row) {
+        let [from, to] = row.ends;
+        self.whole(0, row.fractal.number);
+        self.whole(1, u64::from(row.fractal.age));
+        self.whole(2, row.index);
+        self.coordinate(3, from.x);
+        self.coordinate(4, from.y);
+        self.coordinate(5, to.x);
+        self.coordinate(6, to.y);
+        self.flag(7, row.fertile);
+        self.whole(8, u64::from(row.direction.number()));
+        self.flag(9, row.visible);
+        if self.format == Format::JsonLines {
+            self.text.push(b'}');
+        }
+        self.text.push(b'\n');
+    }
+
     fn cell(&mut self, column: usize, text: &str) {
         if self.format == Format::JsonLines {
-            self.row
+            self.text
                 .extend_from_slice(if column == 0 { b"{\"" } else { b",\"" });
-            self.row.extend_from_slice(COLUMNS[column].as_bytes());
-            self.row.extend_from_slice(b"\":");
+            self.text.extend_from_slice(COLUMNS[column].as_bytes());
+            self.text.extend_from_slice(b"\":");
         } else if column > 0 {
-            self.row.push(b',');
+            self.text.push(b',');
         }
-        self.row.extend_from_slice(text.as_bytes());
+        self.text.extend_from_slice(text.as_bytes());
     }
 
     fn coordinate(&mut self, column: usize, value: f64) {
@@ -96,7 +158,33 @@ impl<W: Write> Rows<'_, W> {
     }
 }
 
-impl<W: Write> Visitor for Rows<'_, W> {
+/// Collects rows and has them written.
+struct Writer<'a, 'l, W: Write> {
+    graph: &'a Graph,
+    fractal: Fractal,
+    rows: Rows,
+    line: &'a mut Line<'l, Rows>,
+    out: &'a mut W,
+}
+
+impl<W: Write> Writer<'_, '_, W> {
+    fn hand_on(&mut self) -> io::Result<()> {
+        let mut next = self.line.piece();
+        next.rows.clear();
+        let rows = std::mem::replace(&mut self.rows, next);
+        let out = &mut self.out;
+        self.line
+            .hand_on(rows, &mut |rows| out.write_all(&rows.text))
+    }
+
+    fn finish(mut self) -> io::Result<()> {
+        self.hand_on()?;
+        let out = &mut self.out;
+        self.line.finish(&mut |rows| out.write_all(&rows.text))
+    }
+}
+
+impl<W: Write> Visitor for Writer<'_, '_, W> {
     type Error = io::Error;
 
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
@@ -105,27 +193,23 @@ impl<W: Write> Visitor for Rows<'_, W> {
     }
 
     fn element(&mut self, element: &Element) -> io::Result<()> {
-        let [from, to] = element.frame.ends();
-        if !(from.is_finite() && to.is_finite()) {
+        let ends = element.frame.ends();
+        if !ends.iter().all(|end| end.is_finite()) {
             let message = "an element lies beyond the range of numbers";
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
-        self.row.clear();
-        self.whole(0, self.fractal.number);
-        self.whole(1, u64::from(self.fractal.age));
-        self.whole(2, element.index);
-        self.coordinate(3, from.x);
-        self.coordinate(4, from.y);
-        self.coordinate(5, to.x);
-        self.coordinate(6, to.y);
-        self.flag(7, element.fertile);
-        self.whole(8, u64::from(element.frame.direction.number()));
-        self.flag(9, self.graph.objects()[element.object].visible);
-        if self.format == Format::JsonLines {
-            self.row.push(b'}');
+        self.rows.rows.push(Row {
+            fractal: self.fractal,
+            index: element.index,
+            ends,
+            fertile: element.fertile,
+            direction: element.frame.direction,
+            visible: self.graph.objects()[element.object].visible,
+        });
+        if self.rows.rows.len() == MANY {
+            return self.hand_on();
         }
-        self.row.push(b'\n');
-        self.out.write_all(&self.row)
+        Ok(())
     }
 
     fn end(&mut self, _: bool) -> io::Result<()> {

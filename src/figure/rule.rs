@@ -17,6 +17,8 @@ mod words;
 
 use std::io::Write;
 
+use std::num::NonZero;
+
 use crate::document::RuleDocument;
 use crate::geometry::DVec2;
 use crate::render::{Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing};
@@ -69,7 +71,9 @@ pub fn write(
         size: options.size,
         background: options.background,
     };
-    write_drawing(&figure, options.format, &options.labels, out)?;
+    // A figure is small.
+    let one = NonZero::<usize>::MIN;
+    write_drawing(&figure, options.format, &options.labels, one, out)?;
     Ok(figure.size())
 }
 

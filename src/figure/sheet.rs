@@ -97,7 +97,13 @@ pub fn write(
         font,
         style,
     };
-    write_drawing(&sheet, options.format, &options.labels, out)?;
+    write_drawing(
+        &sheet,
+        options.format,
+        &options.labels,
+        options.threads,
+        out,
+    )?;
     Ok(Written {
         size: sheet.size(),
         elements,

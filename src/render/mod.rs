@@ -26,9 +26,11 @@ pub(crate) use tracer::Tracer;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
+use std::num::NonZero;
 
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
+use crate::parallel::all_cores;
 use crate::rule::Rule;
 use crate::style::{Colour, Named, Style, View, Width};
 
@@ -75,6 +77,9 @@ pub struct Options {
     pub size: Size,
     /// What the file says of itself.
     pub labels: Labels,
+    /// The threads that work on it, as many as the machine has cores unless said otherwise. The
+    /// bytes do not depend on them.
+    pub threads: NonZero<usize>,
 }
 
 impl Default for Options {
@@ -85,6 +90,7 @@ impl Default for Options {
             view: View::default(),
             size: Size::Long(1024),
             labels: Labels::default(),
+            threads: all_cores(),
         }
     }
 }
@@ -176,7 +182,13 @@ pub fn write(
     let survey = Survey::of(graph, growth, style, growth.steps)?;
     let canvas = Canvas::of(std::slice::from_ref(&survey), view, options.size)?;
     let scene = Scene::new(&survey, growth, canvas);
-    write_drawing(&scene, options.format, &options.labels, out)?;
+    let Options {
+        format,
+        labels,
+        threads,
+        ..
+    } = options;
+    write_drawing(&scene, *format, labels, *threads, out)?;
     Ok(Picture {
         size: canvas.size(),
         elements: survey.elements,
@@ -189,14 +201,19 @@ pub(crate) fn write_drawing(
     drawing: &impl Drawing,
     format: Format,
     labels: &Labels,
+    threads: NonZero<usize>,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
     let (size, background) = (drawing.size(), drawing.background());
     match format {
         Format::Svg => {
-            let mut svg = Svg::begin(out, size, background, drawing.pen(), labels)?;
-            drawing.draw(&mut svg)?;
-            svg.finish()?;
+            svg::on_threads(threads, |line| {
+                let pen = drawing.pen();
+                let mut svg = Svg::begin(out, size, background, pen, labels, line)?;
+                drawing.draw(&mut svg)?;
+                svg.finish()?;
+                Ok::<(), RenderError>(())
+            })?;
         }
         Format::Png => {
             let mut png = Png::begin(size, background)?;

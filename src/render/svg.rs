@@ -1,23 +1,25 @@
 //! SVG: paths in whole hundredths of a pixel, streamed.
 
+mod chunk;
 mod path;
 
 use std::io::{self, Write};
+use std::num::NonZero;
 
+use crate::parallel::{Line, in_order};
 use crate::style::{Cap, Colour, Join, Named};
 
 use super::Labels;
 use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
-use path::PathData;
-
-/// Path data is handed on in pieces of about this many bytes.
-const CHUNK: usize = 1 << 16;
+use chunk::Chunk;
 
 /// An SVG document that is being written.
-pub(super) struct Svg<W> {
+pub(super) struct Svg<'l, 'w, W> {
     out: W,
-    buffer: Vec<u8>,
-    path: PathData,
+    chunk: Chunk,
+    line: &'l mut Line<'w, Chunk>,
+    /// Where the pen stands and the subpath starts.
+    at: [Position; 2],
     /// The pen that all strokes have that say nothing else.
     pen: Pen,
     /// The colour of strokes in the group that is open.
@@ -25,7 +27,15 @@ pub(super) struct Svg<W> {
     label: Option<String>,
 }
 
-impl<W: Write> Svg<W> {
+/// Writes the document's text, chunk by chunk, on so many threads.
+pub(super) fn on_threads<T>(
+    threads: NonZero<usize>,
+    write: impl FnOnce(&mut Line<'_, Chunk>) -> T,
+) -> T {
+    in_order(threads, Chunk::format, write)
+}
+
+impl<'l, 'w, W: Write> Svg<'l, 'w, W> {
     /// Begins a document whose strokes are mostly drawn with `pen`.
     pub(super) fn begin(
         mut out: W,
@@ -33,6 +43,7 @@ impl<W: Write> Svg<W> {
         background: Option<Colour>,
         pen: Pen,
         labels: &Labels,
+        line: &'l mut Line<'w, Chunk>,
     ) -> io::Result<Self> {
         let [wide, high] = fine([width, height]);
         writeln!(
@@ -66,8 +77,9 @@ impl<W: Write> Svg<W> {
         out.write_all(b">\n")?;
         Ok(Self {
             out,
-            buffer: Vec::with_capacity(2 * CHUNK),
-            path: PathData::default(),
+            chunk: line.piece(),
+            line,
+            at: [[0, 0]; 2],
             pen,
             group: None,
             label: None,
@@ -77,104 +89,116 @@ impl<W: Write> Svg<W> {
     /// Ends the document.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.close_group();
-        self.buffer.extend_from_slice(b"</g>\n</svg>\n");
-        self.out.write_all(&self.buffer)
+        self.chunk.write(b"</g>\n</svg>\n");
+        self.next_chunk(None)?;
+        let out = &mut self.out;
+        self.line.finish(&mut |chunk| out.write_all(&chunk.text))
     }
 
-    fn open_group(&mut self, colour: Colour) -> io::Result<()> {
+    /// Hands the chunk on and begins the next one, within a path or not.
+    fn next_chunk(&mut self, within: Option<[Position; 2]>) -> io::Result<()> {
+        let mut next = self.line.piece();
+        next.begin(within);
+        let chunk = std::mem::replace(&mut self.chunk, next);
+        let out = &mut self.out;
+        self.line
+            .hand_on(chunk, &mut |chunk| out.write_all(&chunk.text))
+    }
+
+    fn open_group(&mut self, colour: Colour) {
         if self.group != Some(colour) {
             self.close_group();
             self.group = Some(colour);
             let opacity = opacity("stroke", colour);
-            writeln!(self.buffer, r#"<g stroke="{colour}"{opacity}>"#)?;
+            self.text(&format!("<g stroke=\"{colour}\"{opacity}>\n"));
         }
-        Ok(())
     }
 
     fn close_group(&mut self) {
         if self.group.take().is_some() {
-            self.buffer.extend_from_slice(b"</g>\n");
+            self.text("</g>\n");
         }
+    }
+
+    fn text(&mut self, text: &str) {
+        self.chunk.write(text.as_bytes());
     }
 
     /// The attributes in which a pen differs from that of the document.
-    fn pen(&mut self, pen: Pen) -> io::Result<()> {
-        let out = &mut self.buffer;
+    fn pen(&mut self, pen: Pen) {
         if pen.width != self.pen.width {
-            write!(out, r#" stroke-width="{:.1}""#, pen.width * FINE)?;
+            self.text(&format!(r#" stroke-width="{:.1}""#, pen.width * FINE));
         }
         if pen.cap != self.pen.cap {
-            write!(out, r#" stroke-linecap="{}""#, pen.cap.name())?;
+            self.text(&format!(r#" stroke-linecap="{}""#, pen.cap.name()));
         }
         if pen.join != self.pen.join {
-            write!(out, r#" stroke-linejoin="{}""#, pen.join.name())?;
+            self.text(&format!(r#" stroke-linejoin="{}""#, pen.join.name()));
         }
         if pen.dash > 0.0 {
-            write!(out, r#" stroke-dasharray="{:.1}""#, pen.dash * FINE)?;
+            self.text(&format!(r#" stroke-dasharray="{:.1}""#, pen.dash * FINE));
         }
-        Ok(())
     }
 }
 
-impl<W: Write> Surface for Svg<W> {
+impl<W: Write> Surface for Svg<'_, '_, W> {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
         if let Some(Stroke { colour, .. }) = paint.stroke {
-            self.open_group(colour)?;
+            self.open_group(colour);
         }
-        self.buffer.extend_from_slice(b"<path");
+        self.text("<path");
         if let Some(label) = self.label.take() {
             let label = escaped(&label).replace('"', "&quot;");
-            write!(self.buffer, r#" aria-label="{label}""#)?;
+            self.text(&format!(r#" aria-label="{label}""#));
         }
         if let Some(fill) = paint.fill {
-            write!(self.buffer, r#" fill="{fill}"{}"#, opacity("fill", fill))?;
+            self.text(&format!(r#" fill="{fill}"{}"#, opacity("fill", fill)));
         }
         match paint.stroke {
-            Some(stroke) => self.pen(stroke.pen)?,
-            None if self.group.is_some() => self.buffer.extend_from_slice(br#" stroke="none""#),
+            Some(stroke) => self.pen(stroke.pen),
+            None if self.group.is_some() => self.text(r#" stroke="none""#),
             None => {}
         }
-        self.buffer.extend_from_slice(b" d=\"");
+        self.text(" d=\"");
         Ok(())
     }
 
     #[inline]
     fn move_to(&mut self, to: Position) {
-        self.path.move_to(to);
+        self.at = [to, to];
+        self.chunk.move_to(to);
     }
 
     #[inline]
     fn line_to(&mut self, to: Position) {
-        self.path.line_to(to);
+        self.at[0] = to;
+        self.chunk.line_to(to);
     }
 
     #[inline]
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        self.path.curve_to(a, b, to);
+        self.at[0] = to;
+        self.chunk.curve_to([a, b, to]);
     }
 
     #[inline]
     fn close(&mut self) {
-        self.path.close();
+        self.at[0] = self.at[1];
+        self.chunk.close();
     }
 
     #[inline]
     fn hand_on(&mut self) -> io::Result<()> {
-        if self.path.len() > CHUNK {
-            self.path.drain(&mut self.buffer);
-            self.out.write_all(&self.buffer)?;
-            self.buffer.clear();
+        if self.chunk.is_full() {
+            return self.next_chunk(Some(self.at));
         }
         Ok(())
     }
 
     fn end(&mut self) -> io::Result<()> {
-        self.path.drain(&mut self.buffer);
-        self.path.clear();
-        self.buffer.extend_from_slice(b"\"/>\n");
-        if self.buffer.len() > CHUNK {
-            self.out.write_all(&self.buffer)?;
-            self.buffer.clear();
+        self.text("\"/>\n");
+        if self.chunk.is_full() {
+            return self.next_chunk(None);
         }
         Ok(())
     }
@@ -182,15 +206,15 @@ impl<W: Write> Surface for Svg<W> {
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
         self.close_group();
         let ([x, y], [width, height]) = (fine(corner), fine(size));
-        writeln!(
-            self.buffer,
-            r#"<svg x="{x}" y="{y}" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
-        )
+        self.text(&format!(
+            "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
+        ));
+        Ok(())
     }
 
     fn leave(&mut self) -> io::Result<()> {
         self.close_group();
-        self.buffer.extend_from_slice(b"</svg>\n");
+        self.text("</svg>\n");
         Ok(())
     }
 

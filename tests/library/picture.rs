@@ -72,6 +72,12 @@ fn subpaths(data: &str) -> Vec<Subpath> {
     let mut rest = data;
     let mut command = ' ';
     while let Some(first) = rest.chars().next() {
+        // Long paths go on in a new line, which XML makes a space, with a new letter.
+        let line = rest.strip_prefix(' ');
+        if let Some(line) = line.filter(|line| line.starts_with(char::is_alphabetic)) {
+            rest = line;
+            continue;
+        }
         if first.is_ascii_alphabetic() {
             command = first;
             rest = &rest[1..];

@@ -60,23 +60,21 @@ pub(super) struct PathData {
 }
 
 impl PathData {
-    /// The number of bytes that wait to be written out.
-    pub(super) fn len(&self) -> usize {
-        self.end
-    }
-
     /// Takes what has been written so far.
     pub(super) fn drain(&mut self, out: &mut Vec<u8>) {
-        let column = self.end.wrapping_sub(self.line_start);
         out.extend_from_slice(&self.text[..self.end]);
         self.end = 0;
-        self.line_start = 0usize.wrapping_sub(column);
     }
 
     /// Begins a new path.
     pub(super) fn clear(&mut self) {
         (self.end, self.line_start) = (0, 0);
         (self.command, self.after_number) = (0, false);
+    }
+
+    /// Goes on with a path, on a new line.
+    pub(super) fn go_on(&mut self, pen: Position, start: Position) {
+        (self.pen, self.start) = (pen, start);
     }
 
     #[inline]
@@ -144,7 +142,7 @@ impl PathData {
     #[inline]
     fn number(&mut self, value: i64) {
         if self.after_number {
-            if self.end.wrapping_sub(self.line_start) > LINE {
+            if self.end - self.line_start > LINE {
                 self.push(b'\n');
                 self.line_start = self.end;
             } else if value >= 0 {
