@@ -1,9 +1,9 @@
 //! Numbers as people read them.
 
-use num_bigint::BigUint;
+use crate::graph::Count;
 
 /// A whole number with commas between thousands; a very long one by its first digits and its size.
-pub(crate) fn grouped(number: &BigUint) -> String {
+pub(crate) fn grouped(number: &Count) -> String {
     const LONG: usize = 60;
     let digits = number.to_string();
     if digits.len() > LONG {
@@ -39,8 +39,8 @@ pub(crate) fn bytes(count: u64) -> String {
 }
 
 /// "1 element", "2 elements".
-pub(crate) fn counted(number: &BigUint, noun: &str) -> String {
-    let s = if *number == BigUint::from(1u8) {
+pub(crate) fn counted(number: &Count, noun: &str) -> String {
+    let s = if *number == Count::from(1u64) {
         ""
     } else {
         "s"

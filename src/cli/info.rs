@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::catalogue::Catalogue;
 use crate::geometry::Bounds;
-use crate::graph::{Graph, Level};
+use crate::graph::{Count, Graph, Level};
 use crate::grow::{Growth, extent};
 use crate::measure::similarity_dimension;
 use crate::rule::Parameter;
@@ -55,9 +55,12 @@ struct Info<'a> {
     random: bool,
     regular: bool,
     steps: u32,
-    elements: Option<Vec<String>>,
-    fertile: Option<Vec<String>>,
-    fractals: Option<Vec<String>>,
+    #[serde(serialize_with = "decimals")]
+    elements: Option<Vec<Count>>,
+    #[serde(serialize_with = "decimals")]
+    fertile: Option<Vec<Count>>,
+    #[serde(serialize_with = "decimals")]
+    fractals: Option<Vec<Count>>,
     length: Option<Vec<Option<f64>>>,
     area: Option<Vec<Option<f64>>>,
     bounds: Option<Corners>,
@@ -77,6 +80,17 @@ struct Corners {
 struct Dimension {
     similarity: Option<f64>,
     note: Option<String>,
+}
+
+/// Decimal strings: the numbers may be larger than those of JSON's readers.
+fn decimals<S: serde::Serializer>(
+    counts: &Option<Vec<Count>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match counts {
+        Some(counts) => serializer.collect_seq(counts.iter().map(Count::to_string)),
+        None => serializer.serialize_none(),
+    }
 }
 
 /// Whole numbers without a fraction, as in the tables.
@@ -115,10 +129,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 
 fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
     let levels = levels(graph, steps);
-    let counts = |count: fn(&Level) -> String| {
+    let counts = |count: fn(&Level) -> &Count| {
         levels
             .as_ref()
-            .map(|levels| levels.iter().map(count).collect())
+            .map(|levels| levels.iter().map(count).cloned().collect())
     };
     // A measure that one step does not have, none has; a step beyond a double's range has none.
     let measures = |measure: fn(&Level) -> Option<f64>| {
@@ -146,9 +160,9 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         random: graph.draws(),
         regular: graph.is_regular(),
         steps,
-        elements: counts(|level| level.elements.to_string()),
-        fertile: counts(|level| level.fertile.to_string()),
-        fractals: counts(|level| level.fractals.to_string()),
+        elements: counts(|level| &level.elements),
+        fertile: counts(|level| &level.fertile),
+        fractals: counts(|level| &level.fractals),
         length: measures(|level| level.length),
         area: measures(|level| level.area),
         bounds: bounds(graph, steps).as_ref().map(corners),
@@ -284,23 +298,18 @@ fn parameter_line(parameter: &Parameter) -> String {
 }
 
 /// The forecast, a row a step; long numbers are given by their size.
-fn table(info: &Info<'_>, elements: &[String]) -> String {
-    let short = |digits: &str| {
-        digits
-            .parse()
-            .map_or_else(|_| digits.into(), |number| wording::grouped(&number))
-    };
+fn table(info: &Info<'_>, elements: &[Count]) -> String {
     let mut rows = vec![["step", "elements", "fertile", "fractals", "length"].map(String::from)];
     for step in 0..elements.len() {
-        let at = |column: &Option<Vec<String>>| {
+        let at = |column: &Option<Vec<Count>>| {
             column
                 .as_ref()
-                .map_or("-".into(), |column| short(&column[step]))
+                .map_or("-".into(), |column| wording::grouped(&column[step]))
         };
         let length = info.length.as_ref().and_then(|lengths| lengths[step]);
         rows.push([
             step.to_string(),
-            short(&elements[step]),
+            wording::grouped(&elements[step]),
             at(&info.fertile),
             at(&info.fractals),
             length.map_or("-".into(), |length| format!("{length:.6}")),
