@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 use crate::geometry::Direction;
-use crate::rule::Placement;
+use crate::rule::{BaseElement, Placement};
 
 use super::{Alternative, Chain, Count, Graph, Replacement};
 
@@ -40,6 +40,8 @@ pub struct Forecast<'g> {
     /// How many tallies have been added.
     work: usize,
     outlines: Outlines,
+    /// The signed areas of the base elements, by number.
+    areas: Vec<f64>,
     /// The area that the closed paths through the elements' end points enclose.
     path_area: f64,
 }
@@ -279,6 +281,11 @@ impl<'g> Forecast<'g> {
             new_lengths: [0.0; 2],
             work: 0,
             outlines: graph.outlines(),
+            areas: graph
+                .base_elements()
+                .iter()
+                .map(BaseElement::signed_area)
+                .collect(),
             path_area: area_under(&graph.initiator).abs(),
         };
         let orientation = area_under(&graph.initiator).signum();
@@ -320,7 +327,7 @@ impl<'g> Forecast<'g> {
         let object = &self.graph.objects[object];
         let base_element = &self.graph.base_elements()[object.base_element];
         if object.visible && base_element.is_closed() {
-            base_element.signed_area().abs()
+            self.areas[object.base_element].abs()
         } else {
             0.0
         }
@@ -359,7 +366,7 @@ impl<'g> Forecast<'g> {
         let fertile = all().filter(|(object, _)| self.is_fertile(**object));
         let bulge = |(&object, tally): (&usize, &Tally)| {
             let number = self.graph.objects[object].base_element;
-            tally.sums.signed * self.graph.base_elements()[number].signed_area()
+            tally.sums.signed * self.areas[number]
         };
         Level {
             elements: self.elements(),
