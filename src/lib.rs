@@ -21,7 +21,7 @@
 //!     │  grow       a depth-first walk
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG, PNG
+//!     ├── render    pictures: SVG, PNG; estimate: how large they will be
 //!     ├── figure    figures: the rule itself, approximants side by side
 //!     └── export    tables: CSV, JSON
 //! ```
@@ -37,6 +37,7 @@ pub mod catalogue;
 pub mod cli;
 pub mod diagnostic;
 pub mod document;
+pub mod estimate;
 pub mod export;
 pub mod expression;
 pub mod figure;

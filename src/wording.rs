@@ -1,9 +1,9 @@
 //! Numbers as people read them.
 
-use num_bigint::BigUint;
+use crate::graph::Count;
 
 /// A whole number with commas between thousands; a very long one by its first digits and its size.
-pub(crate) fn grouped(number: &BigUint) -> String {
+pub(crate) fn grouped(number: &Count) -> String {
     const LONG: usize = 60;
     let digits = number.to_string();
     if digits.len() > LONG {
@@ -19,31 +19,159 @@ pub(crate) fn grouped(number: &BigUint) -> String {
     text
 }
 
-/// A number of bytes in powers of a thousand.
+/// A number of bytes in powers of a thousand, to two digits or three.
+#[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
 pub(crate) fn bytes(count: u64) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
-    let mut value = count as f64;
-    let mut unit = "B";
-    for larger in ["kB", "MB", "GB", "TB"] {
-        if value < 1000.0 {
-            break;
-        }
-        value /= 1000.0;
-        unit = larger;
-    }
-    if unit == "B" || value >= 100.0 {
+    let (value, unit) = in_bytes(count as f64);
+    if unit == "B" || value >= 99.95 {
         format!("{value:.0} {unit}")
     } else {
         format!("{value:.1} {unit}")
     }
 }
 
+/// An estimated number of bytes, to two digits.
+pub(crate) fn rough_bytes(count: f64) -> String {
+    let (value, unit) = in_bytes(two_digits(count));
+    if value >= 1e6 {
+        format!("{value:.0e} {unit}")
+    } else if unit == "B" || value >= 9.95 {
+        format!("{} {unit}", thousands(value))
+    } else {
+        format!("{value:.1} {unit}")
+    }
+}
+
+/// In the unit that leaves no more than three digits before the point, as long as there is one.
+fn in_bytes(mut value: f64) -> (f64, &'static str) {
+    let mut unit = "B";
+    for larger in ["kB", "MB", "GB", "TB", "PB", "EB", "ZB", "YB"] {
+        // What is rounded to 1000 belongs to the next unit.
+        if value < 999.5 {
+            break;
+        }
+        value /= 1000.0;
+        unit = larger;
+    }
+    (value, unit)
+}
+
+/// A number to its first two digits.
+pub(crate) fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// A time, as roughly as people speak of it.
+pub(crate) fn duration(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 5] = [
+        (365.25 * 24.0 * 3600.0, "years"),
+        (24.0 * 3600.0, "days"),
+        (3600.0, "h"),
+        (60.0, "min"),
+        (1.0, "s"),
+    ];
+    let Some((length, unit)) = UNITS
+        .into_iter()
+        .find(|(length, _)| seconds >= 1.5 * length)
+    else {
+        return if seconds < 0.5 {
+            "less than 1 s"
+        } else {
+            "1 s"
+        }
+        .into();
+    };
+    let value = two_digits(seconds / length);
+    let number = if value >= 1e6 {
+        format!("{value:.0e}")
+    } else {
+        thousands(value)
+    };
+    format!("{number} {unit}")
+}
+
+/// A number below 2^64 as the nearest whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate, and larger numbers are written in another way"
+)]
+fn thousands(value: f64) -> String {
+    grouped(&(value.round() as u64).into())
+}
+
 /// "1 element", "2 elements".
-pub(crate) fn counted(number: &BigUint, noun: &str) -> String {
-    let s = if *number == BigUint::from(1u8) {
+pub(crate) fn counted(number: &Count, noun: &str) -> String {
+    let s = if *number == Count::from(1u64) {
         ""
     } else {
         "s"
     };
     format!("{} {noun}{s}", grouped(number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_have_units() {
+        let cases = [
+            (0, "0 B"),
+            (999, "999 B"),
+            (1000, "1.0 kB"),
+            (12_345, "12.3 kB"),
+            (99_960, "100 kB"),
+            (999_600, "1.0 MB"),
+            (2_500_000_000, "2.5 GB"),
+            (u64::MAX, "18.4 EB"),
+        ];
+        for (count, expected) in cases {
+            assert_eq!(bytes(count), expected);
+        }
+    }
+
+    #[test]
+    fn rough_bytes_have_two_digits_and_units_for_any_size() {
+        let cases = [
+            (0.4, "0 B"),
+            (996.0, "1.0 kB"),
+            (12_345.0, "12 kB"),
+            (123_456.0, "120 kB"),
+            (9.96e6, "10 MB"),
+            (7e12, "7.0 TB"),
+            (3e17, "300 PB"),
+            (3.14e21, "3.1 ZB"),
+            (1.24e25, "12 YB"),
+            (1.24e28, "12,000 YB"),
+            (1.24e36, "1e12 YB"),
+            (1e300, "1e276 YB"),
+        ];
+        for (count, expected) in cases {
+            assert_eq!(rough_bytes(count), expected);
+        }
+    }
+
+    #[test]
+    fn durations_are_rough() {
+        let cases = [
+            (0.0, "less than 1 s"),
+            (1.2, "1 s"),
+            (2.6, "3 s"),
+            (47.0, "47 s"),
+            (89.0, "89 s"),
+            (90.0, "2 min"),
+            (250.0, "4 min"),
+            (6_000.0, "2 h"),
+            (1e5, "28 h"),
+            (1e6, "12 days"),
+            (4e7, "460 days"),
+            (5e7, "2 years"),
+            (1e12, "32,000 years"),
+            (1e16, "3e8 years"),
+        ];
+        for (seconds, expected) in cases {
+            assert_eq!(duration(seconds), expected);
+        }
+    }
 }

@@ -113,6 +113,8 @@ fn info_tells_the_size_of_every_step() {
         "fractals",
         "length",
         "area",
+        "svg_bytes",
+        "seconds",
         "bounds",
         "limit_bounds",
         "dimension",
@@ -122,6 +124,11 @@ fn info_tells_the_size_of_every_step() {
     assert_eq!(info["elements"], serde_json::json!(["1", "4", "16", "64"]));
     assert_eq!(info["fractals"], serde_json::json!(["1", "1", "1", "1"]));
     assert_eq!(info["area"], serde_json::Value::Null);
+    let estimates = ["svg_bytes", "seconds"].map(|key| info[key].as_array().unwrap());
+    for estimate in estimates {
+        assert_eq!(estimate.len(), 4);
+        assert!(estimate.is_sorted_by_key(|value| value.as_f64().unwrap()));
+    }
     assert_eq!(info["bounds"]["min"], serde_json::json!([0, 0]));
     let dimension = info["dimension"]["similarity"].as_f64().unwrap();
     assert!((dimension - 4f64.ln() / 3f64.ln()).abs() < 1e-12);
@@ -163,8 +170,34 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
     let refused = run(folder.path(), &["grow", "koch", "--steps", "40"]).code(1);
     assert_eq!(
         stderr(&refused),
-        "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements; 12 is the deepest step within \
-         --max-elements 50,000,000\n"
+        "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements, about 52 GB of SVG and \
+         4e8 years of drawing; 12 is the deepest step within --max-elements 50,000,000; \
+         --detail 0.5 draws it to half a pixel\n"
+    );
+    // Estimates are of the picture that is asked for, and tables are not drawn.
+    let refused = |arguments: &[&str]| {
+        let arguments = [&["grow"], arguments].concat();
+        stderr(&run(folder.path(), &arguments).code(1))
+    };
+    let small = refused(&["carpet", "--steps", "12", "--size", "100"]);
+    let large = refused(&["carpet", "--steps", "12", "--size", "100000"]);
+    assert!(
+        small.contains("about 860 GB of SVG and 69 min of drawing"),
+        "{small}"
+    );
+    assert!(large.contains("about 2.3 TB of SVG"), "{large}");
+    let table = refused(&["koch", "--steps", "13", "--format", "csv"]);
+    assert!(
+        table.ends_with(
+            "67,108,864 elements; 12 is the deepest step within --max-elements 50,000,000\n"
+        ),
+        "{table}"
+    );
+    // Draws decide how long the elements are, and whether they become smaller.
+    let drawn = refused(&["vegetation", "--steps", "60"]);
+    assert!(
+        !drawn.contains(" of SVG") && !drawn.contains("--detail"),
+        "{drawn}"
     );
     // Where the size is not known before, the walk ends at the limit and leaves nothing.
     fs::write(

@@ -15,11 +15,10 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
-use kfrac::graph::Graph;
+use kfrac::graph::{Count, Graph};
 use kfrac::grow::{Element, Fractal, Growth, Progress, Visitor, walk};
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
-use num_bigint::BigUint;
 use proptest::prelude::*;
 use rules::Features;
 
@@ -136,9 +135,9 @@ proptest! {
         }
         let level = forecast.level();
         let walked = collect(&graph, steps, seed);
-        prop_assert_eq!(level.elements, BigUint::from(walked.elements().count()));
-        prop_assert_eq!(level.fertile, BigUint::from(walked.elements().filter(|element| element.fertile).count()));
-        prop_assert_eq!(level.fractals, BigUint::from(walked.fractals.len()));
+        prop_assert_eq!(level.elements, Count::from(walked.elements().count()));
+        prop_assert_eq!(level.fertile, Count::from(walked.elements().filter(|element| element.fertile).count()));
+        prop_assert_eq!(level.fractals, Count::from(walked.fractals.len()));
         if let Some(forecast) = level.length {
             let length: f64 = walked.elements().map(|element| element.frame.length()).sum();
             prop_assert!((forecast - length).abs() < 1e-9 * (1.0 + length));

@@ -16,13 +16,12 @@ use kfrac::catalogue::{Catalogue, Entry, Shelf};
 use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, Format};
 use kfrac::geometry::Bounds;
-use kfrac::graph::Graph;
+use kfrac::graph::{Count, Graph};
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
 use kfrac::parallel::all_cores;
 use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
-use num_bigint::BigUint;
 use picture::Picture;
 
 /// What the project promises to have.
@@ -207,13 +206,9 @@ fn every_rule_grows_as_forecast() {
                 assert!(forecast.advance());
             }
             let level = forecast.level();
-            assert_eq!(
-                BigUint::from(rows.len()),
-                level.elements,
-                "{name} at {steps}"
-            );
+            assert_eq!(Count::from(rows.len()), level.elements, "{name} at {steps}");
             let fertile = rows.iter().filter(|row| row[7] == "true").count();
-            assert_eq!(BigUint::from(fertile), level.fertile, "{name} at {steps}");
+            assert_eq!(Count::from(fertile), level.fertile, "{name} at {steps}");
         }
     }
 }

@@ -25,10 +25,9 @@ use common::{Grown, compiled, document, grown, resolved};
 use data::{Entry, reference};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::graph::Graph;
+use kfrac::graph::{Count, Graph};
 use kfrac::grow::{Element, Growth};
 use kfrac::measure::similarity_dimension;
-use num_bigint::BigUint;
 
 const CLOSE: f64 = 1e-12;
 
@@ -114,7 +113,7 @@ fn walk_forecast_bounds_and_reference_agree() {
                 "{what}: walk"
             );
             let forecasted = [level.elements, level.fertile, level.fractals];
-            assert_eq!(forecasted, expected.map(BigUint::from), "{what}: forecast");
+            assert_eq!(forecasted, expected.map(Count::from), "{what}: forecast");
 
             let lengths = elements(&fractals).map(|element| element.frame.ends());
             let length: f64 = lengths.map(|[p0, p1]| (p1 - p0).length()).sum();
@@ -178,7 +177,7 @@ fn counts_lengths_and_areas_have_their_closed_forms() {
             let what = format!("{id} at {n}");
             let level = forecast.level();
             let exponent = i32::try_from(n).unwrap();
-            assert_eq!(level.elements, BigUint::from(count(n)), "{what}");
+            assert_eq!(level.elements, Count::from(count(n)), "{what}");
             assert_close(
                 &format!("{what}: length"),
                 level.length.unwrap() / length(exponent),

@@ -17,14 +17,13 @@ use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::export;
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::graph::{Graph, Level};
+use kfrac::graph::{Count, Graph, Level};
 use kfrac::grow::{Growth, WalkError, Walked, extent};
 use kfrac::measure::similarity_dimension;
 use kfrac::render::{self, Format, Labels, Options, Size};
 use kfrac::rule::Rule;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use mutate::{Random, mutated};
-use num_bigint::BigUint;
 
 /// Few, so that an input takes milliseconds.
 const MOST_ELEMENTS: u64 = 1_000;
@@ -120,7 +119,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
             near(&bounds, &extent);
         }
     } else if let (Some(level), Err(WalkError::TooManyElements { .. })) = (level, &walked) {
-        assert!(level.elements > BigUint::from(MOST_ELEMENTS));
+        assert!(level.elements > Count::from(MOST_ELEMENTS));
     }
     let table = text(walked.map(|_| table))?;
     Ok([table, text(picture(rule, &graph, &growth))?])
@@ -134,8 +133,8 @@ fn forecast(graph: &Graph, steps: u32) -> Option<Level> {
 }
 
 fn agree(level: &Level, walked: Walked) {
-    assert_eq!(level.elements, BigUint::from(walked.elements));
-    assert_eq!(level.fractals, BigUint::from(walked.fractals));
+    assert_eq!(level.elements, Count::from(walked.elements));
+    assert_eq!(level.fractals, Count::from(walked.fractals));
     assert!(level.fertile <= level.elements);
 }
 

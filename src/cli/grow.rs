@@ -97,7 +97,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let steps = steps::choose(arguments.steps, &loaded)?;
     let graph = loaded.compile(steps)?;
-    arguments.growth.check(steps, &graph, &loaded)?;
+    let picture = arguments.drawn(&loaded, steps, format);
+    arguments
+        .growth
+        .check(steps, &graph, &loaded, picture.as_ref())?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
@@ -129,6 +132,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    /// How a picture is drawn, if the format is one of pictures.
+    fn drawn(&self, loaded: &Loaded, steps: u32, format: Format) -> Option<render::Options> {
+        match format {
+            Format::Picture(format) => Some(self.options(loaded, steps, format)),
+            Format::Table(_) => None,
+        }
+    }
+
     /// How the picture is drawn, and what its file says of itself.
     fn options(&self, loaded: &Loaded, steps: u32, format: render::Format) -> render::Options {
         let mut options = vec![("steps", steps.to_string())];

@@ -5,11 +5,14 @@ use std::path::Path;
 
 use anyhow::anyhow;
 
-use crate::graph::{Graph, TooLarge};
-use crate::grow::{Growth, Progress, WalkError};
+use crate::estimate::{Estimate, Estimator};
+use crate::geometry::Bounds;
+use crate::graph::{Chain, Graph, Replacement, TooLarge};
+use crate::grow::{Growth, Progress, WalkError, extent};
 use crate::parallel::all_cores;
-use crate::render::RenderError;
-use crate::wording::{counted, grouped};
+use crate::render::{self, RenderError};
+use crate::rule::Placement;
+use crate::wording::{counted, duration, grouped, rough_bytes};
 
 use super::rule::Loaded;
 use super::{Failure, output, stop};
@@ -53,9 +56,19 @@ impl GrowthArguments {
     }
 
     /// Refuses a step that has too many elements, as far as that can be told before.
-    pub(super) fn check(&self, steps: u32, graph: &Graph, loaded: &Loaded) -> Result<(), Failure> {
+    ///
+    /// `picture` tells how it would be drawn, if it would.
+    pub(super) fn check(
+        &self,
+        steps: u32,
+        graph: &Graph,
+        loaded: &Loaded,
+        picture: Option<&render::Options>,
+    ) -> Result<(), Failure> {
         let checked = graph.check_size(steps, self.max_elements);
-        checked.map_err(|error| anyhow!(self.too_large(&error, &loaded.name, steps)))?;
+        checked.map_err(|error| {
+            anyhow!(self.too_large(&error, &loaded.name, steps, graph, picture))
+        })?;
         Ok(())
     }
 
@@ -70,17 +83,36 @@ impl GrowthArguments {
         }
     }
 
-    fn too_large(&self, error: &TooLarge, name: &str, steps: u32) -> String {
+    fn too_large(
+        &self,
+        error: &TooLarge,
+        name: &str,
+        steps: u32,
+        graph: &Graph,
+        picture: Option<&render::Options>,
+    ) -> String {
         let limit = grouped(&self.max_elements.into());
         let count = error.elements.as_ref().map_or_else(
             || "more elements than can be counted".into(),
             |elements| counted(elements, "element"),
         );
+        let svg = picture.filter(|options| options.format == render::Format::Svg);
+        let estimate = svg.and_then(|options| estimate(graph, steps, options));
+        let size = estimate.map_or_else(String::new, |estimate| {
+            let bytes = rough_bytes(estimate.svg_bytes);
+            let time = duration(estimate.seconds);
+            format!(", about {bytes} of SVG and {time} of drawing")
+        });
         let deepest = match error.deepest {
             Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
             None => format!("no step is within --max-elements {limit}"),
         };
-        format!("step {steps} of {name} has {count}; {deepest}")
+        let detail = if picture.is_some() && shrinks(graph) {
+            "; --detail 0.5 draws it to half a pixel"
+        } else {
+            ""
+        };
+        format!("step {steps} of {name} has {count}{size}; {deepest}{detail}")
     }
 
     /// The options that the draws depend on.
@@ -111,4 +143,62 @@ impl GrowthArguments {
             other => anyhow::Error::new(other).into(),
         }
     }
+}
+
+/// What a step takes that is not grown.
+fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Estimate> {
+    let mut forecast = graph.forecast()?;
+    if !(0..steps).all(|_| forecast.advance()) {
+        return None;
+    }
+    let bounds = rough_bounds(graph, steps)?;
+    Estimator::new(graph, options).at(&forecast, &bounds)
+}
+
+/// The box of an approximant: from the graph, or else by a walk that is not too long.
+pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
+    const MOST_ELEMENTS: u64 = 1_000_000;
+    let growth = Growth {
+        most_elements: MOST_ELEMENTS,
+        ..Growth::steps(steps)
+    };
+    let walked = || {
+        let small = !graph.draws() && graph.check_size(steps, MOST_ELEMENTS).is_ok();
+        let bounds = small.then(|| extent(graph, &growth).ok()).flatten();
+        bounds.filter(Bounds::is_finite)
+    };
+    graph.bounds(steps).or_else(walked)
+}
+
+/// About the box of an approximant: where the graph does not tell it, that of a smaller one.
+pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
+    let walked = || match graph.check_size(steps, 20_000) {
+        Ok(_) => bounds(graph, steps),
+        Err(error) => bounds(graph, error.deepest?),
+    };
+    graph.bounds(steps).or_else(walked)
+}
+
+/// Whether all that is replaced becomes smaller, so that elements fall below any size.
+fn shrinks(graph: &Graph) -> bool {
+    let smaller = |chain: &Chain| {
+        chain.instances.iter().all(|instance| {
+            let next = &graph.objects()[instance.object].replacement;
+            instance.length < 1.0 || matches!(next, Replacement::Kept)
+        })
+    };
+    graph
+        .objects()
+        .iter()
+        .all(|object| match &object.replacement {
+            Replacement::Kept | Replacement::Beyond => true,
+            Replacement::Fixed(production) => {
+                let mut seeds = production.seeds.iter();
+                smaller(&production.body)
+                    && seeds.all(|seed| {
+                        seed.placement != Placement::SeedsAsInitiator && smaller(&seed.chain)
+                    })
+            }
+            Replacement::Evaluated(_) => false,
+        })
 }

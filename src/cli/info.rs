@@ -5,20 +5,23 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
+use crate::estimate::{Estimate, Estimator};
 use crate::geometry::Bounds;
-use crate::graph::{Graph, Level};
-use crate::grow::{Growth, extent};
+use crate::graph::{Count, Graph, Level};
 use crate::measure::similarity_dimension;
+use crate::render::Options;
 use crate::rule::Parameter;
 use crate::wording;
 
+use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output, steps};
 
 /// Says what a rule is: parameters, sizes of its steps, bounds, dimension
 ///
 /// The sizes of the steps are told without growing them, wherever the rule allows it: numbers of
-/// elements, of those that are fertile and of fractals, and the length.
+/// elements, of those that are fertile and of fractals, the length, and about how large an SVG is and
+/// how long drawing it takes.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -28,6 +31,10 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// As JSON
+    ///
+    /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two
+    /// digits, by step: of the SVG in the rule's own style, 1024 pixels large, and of the time to
+    /// draw it; null where the rule or a double does not hold them.
     #[arg(long)]
     json: bool,
 }
@@ -55,11 +62,18 @@ struct Info<'a> {
     random: bool,
     regular: bool,
     steps: u32,
-    elements: Option<Vec<String>>,
-    fertile: Option<Vec<String>>,
-    fractals: Option<Vec<String>>,
+    #[serde(serialize_with = "decimals")]
+    elements: Option<Vec<Count>>,
+    #[serde(serialize_with = "decimals")]
+    fertile: Option<Vec<Count>>,
+    #[serde(serialize_with = "decimals")]
+    fractals: Option<Vec<Count>>,
     length: Option<Vec<Option<f64>>>,
     area: Option<Vec<Option<f64>>>,
+    #[serde(serialize_with = "rounded")]
+    svg_bytes: Option<Vec<Option<f64>>>,
+    #[serde(serialize_with = "rounded")]
+    seconds: Option<Vec<Option<f64>>>,
     bounds: Option<Corners>,
     limit_bounds: Option<Corners>,
     dimension: Dimension,
@@ -77,6 +91,38 @@ struct Corners {
 struct Dimension {
     similarity: Option<f64>,
     note: Option<String>,
+}
+
+/// Decimal strings: the numbers may be larger than those of JSON's readers.
+fn decimals<S: serde::Serializer>(
+    counts: &Option<Vec<Count>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match counts {
+        Some(counts) => serializer.collect_seq(counts.iter().map(Decimal)),
+        None => serializer.serialize_none(),
+    }
+}
+
+struct Decimal<'a>(&'a Count);
+
+impl Serialize for Decimal<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self.0)
+    }
+}
+
+/// Estimates to the two digits that they are good for.
+fn rounded<S: serde::Serializer>(
+    estimates: &Option<Vec<Option<f64>>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let two_digits = |value| number(wording::two_digits(value));
+    let estimates = estimates.as_ref().map(|estimates| {
+        let rounded = estimates.iter().map(|estimate| estimate.map(two_digits));
+        rounded.collect::<Vec<_>>()
+    });
+    estimates.serialize(serializer)
 }
 
 /// Whole numbers without a fraction, as in the tables.
@@ -103,10 +149,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let graph = loaded.compile(steps)?;
     let info = info(&loaded, &graph, steps);
     let text = if arguments.json {
-        format!(
-            "{}\n",
-            serde_json::to_string_pretty(&info).map_err(anyhow::Error::from)?
-        )
+        let mut text = serde_json::to_string_pretty(&info).map_err(anyhow::Error::from)?;
+        text.push('\n');
+        text
     } else {
         described(&loaded, &info)
     };
@@ -114,25 +159,40 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
-    let levels = levels(graph, steps);
-    let counts = |count: fn(&Level) -> String| {
-        levels
-            .as_ref()
-            .map(|levels| levels.iter().map(count).collect())
-    };
+    let bounds = bounds(graph, steps);
+    let rows = rows(
+        loaded,
+        graph,
+        steps,
+        bounds.or_else(|| rough_bounds(graph, steps)),
+    );
     // A measure that one step does not have, none has; a step beyond a double's range has none.
     let measures = |measure: fn(&Level) -> Option<f64>| {
-        let levels = levels.as_ref()?;
-        levels
-            .iter()
-            .all(|level| measure(level).is_some())
-            .then(|| {
-                levels
-                    .iter()
-                    .map(|level| measure(level).filter(|value| value.is_finite()))
-                    .collect()
-            })
+        let rows = rows.as_ref()?;
+        let all: Option<Vec<_>> = rows.iter().map(|row| measure(&row.level)).collect();
+        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+        Some(all?.into_iter().map(finite).collect())
     };
+    let estimates = |part: fn(&Estimate) -> f64| {
+        let rows = rows.as_ref().filter(|rows| rows[0].estimate.is_some())?;
+        Some(
+            rows.iter()
+                .map(|row| row.estimate.as_ref().map(part))
+                .collect(),
+        )
+    };
+    let (length, area) = (measures(|level| level.length), measures(|level| level.area));
+    let svg_bytes = estimates(|estimate| estimate.svg_bytes);
+    let seconds = estimates(|estimate| estimate.seconds);
+    let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
+        let mut counts = [const { Vec::new() }; 3];
+        for Row { level, .. } in rows {
+            counts[0].push(level.elements);
+            counts[1].push(level.fertile);
+            counts[2].push(level.fractals);
+        }
+        counts.map(Some)
+    });
     let similarity = similarity_dimension(graph);
     let params = loaded.rule.parameters().iter();
     Info {
@@ -146,12 +206,14 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         random: graph.draws(),
         regular: graph.is_regular(),
         steps,
-        elements: counts(|level| level.elements.to_string()),
-        fertile: counts(|level| level.fertile.to_string()),
-        fractals: counts(|level| level.fractals.to_string()),
-        length: measures(|level| level.length),
-        area: measures(|level| level.area),
-        bounds: bounds(graph, steps).as_ref().map(corners),
+        elements,
+        fertile,
+        fractals,
+        length,
+        area,
+        svg_bytes,
+        seconds,
+        bounds: bounds.as_ref().map(corners),
         limit_bounds: graph.limit_bounds().as_ref().map(corners),
         dimension: Dimension {
             similarity: similarity.value,
@@ -160,31 +222,34 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
     }
 }
 
-/// The box of an approximant: from the graph, or else by a walk that is not too long.
-fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
-    const MOST_ELEMENTS: u64 = 1_000_000;
-    let growth = Growth {
-        most_elements: MOST_ELEMENTS,
-        ..Growth::steps(steps)
-    };
-    let walked = || {
-        let small = !graph.draws() && graph.check_size(steps, MOST_ELEMENTS).is_ok();
-        let bounds = small.then(|| extent(graph, &growth).ok()).flatten();
-        bounds.filter(Bounds::is_finite)
-    };
-    graph.bounds(steps).or_else(walked)
+/// An approximant before it is grown.
+struct Row {
+    level: Level,
+    estimate: Option<Estimate>,
 }
 
-fn levels(graph: &Graph, steps: u32) -> Option<Vec<Level>> {
+fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Option<Vec<Row>> {
+    /// Boxes change little from here on.
+    const SETTLED: u32 = 12;
+    let options = Options::of(&loaded.rule);
+    let estimator = Estimator::new(graph, &options);
     let mut forecast = graph.forecast()?;
-    let mut levels = vec![forecast.level()];
-    for _ in 0..steps {
-        if !forecast.advance() {
+    let mut rows = Vec::new();
+    for step in 0..=steps {
+        if step > 0 && !forecast.advance() {
             return None;
         }
-        levels.push(forecast.level());
+        let own = (step < steps.min(SETTLED)).then(|| graph.bounds(step));
+        let bounds = own.flatten().or(last);
+        // What follows a number that is beyond a double's range is as well.
+        let may_be = rows.last().is_none_or(|row: &Row| row.estimate.is_some());
+        let bounds = bounds.filter(|_| may_be);
+        rows.push(Row {
+            level: forecast.level(),
+            estimate: bounds.and_then(|bounds| estimator.at(&forecast, &bounds)),
+        });
     }
-    Some(levels)
+    Some(rows)
 }
 
 fn corners(bounds: &Bounds) -> Corners {
@@ -284,29 +349,39 @@ fn parameter_line(parameter: &Parameter) -> String {
 }
 
 /// The forecast, a row a step; long numbers are given by their size.
-fn table(info: &Info<'_>, elements: &[String]) -> String {
-    let short = |digits: &str| {
-        digits
-            .parse()
-            .map_or_else(|_| digits.into(), |number| wording::grouped(&number))
-    };
-    let mut rows = vec![["step", "elements", "fertile", "fractals", "length"].map(String::from)];
+fn table(info: &Info<'_>, elements: &[Count]) -> String {
+    let mut rows = vec![
+        [
+            "step",
+            "elements",
+            "fertile",
+            "fractals",
+            "length",
+            "SVG (about)",
+            "time (about)",
+        ]
+        .map(String::from),
+    ];
     for step in 0..elements.len() {
-        let at = |column: &Option<Vec<String>>| {
+        let at = |column: &Option<Vec<Count>>| {
             column
                 .as_ref()
-                .map_or("-".into(), |column| short(&column[step]))
+                .map_or("-".into(), |column| wording::grouped(&column[step]))
         };
-        let length = info.length.as_ref().and_then(|lengths| lengths[step]);
+        let of = |column: &Option<Vec<Option<f64>>>| column.as_ref().and_then(|all| all[step]);
+        let estimated =
+            |value: Option<f64>, wording: fn(f64) -> String| value.map_or("-".into(), wording);
         rows.push([
             step.to_string(),
-            short(&elements[step]),
+            wording::grouped(&elements[step]),
             at(&info.fertile),
             at(&info.fractals),
-            length.map_or("-".into(), |length| format!("{length:.6}")),
+            of(&info.length).map_or("-".into(), |length| format!("{length:.6}")),
+            estimated(of(&info.svg_bytes), wording::rough_bytes),
+            estimated(of(&info.seconds), wording::duration),
         ]);
     }
-    let widths: Vec<_> = (0..5)
+    let widths: Vec<_> = (0..rows[0].len())
         .map(|column| rows.iter().map(|row| row[column].len()).max().unwrap_or(0))
         .collect();
     let mut table = String::new();

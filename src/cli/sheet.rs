@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let graph = loaded.compile(steps.largest())?;
     for &step in steps.as_slice() {
-        arguments.growth.check(step, &graph, &loaded)?;
+        arguments.growth.check(step, &graph, &loaded, None)?;
     }
     let default = arguments.rule.file("-sheet", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);

@@ -3,25 +3,23 @@
 //! The numbers of elements of step n are the graph's matrix to the power n applied to the
 //! initiator; they are worked out step by step in whole numbers of any size.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
-use num_bigint::BigUint;
-
 use crate::geometry::Direction;
-use crate::rule::Placement;
+use crate::rule::{BaseElement, Placement};
 
-use super::{Alternative, Chain, Graph, Instance, Replacement};
+use super::{Alternative, Chain, Count, Graph, Replacement};
 
 /// The size of one approximant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     /// The number of elements, infertile and invisible ones included.
-    pub elements: BigUint,
+    pub elements: Count,
     /// The number of fertile elements.
-    pub fertile: BigUint,
+    pub fertile: Count,
     /// The number of fractals that have been started: 1, and one for every seed.
-    pub fractals: BigUint,
+    pub fractals: Count,
     /// Σ |p1 − p0| over all elements, in the rule's units; `None` if it depends on draws.
     pub length: Option<f64>,
     /// The enclosed area, in square units, where all outlines are closed: the sum over the outlines,
@@ -34,18 +32,56 @@ pub struct Forecast<'g> {
     graph: &'g Graph,
     /// By object.
     standing: BTreeMap<usize, Tally>,
-    fractals: BigUint,
+    fractals: Count,
+    step: u32,
+    /// How many elements were born in the last step beside one of another length, and Σ of the
+    /// longer lengths.
+    new_lengths: [f64; 2],
     /// How many tallies have been added.
     work: usize,
     outlines: Outlines,
+    /// The signed areas of the base elements, by number.
+    areas: Vec<f64>,
     /// The area that the closed paths through the elements' end points enclose.
     path_area: f64,
 }
 
-/// Sums over elements.
-#[derive(Clone, Default)]
+/// The elements of one object in an approximant.
+///
+/// The numbers are rounded, and may be beyond a double's range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Population {
+    /// The object, by number.
+    pub object: usize,
+    /// How many elements there are.
+    pub count: f64,
+    /// Σ |p1 − p0|, in the rule's units.
+    pub length: f64,
+    /// Σ |p1 − p0|².
+    pub square: f64,
+    /// About how many of them a pen does not reach along the element before.
+    pub apart: f64,
+    /// About how many of the others it reaches along one that was born in another step.
+    pub parted: f64,
+}
+
+/// The elements of an object.
+#[derive(Default)]
 struct Tally {
-    count: BigUint,
+    count: Count,
+    sums: Sums,
+}
+
+/// Sums over elements.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// About how many do not join the element before them: what traversal backwards, and what
+    /// vanishes, change in that is left out.
+    apart: f64,
+    /// Of the others: about how many join an element that is kept, and are not, or the other way;
+    /// and how many join one that was born in another step, as those do one step later.
+    beside: f64,
+    parted: f64,
     length: f64,
     /// Of squares of lengths.
     square: f64,
@@ -58,9 +94,11 @@ struct Tally {
     area: f64,
 }
 
-impl AddAssign for Tally {
+impl AddAssign for Sums {
     fn add_assign(&mut self, other: Self) {
-        self.count += other.count;
+        self.apart += other.apart;
+        self.beside += other.beside;
+        self.parted += other.parted;
         self.length += other.length;
         self.square += other.square;
         self.signed += other.signed;
@@ -69,6 +107,9 @@ impl AddAssign for Tally {
         self.area += other.area;
     }
 }
+
+/// Lengths that differ by no more, as a power of two, count as the same.
+const SAME_LENGTH: f64 = 1.0 / 16.0;
 
 /// What kinds of outline a graph draws.
 #[derive(Clone, Copy, PartialEq)]
@@ -84,13 +125,13 @@ enum Outlines {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TooLarge {
     /// The number of elements, unless it has more than some thousand digits.
-    pub elements: Option<BigUint>,
+    pub elements: Option<Count>,
     /// The deepest step within the limit; `None` if there is none.
     pub deepest: Option<u32>,
 }
 
-/// Numbers of more bits than this are not worked out only to be refused.
-const MOST_BITS: u64 = 1 << 14;
+/// Numbers of more digits than this are not worked out only to be refused.
+const MOST_DIGITS: usize = 5_000;
 
 /// A forecast that takes more additions than this is given up.
 const MOST_WORK: usize = 2_000_000;
@@ -106,7 +147,7 @@ impl Graph {
         let Some(mut forecast) = self.forecast() else {
             return Ok(None);
         };
-        let most = BigUint::from(most_elements);
+        let most = Count::from(most_elements);
         let mut deepest = None;
         let mut refused = false;
         for step in 0..=steps {
@@ -119,14 +160,14 @@ impl Graph {
                     elements: Some(elements),
                     deepest,
                 });
-            } else if elements.bits() > MOST_BITS || forecast.work > MOST_WORK {
+            } else if elements.digits() > MOST_DIGITS || forecast.work > MOST_WORK {
                 return Err(TooLarge {
                     elements: None,
                     deepest,
                 });
             }
             if step == steps {
-                return Ok(u64::try_from(elements).ok());
+                return Ok(elements.to_u64());
             }
             if !refused && forecast.work > MOST_WORK || !forecast.advance() {
                 break;
@@ -235,18 +276,32 @@ impl<'g> Forecast<'g> {
         let mut forecast = Self {
             graph,
             standing: BTreeMap::new(),
-            fractals: BigUint::from(1u8),
+            fractals: Count::from(1u64),
+            step: 0,
+            new_lengths: [0.0; 2],
             work: 0,
             outlines: graph.outlines(),
+            areas: graph
+                .base_elements()
+                .iter()
+                .map(BaseElement::signed_area)
+                .collect(),
             path_area: area_under(&graph.initiator).abs(),
         };
         let orientation = area_under(&graph.initiator).signum();
-        for instance in &graph.initiator.instances {
+        for (number, instance) in graph.initiator.instances.iter().enumerate() {
             let square = instance.length * instance.length;
             forecast.add(
                 instance.object,
-                Tally {
-                    count: BigUint::from(1u8),
+                &Count::from(1u64),
+                Sums {
+                    apart: if number > 0 && instance.joined {
+                        0.0
+                    } else {
+                        1.0
+                    },
+                    beside: 0.0,
+                    parted: 0.0,
                     length: instance.length,
                     square,
                     signed: square * orientation * side(instance.frame.direction),
@@ -259,13 +314,12 @@ impl<'g> Forecast<'g> {
         forecast
     }
 
-    fn add(&mut self, object: usize, tally: Tally) {
-        let tally = Tally {
-            area: tally.square * self.own_area(object),
-            ..tally
-        };
+    fn add(&mut self, object: usize, count: &Count, sums: Sums) {
+        let area = sums.square * self.own_area(object);
         self.work += 1;
-        *self.standing.entry(object).or_default() += tally;
+        let standing = self.standing.entry(object).or_default();
+        standing.count += count;
+        standing.sums += Sums { area, ..sums };
     }
 
     /// The area of an object's base element where it is closed and drawn.
@@ -273,15 +327,34 @@ impl<'g> Forecast<'g> {
         let object = &self.graph.objects[object];
         let base_element = &self.graph.base_elements()[object.base_element];
         if object.visible && base_element.is_closed() {
-            base_element.signed_area().abs()
+            self.areas[object.base_element].abs()
         } else {
             0.0
         }
     }
 
+    /// The number of the approximant that stands now.
+    #[must_use]
+    pub fn step(&self) -> u32 {
+        self.step
+    }
+
+    /// The number of fractals of the approximant that stands now.
+    #[must_use]
+    pub fn fractals(&self) -> &Count {
+        &self.fractals
+    }
+
+    /// About how many elements were born in the last step beside one of another length, and the sum of
+    /// the longer lengths.
+    #[must_use]
+    pub fn new_lengths(&self) -> [f64; 2] {
+        self.new_lengths
+    }
+
     /// The number of elements of the approximant that stands now.
     #[must_use]
-    pub fn elements(&self) -> BigUint {
+    pub fn elements(&self) -> Count {
         self.standing.values().map(|tally| &tally.count).sum()
     }
 
@@ -293,21 +366,36 @@ impl<'g> Forecast<'g> {
         let fertile = all().filter(|(object, _)| self.is_fertile(**object));
         let bulge = |(&object, tally): (&usize, &Tally)| {
             let number = self.graph.objects[object].base_element;
-            tally.signed * self.graph.base_elements()[number].signed_area()
+            tally.sums.signed * self.areas[number]
         };
         Level {
             elements: self.elements(),
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
-            length: plain.then(|| all().map(|(_, tally)| tally.length).sum()),
+            length: plain.then(|| all().map(|(_, tally)| tally.sums.length).sum()),
             area: match self.outlines {
-                Outlines::ClosedElements if plain => Some(all().map(|(_, tally)| tally.area).sum()),
+                Outlines::ClosedElements if plain => {
+                    Some(all().map(|(_, tally)| tally.sums.area).sum())
+                }
                 Outlines::ClosedPaths if plain => {
                     Some((self.path_area + all().map(bulge).sum::<f64>()).abs())
                 }
                 _ => None,
             },
         }
+    }
+
+    /// The elements of the approximant that stands now, by object; `None` if they depend on draws.
+    pub fn populations(&self) -> Option<impl Iterator<Item = Population>> {
+        let populations = self.standing.iter().map(|(&object, tally)| Population {
+            object,
+            count: tally.count.to_f64(),
+            length: tally.sums.length,
+            square: tally.sums.square,
+            apart: tally.sums.apart,
+            parted: tally.sums.parted,
+        });
+        self.graph.is_plain().then_some(populations)
     }
 
     fn is_fertile(&self, object: usize) -> bool {
@@ -323,7 +411,7 @@ impl<'g> Forecast<'g> {
 
     /// Takes what stands, what is replaced by the same as one.
     fn standing_by_behaviour(&mut self) -> BTreeMap<usize, Tally> {
-        let mut first = HashMap::new();
+        let mut first = BTreeMap::new();
         let mut standing: BTreeMap<usize, Tally> = BTreeMap::new();
         for (number, tally) in std::mem::take(&mut self.standing) {
             let number = if self.is_fertile(number) {
@@ -333,7 +421,9 @@ impl<'g> Forecast<'g> {
             } else {
                 number
             };
-            *standing.entry(number).or_default() += tally;
+            let standing: &mut Tally = standing.entry(number).or_default();
+            standing.count += &tally.count;
+            standing.sums += tally.sums;
         }
         standing
     }
@@ -344,72 +434,85 @@ impl<'g> Forecast<'g> {
             return false;
         }
         let graph = self.graph;
-        for (number, tally) in self.standing_by_behaviour() {
+        self.new_lengths = [0.0; 2];
+        for (number, mut tally) in self.standing_by_behaviour() {
+            tally.sums.parted += std::mem::take(&mut tally.sums.beside);
             match &graph.objects[number].replacement {
                 Replacement::Fixed(production) => {
-                    self.path_area += tally.signed * area_under(&production.body);
-                    for instance in &production.body.instances {
-                        self.add_instance(
-                            &tally,
-                            instance,
-                            side(instance.frame.direction) * tally.signed,
-                        );
+                    self.path_area += tally.sums.signed * area_under(&production.body);
+                    let count = tally.count.to_f64();
+                    let mut parent = tally.sums;
+                    if production.body.meets_frame != [true; 2] {
+                        parent.apart = count;
+                        parent.parted = 0.0;
                     }
+                    self.add_chain(&tally.count, parent, &production.body);
                     for seed in &production.seeds {
                         self.fractals += &tally.count;
                         let area = area_under(&seed.chain);
                         let orientation = if area < 0.0 { -1.0 } else { 1.0 };
-                        let parent = if seed.placement == Placement::SeedsAsInitiator {
-                            Tally {
-                                length: tally.root_length,
-                                square: tally.root_square,
-                                ..tally.clone()
-                            }
-                        } else {
-                            tally.clone()
-                        };
-                        self.path_area += parent.square * area.abs();
-                        for instance in &seed.chain.instances {
-                            let signed =
-                                orientation * side(instance.frame.direction) * parent.square;
-                            self.add_instance(&parent, instance, signed);
+                        let mut parent = tally.sums;
+                        if seed.placement == Placement::SeedsAsInitiator {
+                            parent.length = parent.root_length;
+                            parent.square = parent.root_square;
                         }
+                        self.path_area += parent.square * area.abs();
+                        parent.signed = orientation * parent.square;
+                        parent.apart = count;
+                        parent.parted = 0.0;
+                        self.add_chain(&tally.count, parent, &seed.chain);
                     }
                 }
                 Replacement::Evaluated(alternatives) => {
                     let alternative = &alternatives[0];
                     let parts = graph.rule.generators()[alternative.generator].parts();
-                    let seeds = parts.iter().filter(|part| part.placement.seeds()).count();
-                    self.fractals += &tally.count * seeds;
+                    for _ in parts.iter().filter(|part| part.placement.seeds()) {
+                        self.fractals += &tally.count;
+                    }
                     for &object in &alternative.objects {
-                        self.add(
-                            object,
-                            Tally {
-                                count: tally.count.clone(),
-                                ..Tally::default()
-                            },
-                        );
+                        self.add(object, &tally.count, Sums::default());
                     }
                 }
-                Replacement::Kept | Replacement::Beyond => self.add(number, tally),
+                Replacement::Kept | Replacement::Beyond => {
+                    self.add(number, &tally.count, tally.sums)
+                }
             }
         }
+        self.step += 1;
         true
     }
 
-    fn add_instance(&mut self, parent: &Tally, instance: &Instance, signed: f64) {
-        let square = instance.length * instance.length;
-        self.add(
-            instance.object,
-            Tally {
-                count: parent.count.clone(),
+    /// Adds what a chain puts in the place of elements, or beside them.
+    fn add_chain(&mut self, number: &Count, parent: Sums, chain: &Chain) {
+        let count = number.to_f64();
+        let Some(mut before) = chain.instances.last() else {
+            return;
+        };
+        for (index, instance) in chain.instances.iter().enumerate() {
+            let is_first = index == 0;
+            let joins = !is_first && instance.joined;
+            let other = self.is_fertile(before.object) != self.is_fertile(instance.object);
+            if libm::log2(instance.length / before.length).abs() > SAME_LENGTH {
+                let longer = instance.length.max(before.length);
+                self.new_lengths[0] += count;
+                self.new_lengths[1] += parent.length * longer;
+            }
+            before = instance;
+            let square = instance.length * instance.length;
+            let sums = Sums {
+                apart: match (is_first, joins) {
+                    (true, _) => parent.apart,
+                    (_, true) => 0.0,
+                    _ => count,
+                },
+                beside: if joins && other { count } else { 0.0 },
+                parted: if is_first { parent.parted } else { 0.0 },
                 length: parent.length * instance.length,
                 square: parent.square * square,
-                signed: signed * square,
-                root_length: parent.root_length,
-                root_square: parent.root_square,
-                area: 0.0,
-            },
-        );
+                signed: side(instance.frame.direction) * parent.signed * square,
+                ..parent
+            };
+            self.add(instance.object, number, sums);
+        }
     }
 }

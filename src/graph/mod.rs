@@ -13,12 +13,14 @@
 
 mod bounds;
 mod compile;
+mod count;
 mod error;
 mod forecast;
 mod state;
 
+pub use count::Count;
 pub use error::CompileError;
-pub use forecast::{Forecast, Level, TooLarge};
+pub use forecast::{Forecast, Level, Population, TooLarge};
 
 use std::sync::Arc;
 

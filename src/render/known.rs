@@ -70,10 +70,10 @@ fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
         }
     }
     let level = forecast.level();
-    let elements = u64::try_from(level.elements).ok()?;
+    let elements = level.elements.to_u64()?;
     (elements <= growth.most_elements).then_some(Numbers {
         elements,
-        fractals: u64::try_from(level.fractals).ok()?,
+        fractals: level.fractals.to_u64()?,
     })
 }
 

@@ -1,8 +1,8 @@
 //! Rules with random functions: the reference fixes what does not depend on the draws.
 
 use kfrac::document::Setting;
+use kfrac::graph::Count;
 use kfrac::grow::Growth;
-use num_bigint::BigUint;
 
 use crate::common::{compiled, document, grown, resolved};
 use crate::data::reference;
@@ -20,7 +20,7 @@ fn the_random_tree_has_the_counts_of_the_reference_whatever_is_drawn() {
     let mut forecast = graph.forecast().unwrap();
     for n in 0..=8 {
         let count = 3 * 2u64.pow(n) - 2;
-        assert_eq!(forecast.elements(), BigUint::from(count));
+        assert_eq!(forecast.elements(), Count::from(count));
         for seed in 0..4 {
             let fractals = grown(
                 &graph,
@@ -82,7 +82,7 @@ fn vegetation_has_the_counts_of_the_reference() {
         let level = forecast.level();
         assert_eq!(
             [level.elements, level.fertile, level.fractals],
-            expected.map(BigUint::from),
+            expected.map(Count::from),
             "{n}"
         );
         for seed in 0..2 {

@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""kfrac beside Context Free, on the same fractals: ratios of time, peak memory, and the targets.
+
+On a fresh Debian:
+
+    apt-get install --no-install-recommends contextfree python3
+    cargo build --release
+    python3 benches/peers.py            # some ten minutes; cfdg takes up to 7 GB of memory
+    python3 benches/peers.py --quick    # a minute; only what is small
+
+Whole commands are run in turn, ours and theirs, and the medians compared: on a machine that does
+other things beside, only the ratios mean something. Outputs are files in a temporary folder (TMPDIR
+says where it is; a folder in memory leaves the disk out). Peak memory is that of the process, and
+not less than this script's own, some 15 MiB.
+
+The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
+Colours are switched off: cfdg draws black bars, and so does kfrac.
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+PLAIN = ["--color-by", "none", "--stroke", "black", "--quiet"]
+
+# What is drawn, the rule, its steps, cfdg's source and depth, the file, runs in full, the least ratio
+# of times, the most MiB, and whether --quick does it.
+BESIDE = [
+    ("Koch 4^10 to PNG 1024²", "koch", 10, "koch", 10, "png", 5, 40, 32, True),
+    ("Koch 4^10 to SVG", "koch", 10, "koch", 10, "svg", 5, 150, 32, True),
+    ("Koch 4^12 to PNG 1024²", "koch", 12, "koch", 12, "png", 1, 75, 64, False),
+    ("dragon 2^23 to PNG 1024²", "dragon", 23, "dragon", 23, "png", 1, 75, 64, False),
+    ("tree 2^23 to PNG 1024²", HERE / "peers/tree.yaml", 22, "tree", 22, "png", 1, 75, 64, False),
+]
+
+# What is done, the command, and the most milliseconds.
+ALONE = [
+    ("info koch --steps 2000 --json", ["info", "koch", "--steps", "2000", "--json"], 20),
+    ("info snow-crystal --steps 2000 --json", ["info", "snow-crystal", "--steps", "2000", "--json"], 20),
+    ("list", ["list"], 10),
+]
+
+
+def run(command):
+    """Seconds and MiB of a command that must succeed."""
+    start = time.perf_counter()
+    process = subprocess.Popen(
+        [str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+    errors = process.stderr.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    seconds = time.perf_counter() - start
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: {errors.decode(errors='replace').strip()}")
+    return seconds, usage.ru_maxrss / 1024
+
+
+def in_turn(commands, runs):
+    """The median of seconds and the largest MiB of each command, all of them run in turn."""
+    results = [[run(command) for command in commands] for _ in range(runs)]
+    return [
+        (statistics.median(seconds for seconds, _ in column), max(mib for _, mib in column))
+        for column in zip(*results)
+    ]
+
+
+def row(name, *cells):
+    print(f"{name:<40}" + "".join(f"{cell:>14}" for cell in cells), flush=True)
+
+
+def verdict(is_met):
+    return "met" if is_met else "missed"
+
+
+def beside(kfrac, folder, quick):
+    row("beside cfdg", "kfrac", "cfdg", "ratio", "target", "", "memory", "target", "")
+    for name, rule, steps, source, depth, kind, runs, ratio, mib, is_small in BESIDE:
+        if quick and not is_small:
+            continue
+        ours = [kfrac, "grow", rule, "--steps", steps, "-o", folder / f"ours.{kind}", *PLAIN]
+        theirs = ["cfdg", "-q", "-s", 1024, "-m", 100_000_000, "-x", 0.0001, "-v", "AAAAAA"]
+        theirs += ["-D", f"depth={depth}", *(["-V"] if kind == "svg" else [])]
+        theirs += [HERE / f"peers/{source}.cfdg", folder / f"theirs.{kind}"]
+        (seconds, memory), (peer, _) = in_turn([ours, theirs], 1 if quick else runs)
+        row(
+            name,
+            f"{seconds:.3f} s",
+            f"{peer:.2f} s",
+            f"{peer / seconds:.1f} x",
+            f"{ratio} x",
+            verdict(peer / seconds >= ratio),
+            f"{memory:.0f} MiB",
+            f"{mib} MiB",
+            verdict(memory <= mib),
+        )
+
+
+def streamed(kfrac, folder, quick):
+    """Segments a second to a file, and memory that does not grow with the steps."""
+    steps, fewer = (22, 18) if quick else (26, 22)
+    command = lambda steps: [
+        kfrac, "grow", "dragon", "--steps", steps, "--max-elements", 2**steps,
+        "-o", folder / "ours.svg", *PLAIN,
+    ]  # fmt: skip
+    [(seconds, memory), (_, before)] = in_turn([command(steps), command(fewer)], 1 if quick else 3)
+    rate = 2**steps / seconds / 1e6
+    print()
+    row("kfrac alone", "time", "", "rate", "target", "", "memory")
+    row(
+        f"dragon 2^{steps} to SVG",
+        f"{seconds:.2f} s",
+        "",
+        f"{rate:.1f} M/s",
+        "25 M/s",
+        verdict(rate >= 25),
+        f"{memory:.1f} MiB",
+    )
+    row(f"dragon 2^{fewer} to SVG", "", "", "", "", "", f"{before:.1f} MiB")
+
+
+def alone(kfrac, quick):
+    for name, command, most in ALONE:
+        [(seconds, memory)] = in_turn([[kfrac, *command]], 5 if quick else 20)
+        milliseconds = 1000 * seconds
+        cells = [f"{milliseconds:.1f} ms", "", "", f"{most} ms", verdict(milliseconds <= most)]
+        row(name, *cells, f"{memory:.1f} MiB")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="small fractals, few runs")
+    target = os.environ.get("CARGO_TARGET_DIR", HERE.parent / "target")
+    parser.add_argument("--kfrac", default=Path(target) / "release/kfrac", help="the program")
+    arguments = parser.parse_args()
+    kfrac = Path(arguments.kfrac).resolve()
+    if not kfrac.is_file():
+        sys.exit(f"there is no {kfrac}: run cargo build --release")
+    if shutil.which("cfdg") is None:
+        sys.exit("there is no cfdg: run apt-get install contextfree")
+    with tempfile.TemporaryDirectory() as folder:
+        beside(kfrac, Path(folder), arguments.quick)
+        streamed(kfrac, Path(folder), arguments.quick)
+        alone(kfrac, arguments.quick)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+//! What is said of a picture's size before it is drawn is held against pictures that are drawn.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use common::{document, resolved};
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::estimate::Estimator;
+use kfrac::graph::Graph;
+use kfrac::grow::{Growth, extent};
+use kfrac::render::{self, Options, Size};
+
+/// Holds the estimates of the steps of a rule that have a number of elements in a range against
+/// pictures that are `side` pixels large, and tells how many there were.
+fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize {
+    const TOLERANCE: f64 = 1.5;
+    const DEEPEST: u32 = 16;
+    let rule = resolved(&document(name), &[]);
+    let graph = Graph::compile(&rule, DEEPEST).unwrap();
+    let options = Options {
+        size: Size::Long(side),
+        ..Options::of(&rule)
+    };
+    let estimator = Estimator::new(&graph, &options);
+    let Some(mut forecast) = graph.forecast().filter(|_| graph.is_plain()) else {
+        return 0;
+    };
+    let mut held = 0;
+    for step in 0..=DEEPEST {
+        let count = forecast.elements().to_u64().unwrap();
+        if elements.contains(&count) {
+            let growth = Growth::steps(step);
+            let bounds = extent(&graph, &growth).unwrap();
+            let estimate = estimator.at(&forecast, &bounds).unwrap();
+            let mut svg = Vec::new();
+            render::write(&graph, &growth, &options, &mut svg).unwrap();
+            let ratio = estimate.svg_bytes / svg.len() as f64;
+            assert!(
+                (1.0 / TOLERANCE..=TOLERANCE).contains(&ratio),
+                "{name} at {step}: {estimate:?}, but {} bytes",
+                svg.len(),
+            );
+            held += 1;
+        }
+        if count > *elements.end() || !forecast.advance() {
+            break;
+        }
+    }
+    held
+}
+
+#[test]
+fn sizes_of_the_library_are_estimated() {
+    let entries = Catalogue::embedded().entries();
+    let rules = entries.iter().filter(|entry| entry.shelf == Shelf::Rules);
+    let held = rules.map(|rule| {
+        let sides = [64, 1024, 4000];
+        let held = sides.map(|side| hold(&rule.name, 1_000..=6_000, side));
+        held.iter().sum::<usize>()
+    });
+    assert!(held.sum::<usize>() > 150);
+}
+
+#[test]
+fn sizes_are_estimated_where_elements_are_smaller_than_can_be_written() {
+    for name in ["koch", "dragon", "pythagoras", "carpet"] {
+        assert!(hold(name, 10_000..=300_000, 40) > 0);
+    }
+}
+
+#[test]
+fn there_is_no_estimate_of_what_draws_decide() {
+    let rule = resolved(&document("random-tree"), &[]);
+    let graph = Graph::compile(&rule, 4).unwrap();
+    let bounds = extent(&graph, &Growth::steps(4)).unwrap();
+    let options = Options::of(&rule);
+    let estimator = Estimator::new(&graph, &options);
+    assert_eq!(estimator.at(&graph.forecast().unwrap(), &bounds), None);
+}
