@@ -5,6 +5,8 @@ use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Placement};
 
+use super::{Enter, Subtree, Visitor};
+
 /// Where an element stands, and what its descendants need to know of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
@@ -187,8 +189,13 @@ impl<'g> Descent<'g> {
         self.joined
     }
 
-    /// Goes on to the next element of approximant `target`.
-    pub(super) fn next(&mut self, start: &Start<'g>) -> Result<Next, CompileError> {
+    /// Goes on to the next element of approximant `target`; the visitor is asked before an element
+    /// is replaced.
+    pub(super) fn next<V: Visitor>(
+        &mut self,
+        start: &Start<'g>,
+        visitor: &mut V,
+    ) -> Result<Next, CompileError> {
         loop {
             if self.visited >= PATIENCE {
                 return Ok(Next::Pause);
@@ -252,7 +259,18 @@ impl<'g> Descent<'g> {
             } else {
                 0
             };
-            if kept || level == self.target {
+            let enter = if kept || level == self.target {
+                Enter::Keep
+            } else if self.graph.counts_index() {
+                Enter::Replace
+            } else {
+                visitor.enter(&Subtree {
+                    frame: standing.frame,
+                    object,
+                    born: level,
+                })
+            };
+            if enter == Enter::Keep {
                 let joined = self.joined;
                 let leaf = &self.graph.objects()[object];
                 let is_open = !self.graph.base_elements()[leaf.base_element].is_closed();
@@ -272,6 +290,10 @@ impl<'g> Descent<'g> {
             if last {
                 // The chain is done: what follows the child's last element follows the chain's.
                 self.pop();
+            }
+            if enter == Enter::Skip {
+                self.joined = false;
+                continue;
             }
             self.push(standing, object, level, rank, meets_end)?;
         }

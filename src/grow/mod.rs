@@ -47,6 +47,28 @@ pub struct Fractal {
     pub is_ring: bool,
 }
 
+/// An element that the walk is about to replace.
+#[derive(Clone, Copy, Debug)]
+pub struct Subtree {
+    /// Where it stands.
+    pub frame: Frame,
+    /// The object that it is.
+    pub object: usize,
+    /// The step of its birth: 0 for the initiator's elements.
+    pub born: u32,
+}
+
+/// What a walk does with an element that can be replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Enter {
+    /// It is replaced.
+    Replace,
+    /// It is visited as an element, as if its approximant were the last; it seeds nothing.
+    Keep,
+    /// Nothing of it is visited. The elements before and after it are not joined.
+    Skip,
+}
+
 /// What receives the elements of a walk.
 pub trait Visitor {
     /// What may go wrong in it.
@@ -58,6 +80,16 @@ pub trait Visitor {
     ///
     /// Whatever ends the walk.
     fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
+
+    /// Says what is done with an element that can be replaced. An element may be asked about more
+    /// than once, where fractals are walked again for their seeds: the answer must be the same.
+    ///
+    /// Not asked where a walk counts indices ([`Graph::counts_index`](crate::graph::Graph)): what
+    /// is not visited could not be counted.
+    #[inline]
+    fn enter(&mut self, _: &Subtree) -> Enter {
+        Enter::Replace
+    }
 
     /// An element of the fractal, in order of traversal.
     ///

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::graph::{Graph, Replacement};
 
 use super::descent::{Descent, Found, Next, PATIENCE, Start};
-use super::{Element, Fractal, Progress, Visitor, WalkError};
+use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
 
 /// How far to grow, and within what limits.
 #[derive(Clone, Copy, Debug)]
@@ -132,12 +132,11 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             if next.is_some() {
                 continue;
             }
-            let found = parent.descent.next(&parent.start)?;
+            let found = parent.descent.next(&parent.start, self.visitor)?;
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
                 Next::Element(found) => {
-                    let replacement = &self.graph.objects()[found.object].replacement;
-                    if !matches!(replacement, Replacement::Kept) {
+                    if found.level == parent.step && self.replaces(&found) {
                         parent.is_fertile = true;
                         parent.queue = parent.descent.seeds(&found)?;
                         parent.queue.reverse();
@@ -169,7 +168,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         let mut descent = Descent::new(self.graph, start, self.growth.steps);
         let mut index = 0;
         loop {
-            let found = descent.next(start)?;
+            let found = descent.next(start, self.visitor)?;
             self.visit(std::mem::take(&mut descent.visited))?;
             match found {
                 Next::Element(found) => {
@@ -189,6 +188,20 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         self.visitor
             .end(descent.ends_joined())
             .map_err(WalkError::Visitor)
+    }
+
+    /// Whether an element of an approximant that is not the last is replaced.
+    fn replaces(&mut self, found: &Found) -> bool {
+        let object = &self.graph.objects()[found.object];
+        if matches!(object.replacement, Replacement::Kept) {
+            return false;
+        }
+        let subtree = Subtree {
+            frame: found.standing.frame,
+            object: found.object,
+            born: found.level,
+        };
+        self.graph.counts_index() || self.visitor.enter(&subtree) == Enter::Replace
     }
 
     fn element(&self, found: &Found, index: u64) -> Element {
