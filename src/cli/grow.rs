@@ -140,6 +140,7 @@ impl Arguments {
             style: self.picture.style(&loaded.rule),
             view: self.picture.view(&loaded.rule),
             size: self.size,
+            detail: None,
             labels: labels(loaded, &format!("Step {steps}"), "grow", options),
         }
     }

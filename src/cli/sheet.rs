@@ -121,6 +121,7 @@ impl Arguments {
             style: self.style(loaded),
             view: self.picture.view(&loaded.rule),
             size: self.size,
+            detail: None,
             labels: labels(loaded, &format!("Steps {steps}"), "sheet", options),
         }
     }

@@ -1,7 +1,7 @@
 use std::io;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, Fractal, Visitor};
+use crate::grow::{Element, Enter, Fractal, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Width};
 
@@ -279,6 +279,11 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
         self.ring = None;
         self.is_first = true;
         Ok(())
+    }
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.scene.sight.enter(subtree)
     }
 
     #[inline]
