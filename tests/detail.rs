@@ -7,8 +7,11 @@ mod common;
 mod rules;
 
 use std::convert::Infallible;
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
+use assert_cmd::Command;
 use common::{compiled, document, document_of, resolved};
 use kfrac::document::Document;
 use kfrac::geometry::DVec2;
@@ -370,4 +373,93 @@ fn windows_may_be_as_small_as_numbers_are_precise() {
     }
     let error = write(1e-11, true).unwrap_err().to_string();
     assert!(error.contains("not precise enough"), "{error}");
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> (bool, String) {
+    let output = Command::cargo_bin("kfrac")
+        .unwrap()
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    (output.status.success(), said)
+}
+
+#[test]
+fn growth_goes_on_until_nothing_more_can_be_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let says = |arguments: &[&str], start: &str| {
+        let (success, said) = run(folder.path(), arguments);
+        assert!(success && said.starts_with(start), "{said}");
+    };
+    says(
+        &["grow", "koch", "--detail", "0.5"],
+        "koch.svg: koch to a detail of 0.5 pixels, 7 steps, 16,384 elements, 1024 x 298 pixels, ",
+    );
+    // A number of steps that nobody could grow, cut by the detail.
+    says(
+        &["grow", "koch", "--steps", "40", "--detail", "1"],
+        "koch.svg: step 40 of koch to a detail of 1 pixel, 16,384 elements, ",
+    );
+    let svg = fs::read_to_string(folder.path().join("koch.svg")).unwrap();
+    assert!(svg.contains("# kfrac grow koch.yaml --steps=40 --detail=1 --seed=0"));
+    let tip = ["--view", "0.49,0.28,0.02,0.02"];
+    says(
+        &[
+            &["grow", "koch", "--steps", "20", "--detail", "2"],
+            &tip[..],
+        ]
+        .concat(),
+        "koch.svg: step 20 of koch to a detail of 2 pixels, ",
+    );
+    // More steps than a graph that depends on the time is first compiled for.
+    let slow = "initiator: segment\ngenerator: [[0, 0], {to: [0.3, 0], fertile: false}, \
+                {to: [\"1.24 + if(step > 90, 0.01, 0)\", 0.1]}]";
+    fs::write(folder.path().join("slow.yaml"), slow).unwrap();
+    says(
+        &["grow", "slow.yaml", "--detail", "1"],
+        "slow.svg: slow to a detail of 1 pixel, 110 steps, 111 elements, ",
+    );
+}
+
+#[test]
+fn a_detail_that_cannot_be_had_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let flat = "initiator: segment\ngenerator: [[0, 0], {to: [\"if(step < 3, 1/2, 1)\", 0]}]";
+    fs::write(folder.path().join("flat.yaml"), flat).unwrap();
+    let vanishing = "initiator: segment\ngenerator: [[0, 0], [1/2, 1/4]]";
+    fs::write(folder.path().join("vanishing.yaml"), vanishing).unwrap();
+    for (arguments, message) in [
+        (
+            &["vegetation", "--detail", "1"][..],
+            "error: vegetation cannot be grown to a detail, only by a number of --steps: its \
+             elements do not get smaller than any length\n",
+        ),
+        (
+            &["vanishing.yaml", "--detail", "1"],
+            "error: vanishing cannot be grown to a detail, only by a number of --steps: all that \
+             is drawn gets as small as its elements\n",
+        ),
+        (
+            &["flat.yaml", "--detail", "1"],
+            "error: flat cannot be grown to a detail, only by a number of --steps: 131072 steps \
+             are not enough\n",
+        ),
+        (
+            &["dragon", "--detail", "0.1", "--max-elements", "1000"],
+            "error: dragon has more than 1,000 elements; --max-elements allows more\n",
+        ),
+        (
+            &["koch", "--detail", "1", "--format", "csv"],
+            "error: --detail is a size in pixels, and only pictures have pixels\n",
+        ),
+        (
+            &["koch", "--detail", "0"],
+            "error: invalid value '0' for '--detail <PX>'",
+        ),
+    ] {
+        let (success, said) = run(folder.path(), &[&["grow"], arguments].concat());
+        assert!(!success && said.starts_with(message), "{said}");
+    }
 }
