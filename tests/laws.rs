@@ -315,7 +315,9 @@ struct Blocks(Collected);
 impl Visitor for Blocks {
     type Error = Infallible;
 
-    const BLOCKS: bool = true;
+    fn takes_runs(&self) -> bool {
+        true
+    }
 
     fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
         self.0.begin(fractal)

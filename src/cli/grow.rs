@@ -7,11 +7,13 @@ use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
 use crate::export;
+use crate::graph::Graph;
 use crate::grow::Walked;
 use crate::render::{self, RenderError, Size};
 use crate::style::Named;
 use crate::wording;
 
+use super::goal::Goal;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
@@ -33,6 +35,11 @@ pub(super) struct Arguments {
     /// elements.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
+    /// Elements smaller than so many pixels are not replaced
+    ///
+    /// Without --steps, growth goes on until all are smaller. Only of pictures.
+    #[arg(long, value_name = "PX", value_parser = picture::pixels, allow_negative_numbers = true)]
+    detail: Option<f64>,
     /// The file to write, or - for standard output [default: NAME.svg]
     ///
     /// A file that is there is replaced.
@@ -67,6 +74,10 @@ Examples:
       Lets colours run along the curve
   kfrac grow koch --view 0,0,0.4,0.2 --size 800x400
       Draws what lies in a window of the plane
+  kfrac grow koch-snowflake --detail 0.5 -o koch.png
+      Goes on until nothing more can be seen
+  kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
+      Does so in a small window; what lies outside is not grown
   kfrac grow random-tree --seed 7
       Draws another tree of the same kind
   kfrac grow koch --steps 4 --format csv -o - | head
@@ -94,35 +105,40 @@ impl Named for Format {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
+    if arguments.detail.is_some() && !matches!(format, Format::Picture(_)) {
+        let message = "--detail is a size in pixels, and only pictures have pixels";
+        return Err(Failure::Usage(message.into()));
+    }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
-    let steps = steps::choose(arguments.steps, &loaded)?;
-    let graph = loaded.compile(steps)?;
-    let picture = arguments.drawn(&loaded, steps, format);
-    arguments
-        .growth
-        .check(steps, &graph, &loaded, picture.as_ref())?;
+    let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
+    let graph = loaded.compile(goal.steps())?;
+    arguments.check(goal, format, &graph, &loaded)?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
-        let growth = arguments.growth.to(steps, progress);
         match format {
             Format::Picture(format) => {
-                let options = arguments.options(&loaded, steps, format);
-                render::write(&graph, &growth, &options, out).map(Wrote::from)
+                let options = arguments.options(&loaded, goal, format);
+                goal.come_to(&loaded, graph, |graph, steps| {
+                    let growth = arguments.growth.to(steps, progress);
+                    render::write(graph, &growth, &options, out).map(Wrote::from)
+                })
             }
             Format::Table(format) => {
+                let growth = arguments.growth.to(goal.steps(), progress);
                 let threads = arguments.growth.threads();
-                let walked = export::write(&graph, &growth, format, threads, out);
-                walked.map(Wrote::from).map_err(RenderError::from)
+                export::write(&graph, &growth, format, threads, out)
+                    .map(|walked| Wrote::table(walked, growth.steps))
+                    .map_err(RenderError::from)
             }
         }
         .map_err(|error| arguments.growth.explain(error, &loaded, path))
     })?;
     if !arguments.growth.quiet {
         text::say(&format!(
-            "{}: step {steps} of {}, {}, {}, {:.2} s",
+            "{}: {}, {}, {}, {:.2} s",
             output::called(path),
-            loaded.name,
+            goal.reached(&loaded.name, wrote.steps),
             wrote.summary(),
             wording::bytes(bytes),
             start.elapsed().as_secs_f64(),
@@ -132,17 +148,33 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
-    /// How a picture is drawn, if the format is one of pictures.
-    fn drawn(&self, loaded: &Loaded, steps: u32, format: Format) -> Option<render::Options> {
-        match format {
-            Format::Picture(format) => Some(self.options(loaded, steps, format)),
+    /// Refuses what is too much, as far as that can be told before: where only what can be seen is
+    /// grown, it cannot.
+    fn check(
+        &self,
+        goal: Goal,
+        format: Format,
+        graph: &Graph,
+        loaded: &Loaded,
+    ) -> Result<(), Failure> {
+        let picture = match format {
+            Format::Picture(format) => Some(self.options(loaded, goal, format)),
             Format::Table(_) => None,
+        };
+        let shows_a_part = picture
+            .as_ref()
+            .is_some_and(|picture| picture.view.window.is_some());
+        match goal {
+            Goal::Steps(steps, None) if !shows_a_part => {
+                self.growth.check(steps, graph, loaded, picture.as_ref())
+            }
+            _ => Ok(()),
         }
     }
 
     /// How the picture is drawn, and what its file says of itself.
-    fn options(&self, loaded: &Loaded, steps: u32, format: render::Format) -> render::Options {
-        let mut options = vec![("steps", steps.to_string())];
+    fn options(&self, loaded: &Loaded, goal: Goal, format: render::Format) -> render::Options {
+        let mut options = goal.options();
         options.extend(self.growth.options());
         if format != render::Format::Svg {
             options.push(("format", format.name().into()));
@@ -155,41 +187,50 @@ impl Arguments {
             view: self.picture.view(&loaded.rule),
             size: self.size,
             threads: self.growth.threads(),
-            labels: labels(loaded, &format!("Step {steps}"), "grow", options),
+            detail: goal.detail(),
+            labels: labels(loaded, &goal.described(), "grow", options),
         }
     }
 }
 
 /// What has been written.
 struct Wrote {
+    steps: u32,
     elements: u64,
     fractals: u64,
     pixels: Option<[u32; 2]>,
+    /// Whether elements outside a window may not be among them.
+    is_part: bool,
 }
 
 impl From<render::Picture> for Wrote {
     fn from(picture: render::Picture) -> Self {
         Self {
+            steps: picture.steps,
             elements: picture.elements,
             fractals: picture.fractals,
             pixels: Some(picture.size),
-        }
-    }
-}
-
-impl From<Walked> for Wrote {
-    fn from(walked: Walked) -> Self {
-        Self {
-            elements: walked.elements,
-            fractals: walked.fractals,
-            pixels: None,
+            is_part: picture.is_part,
         }
     }
 }
 
 impl Wrote {
+    fn table(walked: Walked, steps: u32) -> Self {
+        Self {
+            steps,
+            elements: walked.elements,
+            fractals: walked.fractals,
+            pixels: None,
+            is_part: false,
+        }
+    }
+
     fn summary(&self) -> String {
         let mut summary = wording::counted(&self.elements.into(), "element");
+        if self.is_part {
+            summary.push_str(" visited");
+        }
         if self.fractals > 1 {
             summary.push_str(" in ");
             summary.push_str(&wording::counted(&self.fractals.into(), "fractal"));

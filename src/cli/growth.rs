@@ -140,6 +140,12 @@ impl GrowthArguments {
                     loaded.name
                 ))
                 .into(),
+            RenderError::NoDetail(_) => anyhow::Error::new(error)
+                .context(format!(
+                    "{} cannot be grown to a detail, only by a number of --steps",
+                    loaded.name
+                ))
+                .into(),
             other => anyhow::Error::new(other).into(),
         }
     }

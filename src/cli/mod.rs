@@ -4,6 +4,7 @@ mod cat;
 mod check;
 mod completions;
 mod format;
+mod goal;
 mod grow;
 mod growth;
 mod help;

@@ -11,6 +11,9 @@ use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Widt
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureArguments {
     /// The window that is shown, in the rule's units: lower left corner, width, height
+    ///
+    /// What lies outside is not grown, unless elements are drawn at random or have to be counted:
+    /// for the rule, or for --color-by index and fractal.
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
     /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161)
@@ -135,6 +138,14 @@ fn window(text: &str) -> Result<[f64; 4], String> {
             Ok(window)
         }
         _ => Err("a window is X,Y,W,H: lower left corner, width and height above 0".into()),
+    }
+}
+
+/// Reads a number of pixels that is more than none.
+pub(super) fn pixels(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(pixels) if pixels.is_finite() && pixels > 0.0 => Ok(pixels),
+        _ => Err("this is a number of pixels above 0".into()),
     }
 }
 

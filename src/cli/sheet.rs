@@ -122,6 +122,7 @@ impl Arguments {
             view: self.picture.view(&loaded.rule),
             size: self.size,
             threads: self.growth.threads(),
+            detail: None,
             labels: labels(loaded, &format!("Steps {steps}"), "sheet", options),
         }
     }

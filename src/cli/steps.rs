@@ -6,7 +6,7 @@ use super::Failure;
 use super::rule::Loaded;
 
 /// Numbers of steps beyond this are refused.
-const MOST_STEPS: u32 = 1_000_000;
+pub(super) const MOST_STEPS: u32 = 1_000_000;
 
 /// Reads a number of steps.
 pub(super) fn parse(text: &str) -> Result<u32, String> {

@@ -108,29 +108,12 @@ impl Graph {
     }
 
     /// All instances of fixed productions, with how they are placed.
-    fn instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
-        self.objects.iter().flat_map(|object| {
-            let production = match &object.replacement {
-                Replacement::Fixed(production) => Some(production),
-                _ => None,
-            };
-            production.into_iter().flat_map(|production| {
-                let body = production
-                    .body
-                    .instances
-                    .iter()
-                    .map(|instance| (Placement::Stays, instance));
-                let seeds = production.seeds.iter().flat_map(|seed| {
-                    let instances = seed.chain.instances.iter();
-                    instances.map(move |instance| (seed.placement, instance))
-                });
-                body.chain(seeds)
-            })
-        })
+    pub(super) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
+        (0..self.objects.len()).flat_map(|object| self.children(object))
     }
 
     /// The largest ratio of a fertile instance.
-    fn longest_ratio(&self) -> f64 {
+    pub(super) fn longest_ratio(&self) -> f64 {
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let fertile = self
             .instances()

@@ -16,6 +16,7 @@ mod compile;
 mod count;
 mod error;
 mod forecast;
+mod reach;
 mod state;
 
 pub use count::Count;
@@ -194,6 +195,17 @@ impl Graph {
 }
 
 impl Production {
+    /// All instances, with how they are placed: the body, then the seeds.
+    pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
+        let body = self.body.instances.iter();
+        let seeds = self.seeds.iter().flat_map(|seed| {
+            let instances = seed.chain.instances.iter();
+            instances.map(move |instance| (seed.placement, instance))
+        });
+        body.map(|instance| (Placement::Stays, instance))
+            .chain(seeds)
+    }
+
     /// The production of a generator whose points have been evaluated.
     ///
     /// `objects` are the objects of the generator's elements by position; `self` is overwritten,

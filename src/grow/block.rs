@@ -1,13 +1,14 @@
 //! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
 //! place by a single map wherever the object stands.
 
+use std::convert::Infallible;
 use std::rc::Rc;
 
 use crate::geometry::{DAffine2, DVec2, Direction, Frame};
 use crate::graph::{CompileError, Graph, Replacement};
 
-use super::Element;
 use super::descent::{Descent, Next};
+use super::{Element, Fractal, Visitor};
 
 /// A block has this many elements at most: they stay in the fastest memory.
 const MOST_LEAVES: u64 = 512;
@@ -214,6 +215,25 @@ fn levels(graph: &Graph) -> Vec<usize> {
     levels
 }
 
+/// Who wants to see everything.
+struct Everything;
+
+impl Visitor for Everything {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn element(&mut self, _: &Element) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
 fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Block, CompileError> {
     let steps = u32::try_from(steps).unwrap_or(u32::MAX);
     let start = super::descent::Start::initiator(0);
@@ -221,7 +241,7 @@ fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Bl
     let mut leaves = Vec::new();
     let mut ends = Some(Vec::new());
     loop {
-        let found = match descent.next(&start, None)? {
+        let found = match descent.next(&start, &mut Everything, None)? {
             Next::Element(found) => found,
             Next::Pause => {
                 descent.visited = 0;

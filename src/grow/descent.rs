@@ -8,6 +8,7 @@ use crate::rule::draw::Path;
 use crate::rule::{Moment, Placement};
 
 use super::block::{Block, Blocks};
+use super::{Enter, Subtree, Visitor};
 
 /// Where an element stands, and what its descendants need to know of it.
 #[derive(Clone, Copy, Debug)]
@@ -219,10 +220,12 @@ impl<'g> Descent<'g> {
         self.joined
     }
 
-    /// Goes on to the next element of approximant `target`, or to the next block of elements.
-    pub(super) fn next(
+    /// Goes on to the next element of approximant `target`, or to the next block of elements; the
+    /// visitor is asked before an element is replaced.
+    pub(super) fn next<V: Visitor>(
         &mut self,
         start: &Start<'g>,
+        visitor: &mut V,
         mut blocks: Option<&mut Blocks>,
     ) -> Result<Next, CompileError> {
         loop {
@@ -288,7 +291,18 @@ impl<'g> Descent<'g> {
             } else {
                 0
             };
-            if kept || level == self.target {
+            let enter = if kept || level == self.target {
+                Enter::Keep
+            } else if self.graph.counts_index() {
+                Enter::Replace
+            } else {
+                visitor.enter(&Subtree {
+                    frame: standing.frame,
+                    object,
+                    born: level,
+                })
+            };
+            if enter == Enter::Keep {
                 let joined = self.joined;
                 let leaf = &self.graph.objects()[object];
                 let is_open = !self.graph.base_elements()[leaf.base_element].is_closed();
@@ -308,6 +322,10 @@ impl<'g> Descent<'g> {
             if last {
                 // The chain is done: what follows the child's last element follows the chain's.
                 self.pop();
+            }
+            if enter == Enter::Skip {
+                self.joined = false;
+                continue;
             }
             let reversed = standing.frame.direction.is_reversed();
             let steps = self.target - level;

@@ -49,14 +49,32 @@ pub struct Fractal {
     pub is_ring: bool,
 }
 
+/// An element that the walk is about to replace.
+#[derive(Clone, Copy, Debug)]
+pub struct Subtree {
+    /// Where it stands.
+    pub frame: Frame,
+    /// The object that it is.
+    pub object: usize,
+    /// The step of its birth: 0 for the initiator's elements.
+    pub born: u32,
+}
+
+/// What a walk does with an element that can be replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Enter {
+    /// It is replaced.
+    Replace,
+    /// It is visited as an element, as if its approximant were the last; it seeds nothing.
+    Keep,
+    /// Nothing of it is visited. The elements before and after it are not joined.
+    Skip,
+}
+
 /// What receives the elements of a walk.
 pub trait Visitor {
     /// What may go wrong in it.
     type Error;
-
-    /// Whether elements whose places are fixed come by runs, as many of them do then. Their frames
-    /// may differ in the last bits from those of elements that come one by one.
-    const BLOCKS: bool = false;
 
     /// A fractal begins.
     ///
@@ -65,6 +83,16 @@ pub trait Visitor {
     /// Whatever ends the walk.
     fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
 
+    /// Says what is done with an element that can be replaced. An element may be asked about more
+    /// than once, where fractals are walked again for their seeds: the answer must be the same.
+    ///
+    /// Not asked where a walk counts indices ([`Graph::counts_index`](crate::graph::Graph)): what
+    /// is not visited could not be counted.
+    #[inline]
+    fn enter(&mut self, _: &Subtree) -> Enter {
+        Enter::Replace
+    }
+
     /// An element of the fractal, in order of traversal.
     ///
     /// # Errors
@@ -72,7 +100,14 @@ pub trait Visitor {
     /// Whatever ends the walk.
     fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
 
-    /// Elements of the fractal in a row, where [`Visitor::BLOCKS`] is set.
+    /// Whether elements whose places are fixed come by runs, as many of them do then, without being
+    /// asked for one by one. Their frames may differ in the last bits from those of elements that
+    /// come one by one.
+    fn takes_runs(&self) -> bool {
+        false
+    }
+
+    /// Elements of the fractal in a row, if the visitor [takes runs](Visitor::takes_runs).
     ///
     /// # Errors
     ///

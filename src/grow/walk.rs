@@ -4,7 +4,7 @@ use crate::graph::{Graph, Replacement};
 
 use super::block::{Blocks, Run};
 use super::descent::{Descent, Found, Next, PATIENCE, Start};
-use super::{Element, Fractal, Progress, Visitor, WalkError};
+use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
 
 /// How far to grow, and within what limits.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +97,7 @@ pub fn walk<V: Visitor>(
         "the graph is not resolved for {} steps",
         growth.steps
     );
+    let blocks = visitor.takes_runs().then(|| Blocks::of(graph));
     let mut walk = Walk {
         graph,
         growth: *growth,
@@ -105,7 +106,7 @@ pub fn walk<V: Visitor>(
         told: 0,
         visited: 0,
         next_look: PATIENCE,
-        blocks: V::BLOCKS.then(|| Blocks::of(graph)),
+        blocks,
     };
     walk.run(Start::initiator(growth.seed))?;
     walk.tell_progress();
@@ -136,12 +137,11 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             if next.is_some() {
                 continue;
             }
-            let found = parent.descent.next(&parent.start, None)?;
+            let found = parent.descent.next(&parent.start, self.visitor, None)?;
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
                 Next::Element(found) => {
-                    let replacement = &self.graph.objects()[found.object].replacement;
-                    if !matches!(replacement, Replacement::Kept) {
+                    if found.level == parent.step && self.replaces(&found) {
                         parent.is_fertile = true;
                         parent.queue = parent.descent.seeds(&found)?;
                         parent.queue.reverse();
@@ -174,7 +174,7 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         let mut descent = Descent::new(self.graph, start, self.growth.steps);
         let mut index = 0;
         loop {
-            let found = descent.next(start, self.blocks.as_mut())?;
+            let found = descent.next(start, self.visitor, self.blocks.as_mut())?;
             self.visit(std::mem::take(&mut descent.visited))?;
             match found {
                 Next::Element(found) => {
@@ -205,6 +205,20 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
         self.visitor
             .end(descent.ends_joined())
             .map_err(WalkError::Visitor)
+    }
+
+    /// Whether an element of an approximant that is not the last is replaced.
+    fn replaces(&mut self, found: &Found) -> bool {
+        let object = &self.graph.objects()[found.object];
+        if matches!(object.replacement, Replacement::Kept) {
+            return false;
+        }
+        let subtree = Subtree {
+            frame: found.standing.frame,
+            object: found.object,
+            born: found.level,
+        };
+        self.graph.counts_index() || self.visitor.enter(&subtree) == Enter::Replace
     }
 
     fn element(&self, found: &Found, index: u64) -> Element {

@@ -27,6 +27,10 @@ impl fmt::Display for Size {
 /// Positions farther away than this many pixels are not drawn.
 const MOST_PIXELS: f64 = 1e9;
 
+/// The most pixels from the origin to what is shown: a double tells the thousandth part of such a
+/// pixel, which leaves room for the errors of many levels.
+const FINEST: f64 = 1e12;
+
 /// How the plane is laid on a picture: pixels run right and down from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canvas {
@@ -56,6 +60,9 @@ pub enum NoRoom {
         "the window is too small: what is drawn would be more than {MOST_PIXELS} pixels wide as a whole"
     )]
     TooClose,
+    /// The window is so small that rounding shows in it.
+    #[error("the window is too small: numbers are not precise enough to tell its pixels apart")]
+    TooFine,
     /// What is drawn is larger than numbers can tell.
     #[error("what is to be drawn has no finite size")]
     Infinite,
@@ -117,18 +124,45 @@ impl Canvas {
             all.add_all(&survey.bounds);
         }
         let overhang = surveys.iter().map(Survey::overhang).fold(0.0, f64::max);
-        let (shown, pad) = match view.window {
-            Some([x, y, width, height]) => {
-                let corner = DVec2::new(x, y);
-                (Bounds::new(corner, corner + DVec2::new(width, height)), 0.0)
-            }
-            None => (all, overhang),
+        let canvas = match view.window {
+            Some(window) => Self::of_window(window, view, size)?,
+            None => Self::fit(&all, size, view.margin + overhang)?,
         };
-        let canvas = Self::fit(&shown, size, view.margin + pad)?;
         if !all.is_empty() && !canvas.holds(&all) {
             return Err(NoRoom::TooClose);
         }
         Ok(canvas)
+    }
+
+    /// The canvas that shows a window: lower left corner, width, height.
+    pub(super) fn of_window(
+        [x, y, width, height]: [f64; 4],
+        view: &View,
+        size: Size,
+    ) -> Result<Self, NoRoom> {
+        let corner = DVec2::new(x, y);
+        let shown = Bounds::new(corner, corner + DVec2::new(width, height));
+        Self::fit(&shown, size, view.margin)
+    }
+
+    /// What part of the plane is shown, with so many pixels more on every side.
+    pub(super) fn shown(&self, pad: f64) -> Bounds {
+        let [width, height] = self.size.map(f64::from);
+        let pad = pad / self.scale;
+        let opposite = self.corner + DVec2::new(width, -height) / self.scale;
+        let shown = Bounds::new(self.corner, opposite);
+        Bounds::new(shown.min() - pad, shown.max() + pad)
+    }
+
+    /// Refuses to show places that rounding makes uncertain, in what starts from a box.
+    pub(super) fn check_precision(&self, start: &Bounds) -> Result<(), NoRoom> {
+        let mut all = self.shown(0.0);
+        all.add_all(start);
+        let far = all.min().abs().max(all.max().abs()).max_element();
+        if far * self.scale > FINEST {
+            return Err(NoRoom::TooFine);
+        }
+        Ok(())
     }
 
     /// Whether all of a box lies near enough to be drawn.

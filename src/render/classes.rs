@@ -37,6 +37,11 @@ impl Classes {
         !matches!(self.by, ColorBy::Fractal | ColorBy::Index)
     }
 
+    /// Whether colours depend on the number of steps.
+    pub(super) fn depend_on_steps(by: ColorBy) -> bool {
+        matches!(by, ColorBy::Step | ColorBy::Age)
+    }
+
     /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let largest = match by {

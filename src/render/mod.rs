@@ -2,14 +2,17 @@
 //!
 //! A picture is made in two walks or more: a survey that learns what there is to draw and how
 //! large it is, and one walk for every class of colour, so that no element is held in memory. What
-//! is walked over becomes paths in whole hundredths of a pixel, the same for every format.
+//! is walked over becomes paths in whole hundredths of a pixel, the same for every format. Walks
+//! leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
 
 mod canvas;
 mod classes;
 mod known;
+mod layout;
 mod painter;
 mod png;
 mod scene;
+mod sight;
 mod surface;
 mod survey;
 mod svg;
@@ -17,6 +20,7 @@ mod tracer;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
+pub use layout::{Detail, NoDetail};
 pub use png::TooManyPixels;
 pub use survey::Survey;
 
@@ -34,6 +38,7 @@ use crate::parallel::all_cores;
 use crate::rule::Rule;
 use crate::style::{Colour, Named, Style, View, Width};
 
+use self::layout::Layout;
 use self::png::Png;
 use self::svg::Svg;
 
@@ -75,6 +80,8 @@ pub struct Options {
     pub view: View,
     /// The size; 1024 pixels on the long side unless said otherwise.
     pub size: Size,
+    /// Down to what size elements are replaced; to any unless said otherwise.
+    pub detail: Option<Detail>,
     /// What the file says of itself.
     pub labels: Labels,
     /// The threads that work on it, as many as the machine has cores unless said otherwise. The
@@ -89,6 +96,7 @@ impl Default for Options {
             style: Style::default(),
             view: View::default(),
             size: Size::Long(1024),
+            detail: None,
             labels: Labels::default(),
             threads: all_cores(),
         }
@@ -112,10 +120,14 @@ impl Options {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The number of elements of the approximant.
+    /// The number of steps: what growth says, or what it took to come to a detail.
+    pub steps: u32,
+    /// The number of elements, without those outside a window that have not been visited.
     pub elements: u64,
-    /// The number of fractals.
+    /// The number of fractals, likewise.
     pub fractals: u64,
+    /// Whether some may not have been visited because they lie outside a window.
+    pub is_part: bool,
 }
 
 /// Why a picture is not made.
@@ -127,6 +139,9 @@ pub enum RenderError {
     /// The picture has no room for what is to be drawn.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    /// The detail cannot be come to.
+    #[error(transparent)]
+    NoDetail(#[from] NoDetail),
     /// The picture is larger than memory may be.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
@@ -171,17 +186,20 @@ pub(crate) trait Drawing {
 ///
 /// # Errors
 ///
-/// If growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
+/// If growing ends early, if there is nothing to draw or no room for it, if a detail cannot be come
+/// to, or if `out` fails.
 pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
     options: &Options,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
-    let Options { style, view, .. } = options;
-    let survey = Survey::of(graph, growth, style, growth.steps)?;
-    let canvas = Canvas::of(std::slice::from_ref(&survey), view, options.size)?;
-    let scene = Scene::new(&survey, growth, canvas);
+    let Layout {
+        survey,
+        canvas,
+        growth,
+    } = Layout::find(graph, growth, options)?;
+    let scene = Scene::new(&survey, &growth, canvas);
     let Options {
         format,
         labels,
@@ -191,8 +209,10 @@ pub fn write(
     write_drawing(&scene, *format, labels, *threads, out)?;
     Ok(Picture {
         size: canvas.size(),
+        steps: growth.steps,
         elements: survey.elements,
         fractals: survey.fractals,
+        is_part: survey.sight().is_bounded(),
     })
 }
 

@@ -1,7 +1,7 @@
 use std::io;
 
 use crate::geometry::{DAffine2, DVec2};
-use crate::grow::{Element, Fractal, Run, Visitor};
+use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Width};
 
@@ -287,7 +287,9 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 impl<S: Surface> Visitor for Painter<'_, '_, S> {
     type Error = io::Error;
 
-    const BLOCKS: bool = true;
+    fn takes_runs(&self) -> bool {
+        !self.scene.sight.cuts()
+    }
 
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
         self.fractal = fractal;
@@ -295,6 +297,11 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
         self.ring = None;
         self.is_first = true;
         Ok(())
+    }
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.scene.sight.enter(subtree)
     }
 
     #[inline]

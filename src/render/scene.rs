@@ -5,6 +5,7 @@ use crate::grow::{Growth, WalkError, walk};
 use crate::style::{Colour, Style, Width};
 
 use super::painter::Painter;
+use super::sight::Sight;
 use super::surface::{Pen, Surface};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
 
@@ -14,6 +15,7 @@ pub(crate) struct Scene<'a> {
     growth: &'a Growth<'a>,
     pub(super) style: &'a Style,
     pub(super) canvas: Canvas,
+    pub(super) sight: Sight,
     pub(super) classes: Classes,
     passes: Vec<Pass>,
     /// Whether closed paths are filled as they are stroked.
@@ -51,6 +53,7 @@ impl<'a> Scene<'a> {
             growth,
             style,
             canvas,
+            sight: survey.sight().clone(),
             classes,
             passes,
             fills_strokes: together && style.fill.is_some(),
@@ -90,12 +93,16 @@ impl<'a> Survey<'a> {
         style: &'a Style,
         steps: u32,
     ) -> Result<Self, WalkError<Infallible>> {
-        if let Some(known) = Self::known(graph, growth, style, steps) {
-            return Ok(known);
+        match Self::known(graph, growth, style, steps) {
+            Some(known) => Ok(known),
+            None => Self::new(graph, style, steps).walked(growth),
         }
-        let mut survey = Self::new(graph, style, steps);
-        survey.walked = true;
-        walk(graph, growth, &mut survey)?;
-        Ok(survey)
+    }
+
+    /// Walks over what can be seen of an approximant.
+    pub(super) fn walked(mut self, growth: &Growth<'_>) -> Result<Self, WalkError<Infallible>> {
+        self.walked = true;
+        walk(self.graph(), growth, &mut self)?;
+        Ok(self)
     }
 }

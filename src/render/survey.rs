@@ -2,9 +2,10 @@ use std::convert::Infallible;
 
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
-use crate::grow::{Element, Fractal, Visitor};
+use crate::grow::{Element, Enter, Fractal, Subtree, Visitor};
 use crate::style::{Cap, Join, Style, Width};
 
+use super::sight::Sight;
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
 /// What a walk over an approximant learns before anything is drawn.
@@ -24,6 +25,9 @@ pub struct Survey<'g> {
     pub largest_index: u64,
     /// Whether there was a walk to learn it.
     pub(super) walked: bool,
+    /// The number of steps that are needed: more would change nothing.
+    pub(super) steps: u32,
+    sight: Sight,
     fractal: Fractal,
     classes: Classes,
     /// The classes that something visible is in.
@@ -44,10 +48,23 @@ impl<'g> Survey<'g> {
             fractals: 0,
             largest_index: 0,
             walked: false,
+            steps: 0,
+            sight: Sight::unbounded(),
             fractal: Fractal::default(),
             used: classes.all().map(|_| false).collect(),
             classes,
         }
+    }
+
+    /// A survey of what can be seen.
+    #[must_use]
+    pub(super) fn of_what_is_in(self, sight: Sight) -> Self {
+        Self { sight, ..self }
+    }
+
+    /// What can be seen.
+    pub(super) fn sight(&self) -> &Sight {
+        &self.sight
     }
 
     /// What was walked over.
@@ -81,9 +98,7 @@ impl<'g> Survey<'g> {
     pub(super) fn pad(&self, object: &Object) -> f64 {
         match self.style.width {
             Width::Relative(width) if self.is_stroked(object) => {
-                // The width that is drawn may be a little larger than that.
-                let rounding = libm::exp2(0.5 / WIDTHS_AN_OCTAVE);
-                width * rounding * overhang(self.style)
+                width * relative_overhang(self.style)
             }
             _ => 0.0,
         }
@@ -113,7 +128,7 @@ impl<'g> Survey<'g> {
 }
 
 /// How far strokes may reach beyond their paths, as a multiple of their width.
-fn overhang(style: &Style) -> f64 {
+pub(super) fn overhang(style: &Style) -> f64 {
     let cap = if style.cap == Cap::Square {
         std::f64::consts::FRAC_1_SQRT_2
     } else {
@@ -124,15 +139,32 @@ fn overhang(style: &Style) -> f64 {
     f64::max(cap, join)
 }
 
+/// The same for widths that are relative: what is drawn may be a little wider than they say.
+pub(super) fn relative_overhang(style: &Style) -> f64 {
+    libm::exp2(0.5 / WIDTHS_AN_OCTAVE) * overhang(style)
+}
+
 impl Visitor for Survey<'_> {
     type Error = Infallible;
 
-    const BLOCKS: bool = true;
+    fn takes_runs(&self) -> bool {
+        !self.sight.cuts()
+    }
 
     fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
         self.fractal = fractal;
         self.fractals += 1;
         Ok(())
+    }
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        let enter = self.sight.enter(subtree);
+        // What is skipped must still be asked about: in the last step it would be drawn.
+        if enter != Enter::Keep {
+            self.steps = self.steps.max(subtree.born + 1);
+        }
+        enter
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {

@@ -17,6 +17,7 @@ pub(crate) struct Features {
     pub seeds: bool,
 }
 
+#[allow(dead_code, reason = "each test file uses its share")]
 impl Features {
     pub(crate) const ALL: Self = Self {
         draws: true,

@@ -1,0 +1,124 @@
+//! Where growth ends: after a number of steps, or where nothing more can be seen.
+
+use crate::graph::Graph;
+use crate::grow::WalkError;
+use crate::render::{Detail, NoDetail, RenderError};
+use crate::wording;
+
+use super::rule::Loaded;
+use super::{Failure, steps};
+
+/// Where growth ends.
+#[derive(Clone, Copy)]
+pub(super) enum Goal {
+    /// After a number of steps, or sooner, where elements are smaller than so many pixels.
+    Steps(u32, Option<f64>),
+    /// Where all elements are smaller than so many pixels.
+    Detail(f64),
+}
+
+impl Goal {
+    /// What was asked for.
+    pub(super) fn choose(
+        steps: Option<u32>,
+        detail: Option<f64>,
+        loaded: &Loaded,
+    ) -> Result<Self, Failure> {
+        Ok(match (steps, detail) {
+            (None, Some(pixels)) => Self::Detail(pixels),
+            (asked, pixels) => Self::Steps(steps::choose(asked, loaded)?, pixels),
+        })
+    }
+
+    /// The number of steps, or one to begin with.
+    pub(super) fn steps(self) -> u32 {
+        match self {
+            Self::Steps(steps, _) => steps,
+            Self::Detail(_) => 64,
+        }
+    }
+
+    /// Draws a picture of so many steps or, where a detail decides it, of at most more and more:
+    /// the graph is compiled for as many, if it is not the same for any number.
+    pub(super) fn come_to<T>(
+        self,
+        loaded: &Loaded,
+        mut graph: Graph,
+        mut draw: impl FnMut(&Graph, u32) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        let mut steps = match self {
+            Self::Detail(_) if graph.depth().is_none() && graph.is_plain() => steps::MOST_STEPS,
+            _ => self.steps(),
+        };
+        loop {
+            let drawn = draw(&graph, steps);
+            let Err(RenderError::NoDetail(NoDetail::TooFewSteps { .. })) = drawn else {
+                return drawn;
+            };
+            let more = (2 * steps).min(steps::MOST_STEPS);
+            graph = Graph::compile(&loaded.rule, more)
+                .map_err(|error| RenderError::Walk(WalkError::NotFinite(error)))?;
+            // A graph that is too large to resolve cannot be cut.
+            if more == steps || graph.counts_index() {
+                return drawn;
+            }
+            steps = more;
+        }
+    }
+
+    /// Down to what size elements are replaced.
+    pub(super) fn detail(self) -> Option<Detail> {
+        match self {
+            Self::Steps(_, pixels) => pixels.map(|pixels| Detail {
+                pixels,
+                decides_steps: false,
+            }),
+            Self::Detail(pixels) => Some(Detail {
+                pixels,
+                decides_steps: true,
+            }),
+        }
+    }
+
+    /// The options that say so.
+    pub(super) fn options(self) -> Vec<(&'static str, String)> {
+        let (steps, pixels) = match self {
+            Self::Steps(steps, pixels) => (Some(steps), pixels),
+            Self::Detail(pixels) => (None, Some(pixels)),
+        };
+        let steps = steps.map(|steps| ("steps", steps.to_string()));
+        let detail = pixels.map(|pixels| ("detail", pixels.to_string()));
+        steps.into_iter().chain(detail).collect()
+    }
+
+    /// What a picture shows.
+    pub(super) fn described(self) -> String {
+        match self {
+            Self::Steps(steps, None) => format!("Step {steps}"),
+            Self::Steps(steps, Some(pixels)) => {
+                format!("Step {steps}, detail down to {},", counted(pixels))
+            }
+            Self::Detail(pixels) => format!("Detail down to {}", counted(pixels)),
+        }
+    }
+
+    /// What has been grown of a rule, in how many steps.
+    pub(super) fn reached(self, name: &str, steps_taken: u32) -> String {
+        match self {
+            Self::Steps(steps, None) => format!("step {steps} of {name}"),
+            Self::Steps(steps, Some(pixels)) => {
+                format!("step {steps} of {name} to a detail of {}", counted(pixels))
+            }
+            Self::Detail(pixels) => format!(
+                "{name} to a detail of {}, {}",
+                counted(pixels),
+                wording::counted(&u64::from(steps_taken).into(), "step")
+            ),
+        }
+    }
+}
+
+/// A number of pixels as words have it.
+fn counted(pixels: f64) -> String {
+    format!("{pixels} pixel{}", if pixels == 1.0 { "" } else { "s" })
+}

@@ -1,0 +1,188 @@
+//! How far what becomes of an object reaches, from the graph alone, so that it need not be grown
+//! where it cannot be seen.
+
+use crate::geometry::DVec2;
+use crate::rule::Placement;
+
+use super::{Graph, Instance, Object, Replacement};
+
+/// The middle of an element in its unit frame.
+const MIDDLE: DVec2 = DVec2::new(0.5, 0.0);
+
+/// Radii that still change by less than this multiple are good enough.
+const TOLERANCE: f64 = 1e-3;
+
+/// So many times, at most, all radii are made smaller.
+const MOST_SWEEPS: usize = 64;
+
+impl Graph {
+    /// For every object, the radius of a disc about the middle of its unit frame that holds it and
+    /// all that becomes of it, seeds included, at every step; infinite where the graph does not
+    /// tell: where numbers are drawn, where seeds are placed as the initiator, and where what
+    /// becomes of the object does not shrink.
+    ///
+    /// `own` is the radius of an object that is drawn itself, about the same point. The result may
+    /// be larger than the smallest disc, never smaller but by rounding.
+    ///
+    /// The smallest radii solve r(o) = max(own(o), |m − m(c)| + ratio(c) · r(c)) over the instances
+    /// c in the object's place, with m the middles. They are approached from above, from the sum of
+    /// a geometric series or from infinity.
+    #[must_use]
+    pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
+        let own: Vec<f64> = self.objects.iter().map(own).collect();
+        let away = |instance: &Instance| instance.frame.map.transform_point2(MIDDLE) - MIDDLE;
+        let ratio = self.longest_ratio();
+        let spread = self.instances().map(|(_, instance)| {
+            let far = away(instance).length();
+            match self.objects[instance.object].replacement {
+                Replacement::Kept => far + instance.length * own[instance.object],
+                _ => far,
+            }
+        });
+        let spread = spread.chain(own.iter().copied()).fold(0.0, f64::max);
+        let most = if ratio < 1.0 {
+            spread / (1.0 - ratio)
+        } else {
+            f64::INFINITY
+        };
+        let drawn = |object: &Object| matches!(object.replacement, Replacement::Evaluated(_));
+        let unknown = self
+            .leading_to(|number| drawn(&self.objects[number]) || self.places_as_initiator(number));
+        let mut radii: Vec<f64> = (0..own.len())
+            .map(|object| match &self.objects[object].replacement {
+                _ if unknown[object] => f64::INFINITY,
+                Replacement::Fixed(_) => most,
+                _ => own[object],
+            })
+            .collect();
+        for _ in 0..MOST_SWEEPS {
+            let mut change = 1.0;
+            // Children have larger numbers than those that reach them first.
+            for object in (0..own.len()).rev() {
+                if unknown[object] {
+                    continue;
+                }
+                let children = self.children(object).map(|(_, instance)| {
+                    away(instance).length() + instance.length * radii[instance.object]
+                });
+                let radius = children.fold(own[object], f64::max);
+                if radius < radii[object] {
+                    change = f64::min(change, radius / radii[object]);
+                    radii[object] = radius;
+                }
+            }
+            if change > 1.0 - TOLERANCE {
+                break;
+            }
+        }
+        radii
+    }
+
+    /// Whether an object leads to seeds that are placed as the initiator, by object. However small
+    /// the object is, what becomes of it is not.
+    #[must_use]
+    pub fn resets(&self) -> Vec<bool> {
+        self.leading_to(|object| self.places_as_initiator(object))
+    }
+
+    /// The objects of a kind, and those that such may come of.
+    fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
+        let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();
+        let mut changes = leading.contains(&true);
+        while changes {
+            changes = false;
+            for object in (0..leading.len()).rev() {
+                if !leading[object] && self.successors(object).any(|child| leading[child]) {
+                    leading[object] = true;
+                    changes = true;
+                }
+            }
+        }
+        leading
+    }
+
+    /// The most that an element is long which is born in the last of so many steps; infinite where
+    /// the graph does not tell.
+    #[must_use]
+    pub fn longest_after(&self, steps: u32) -> f64 {
+        if !self.is_plain() || self.resets().contains(&true) {
+            return f64::INFINITY;
+        }
+        let start = self.initiator.instances.iter();
+        let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
+        longest * libm::pow(self.longest_ratio(), f64::from(steps))
+    }
+
+    /// Whether all that is replaced again and again becomes smaller than any length: no object
+    /// comes back to itself at its own size or larger, and no seed is placed as the initiator.
+    ///
+    /// What depends on draws is taken to shrink.
+    #[must_use]
+    pub fn shrinks(&self) -> bool {
+        // Ratios are rounded; what comes back at its own size must not seem to shrink.
+        const SLACK: f64 = 1.0 + 1e-9;
+        if self.resets().contains(&true) {
+            return false;
+        }
+        if self.longest_ratio() * SLACK < 1.0 {
+            return true;
+        }
+        // The longest paths (Bellman 1958): they go on growing if and only if there is such a cycle.
+        let mut longest = vec![1.0; self.objects.len()];
+        for _ in 0..=longest.len() {
+            let mut grows = false;
+            for object in 0..longest.len() {
+                for (_, instance) in self.children(object) {
+                    let fertile =
+                        !matches!(self.objects[instance.object].replacement, Replacement::Kept);
+                    let length = longest[object] * instance.length * SLACK;
+                    if fertile && length > longest[instance.object] {
+                        longest[instance.object] = length;
+                        grows = true;
+                    }
+                }
+            }
+            if !grows {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The fixed instances that take an object's place or start what it seeds.
+    pub(super) fn children(&self, object: usize) -> impl Iterator<Item = (Placement, &Instance)> {
+        let production = match &self.objects[object].replacement {
+            Replacement::Fixed(production) => Some(production),
+            _ => None,
+        };
+        production
+            .into_iter()
+            .flat_map(|production| production.placed_instances())
+    }
+
+    /// The objects that an object may become or seed.
+    fn successors(&self, object: usize) -> impl Iterator<Item = usize> {
+        let alternatives = match &self.objects[object].replacement {
+            Replacement::Evaluated(alternatives) => Some(alternatives),
+            _ => None,
+        };
+        let drawn = alternatives.into_iter().flat_map(|all| all.iter());
+        let fixed = self.children(object).map(|(_, instance)| instance.object);
+        fixed.chain(drawn.flat_map(|alternative| alternative.objects.iter().copied()))
+    }
+
+    fn places_as_initiator(&self, object: usize) -> bool {
+        match &self.objects[object].replacement {
+            Replacement::Fixed(production) => production
+                .seeds
+                .iter()
+                .any(|seed| seed.placement == Placement::SeedsAsInitiator),
+            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
+                let parts = self.rule.generators()[alternative.generator].parts();
+                let mut parts = parts.iter();
+                parts.any(|part| part.placement == Placement::SeedsAsInitiator)
+            }),
+            Replacement::Kept | Replacement::Beyond => false,
+        }
+    }
+}

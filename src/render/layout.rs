@@ -1,0 +1,206 @@
+//! What a picture shows, on what canvas, after how many steps.
+
+use crate::geometry::Bounds;
+use crate::graph::Graph;
+use crate::grow::Growth;
+use crate::style::Width;
+
+use super::sight::Sight;
+use super::survey::overhang;
+use super::{Canvas, Classes, Options, RenderError, Survey};
+
+/// Down to what size elements are replaced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// Elements shorter than so many pixels are not replaced: they are drawn as their approximant
+    /// draws them, and seed nothing. Above 0.
+    ///
+    /// What leads to seeds that are placed as the initiator is replaced nevertheless.
+    pub pixels: f64,
+    /// Whether the number of steps that is grown is what this takes, and what growth says is only a
+    /// limit.
+    pub decides_steps: bool,
+}
+
+/// Why a picture has not the detail that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoDetail {
+    /// Indices are counted while walking.
+    #[error("what replaces an element depends on the number of all those before it")]
+    CountsIndex,
+    /// Elements do not get smaller.
+    #[error("its elements do not get smaller than any length")]
+    DoesNotShrink,
+    /// All that is drawn shrinks with its elements, and fills the picture as before.
+    #[error("all that is drawn gets as small as its elements")]
+    Vanishes,
+    /// The detail is to decide the number of steps, and is not come to soon enough.
+    #[error("{steps} steps are not enough")]
+    TooFewSteps {
+        /// The number of steps that growth allows.
+        steps: u32,
+    },
+}
+
+/// The first look at what has no known size: elements down to this part of the initiator's longest.
+const FIRST_LOOK: f64 = 1.0 / 8.0;
+
+/// If nothing is visible there, so many more looks are taken, each as much closer again.
+const MOST_LOOKS: u32 = 4;
+
+/// The detail changes what is drawn, which changes the scale and so the detail: after so many
+/// rounds, the last is good enough.
+const MOST_ROUNDS: u32 = 8;
+
+/// What is drawn, and where.
+pub(super) struct Layout<'a> {
+    pub(super) survey: Survey<'a>,
+    pub(super) canvas: Canvas,
+    pub(super) growth: Growth<'a>,
+}
+
+/// Surveys one after another.
+struct Surveyor<'a> {
+    graph: &'a Graph,
+    growth: Growth<'a>,
+    options: &'a Options,
+    /// The elements of the surveys that have been thrown away.
+    elements: u64,
+}
+
+impl<'a> Layout<'a> {
+    /// Surveys a graph, as often as it takes to know how large a pixel is.
+    pub(super) fn find(
+        graph: &'a Graph,
+        growth: &Growth<'a>,
+        options: &'a Options,
+    ) -> Result<Self, RenderError> {
+        if let Some(detail) = options.detail {
+            if graph.counts_index() {
+                return Err(NoDetail::CountsIndex.into());
+            }
+            if detail.decides_steps && !graph.shrinks() {
+                return Err(NoDetail::DoesNotShrink.into());
+            }
+        }
+        let mut surveyor = Surveyor {
+            graph,
+            growth: *growth,
+            options,
+            elements: 0,
+        };
+        let mut survey = match (options.view.window, options.detail) {
+            (Some(window), _) => surveyor.survey_window(window)?,
+            (None, Some(detail)) => surveyor.survey_to(detail.pixels)?,
+            (None, None) => surveyor.survey(Sight::unbounded())?,
+        };
+        if options.detail.is_some_and(|detail| detail.decides_steps) {
+            surveyor.growth.steps = survey.steps;
+            if Classes::depend_on_steps(options.style.color_by) {
+                let sight = survey.sight().clone();
+                surveyor.elements += survey.elements;
+                survey = surveyor.survey(sight)?;
+            }
+        }
+        if let Some(progress) = growth.progress {
+            progress.expect(surveyor.elements);
+        }
+        Ok(Self {
+            canvas: surveyor.canvas(&survey)?,
+            survey,
+            growth: surveyor.growth,
+        })
+    }
+}
+
+impl<'a> Surveyor<'a> {
+    fn survey(&self, sight: Sight) -> Result<Survey<'a>, RenderError> {
+        let Self { growth, .. } = self;
+        let style = &self.options.style;
+        if !sight.cuts() {
+            return Ok(Survey::of(self.graph, growth, style, growth.steps)?);
+        }
+        let survey = Survey::new(self.graph, style, growth.steps);
+        Ok(survey.of_what_is_in(sight).walked(growth)?)
+    }
+
+    fn canvas(&self, survey: &Survey<'a>) -> Result<Canvas, RenderError> {
+        let Options { view, size, .. } = self.options;
+        Ok(Canvas::of(std::slice::from_ref(survey), view, *size)?)
+    }
+
+    /// Refuses a survey that has met the limit of steps where there should be none.
+    fn check(&self, survey: &Survey<'a>) -> Result<(), NoDetail> {
+        let steps = self.growth.steps;
+        let decides = |detail: Detail| detail.decides_steps;
+        if self.options.detail.is_some_and(decides) && survey.steps >= steps && steps > 0 {
+            return Err(NoDetail::TooFewSteps { steps });
+        }
+        Ok(())
+    }
+
+    /// Surveys what lies in a window.
+    fn survey_window(&self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
+        let Options { style, view, .. } = self.options;
+        let canvas = Canvas::of_window(window, view, self.options.size)?;
+        let start = self.graph.initiator().instances.iter();
+        let mut bounds = Bounds::EMPTY;
+        start
+            .flat_map(|instance| instance.frame.ends())
+            .for_each(|end| bounds.add(end));
+        canvas.check_precision(&bounds)?;
+        let shortest = match self.options.detail {
+            Some(detail) => detail.pixels / canvas.scale(),
+            None => 0.0,
+        };
+        let stroke = match style.width {
+            Width::Pixels(width) => width * overhang(style),
+            Width::Relative(_) => 0.0,
+        };
+        // What comes near a pixel tinges it.
+        let sight = Sight::to_length(self.graph, shortest).within(
+            &canvas.shown(stroke + 1.0),
+            self.graph,
+            &self.growth,
+            style,
+        );
+        let survey = self.survey(sight)?;
+        self.check(&survey)?;
+        Ok(survey)
+    }
+
+    /// Surveys everything down to elements of a number of pixels.
+    fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
+        let start = self.graph.initiator().instances.iter();
+        let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
+        let mut shortest = longest * FIRST_LOOK;
+        let mut survey = self.survey(Sight::to_length(self.graph, shortest))?;
+        for _ in 0..MOST_LOOKS {
+            self.check(&survey)?;
+            if !survey.bounds.is_empty() {
+                break;
+            }
+            shortest *= FIRST_LOOK;
+            self.elements += survey.elements;
+            survey = self.survey(Sight::to_length(self.graph, shortest))?;
+        }
+        for round in 1.. {
+            self.check(&survey)?;
+            let next = pixels / self.canvas(&survey)?.scale();
+            #[expect(clippy::float_cmp, reason = "the same box gives the same scale")]
+            if next == shortest {
+                break;
+            }
+            if round == MOST_ROUNDS {
+                if next < shortest / 2.0 && survey.steps < self.growth.steps {
+                    return Err(NoDetail::Vanishes.into());
+                }
+                break;
+            }
+            shortest = next;
+            self.elements += survey.elements;
+            survey = self.survey(Sight::to_length(self.graph, shortest))?;
+        }
+        Ok(survey)
+    }
+}

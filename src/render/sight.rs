@@ -1,0 +1,208 @@
+//! What of an approximant can be seen: how small its elements get, and what lies in the picture.
+
+use std::sync::Arc;
+
+use crate::geometry::{Bounds, DVec2};
+use crate::graph::{Graph, Object, Replacement};
+use crate::grow::{Enter, Growth, Subtree};
+use crate::style::{Cap, ColorBy, Join, Style, Width};
+
+use super::Classes;
+use super::survey::relative_overhang;
+
+#[cfg(test)]
+mod tests;
+
+/// Where walks for a picture need not go.
+#[derive(Clone, Debug)]
+pub(super) struct Sight {
+    /// Elements shorter than this are not replaced, in the rule's units.
+    shortest: f64,
+    window: Option<Window>,
+    /// Whether an object is replaced however small it is, by object; empty if none is.
+    is_whole: Arc<[bool]>,
+}
+
+/// What part of the plane is seen.
+#[derive(Clone, Debug)]
+struct Window {
+    bounds: Bounds,
+    /// How far what becomes of an object reaches from the middle of its frame, by object.
+    reaches: Arc<[f64]>,
+    /// What is done with an element whose descendants all lie outside.
+    outside: Enter,
+}
+
+impl Sight {
+    /// Everything is seen.
+    pub(super) fn unbounded() -> Self {
+        Self {
+            shortest: 0.0,
+            window: None,
+            is_whole: Arc::new([]),
+        }
+    }
+
+    /// Elements shorter than this are not replaced, but where they lead to seeds that are placed as
+    /// the initiator: those are as large as ever.
+    pub(super) fn to_length(graph: &Graph, shortest: f64) -> Self {
+        Self {
+            shortest,
+            window: None,
+            is_whole: if shortest > 0.0 {
+                graph.resets().into()
+            } else {
+                Arc::new([])
+            },
+        }
+    }
+
+    /// No more than a part of the plane is seen; all of it where the graph does not tell how far
+    /// its objects reach, or where what lies outside tells in what lies inside.
+    pub(super) fn within(
+        self,
+        bounds: &Bounds,
+        graph: &Graph,
+        growth: &Growth<'_>,
+        style: &Style,
+    ) -> Self {
+        let Some(outside) = outside(graph, style) else {
+            return self;
+        };
+        let reaches = graph.reaches(|object| own_reach(graph, object, style));
+        let longest = graph.longest_after(growth.steps).max(self.shortest);
+        let pad = links(graph, longest);
+        if !pad.is_finite() || reaches.iter().all(|reach| reach.is_infinite()) {
+            return self;
+        }
+        let window = Window {
+            bounds: Bounds::new(bounds.min() - pad, bounds.max() + pad),
+            reaches: reaches.into(),
+            outside,
+        };
+        Self {
+            window: Some(window),
+            ..self
+        }
+    }
+
+    /// Whether walks may leave out what lies outside a window.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.window.is_some()
+    }
+
+    /// Whether walks may leave out anything.
+    pub(super) fn cuts(&self) -> bool {
+        self.shortest > 0.0 || self.window.is_some()
+    }
+
+    /// What a walk does with an element that can be replaced.
+    #[inline]
+    pub(super) fn enter(&self, subtree: &Subtree) -> Enter {
+        if !self.cuts() {
+            return Enter::Replace;
+        }
+        let length = subtree.frame.length();
+        if let Some(window) = &self.window
+            && window.is_outside(subtree, length)
+        {
+            return window.outside;
+        }
+        let is_whole = self.is_whole.get(subtree.object);
+        if length < self.shortest && is_whole != Some(&true) {
+            return Enter::Keep;
+        }
+        Enter::Replace
+    }
+}
+
+impl Window {
+    /// Whether all that becomes of an element lies outside.
+    fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
+        // Rounding must not hide what just touches the edge.
+        const SLACK: f64 = 1.0 + 1e-9;
+        let middle = subtree.frame.map.transform_point2(DVec2::new(0.5, 0.0));
+        let nearest = middle.clamp(self.bounds.min(), self.bounds.max());
+        let reach = self.reaches[subtree.object] * length * SLACK;
+        middle.distance_squared(nearest) > reach * reach
+    }
+}
+
+/// What can be done with an element that is not seen; `None` if it is to be replaced nevertheless.
+fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
+    // Elements and fractals that are not visited could not be numbered.
+    if matches!(style.color_by, ColorBy::Index | ColorBy::Fractal) || graph.counts_index() {
+        return None;
+    }
+    let is_open = |object: &Object| !graph.base_elements()[object.base_element].is_closed();
+    if !graph.objects().iter().any(is_open) || !starts_rings(graph) {
+        return Some(Enter::Skip);
+    }
+    // Where a closed path is broken, its two ends may be in sight: caps must look like the corner.
+    let seam_shows = style.cap != Cap::Round || style.join != Join::Round;
+    if style.fill.is_none() && !seam_shows {
+        return Some(Enter::Skip);
+    }
+    // An outline may take any way outside that leads from one end to the other: what lies inside
+    // stays encircled as often. It stays whole if the elements of other approximants on that way
+    // are of the same class.
+    let stays_whole = Classes::before_survey(style.color_by, graph, 0).keep_fractals_whole();
+    (graph.draws_closed_paths() && (stays_whole || !seam_shows)).then_some(Enter::Keep)
+}
+
+/// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
+fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
+    // Elements that are not drawn have a place nevertheless.
+    let mut far = DVec2::new(0.5, 0.0);
+    if object.visible {
+        let base_element = &graph.base_elements()[object.base_element];
+        for axis in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+            let beyond = base_element.support(axis) - axis.x / 2.0;
+            far = far.max(axis.abs() * beyond);
+        }
+    }
+    let stroke = match style.width {
+        Width::Relative(width) => width * relative_overhang(style),
+        Width::Pixels(_) => 0.0,
+    };
+    far.length() + stroke
+}
+
+/// Whether a fractal may be a closed chain.
+fn starts_rings(graph: &Graph) -> bool {
+    graph.initiator().is_ring()
+        || graph
+            .objects()
+            .iter()
+            .any(|object| match &object.replacement {
+                Replacement::Fixed(production) => {
+                    production.seeds.iter().any(|seed| seed.chain.is_ring())
+                }
+                Replacement::Evaluated(_) => true,
+                Replacement::Kept | Replacement::Beyond => false,
+            })
+}
+
+/// How far the lines may lead that link base elements which do not run from end to end of their
+/// frames: from an element that is seen to one that is not. `longest` is the length of the longest
+/// element that could still be replaced.
+fn links(graph: &Graph, longest: f64) -> f64 {
+    let mut farthest = 0.0;
+    for object in graph.objects() {
+        let base_element = &graph.base_elements()[object.base_element];
+        if !object.visible || base_element.is_closed() {
+            continue;
+        }
+        let (start, _) = base_element.outline(false);
+        let (end, _) = base_element.outline(true);
+        let link = f64::max(start.length(), end.distance(DVec2::X));
+        // An element that is kept may be as long as any.
+        let length = match object.replacement {
+            _ if link == 0.0 => continue,
+            Replacement::Fixed(_) | Replacement::Beyond => longest,
+            _ => f64::INFINITY,
+        };
+        farthest = f64::max(farthest, link * length);
+    }
+    farthest
+}
