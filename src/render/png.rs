@@ -1,30 +1,23 @@
-//! PNG: the paths of a picture, drawn by tiny-skia with antialiasing.
+//! PNG: the paths of a picture, antialiased. Thin strokes of round pens and small polygons, of
+//! which there may be millions, are drawn as coverage; tiny-skia draws the rest.
 
+mod coverage;
 mod encode;
+mod part;
+mod skia;
 
 use std::io::{self, Write};
 
-use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, Pixmap, PixmapPaint, StrokeDash,
-    Transform,
-};
-
 use crate::style::{Cap, Colour, Join};
 
+use self::coverage::{MOST_VERTICES, Plane, RoundPen};
+use self::part::Part;
+use self::skia::Outline;
 use super::Labels;
-use super::surface::{FINE, Paint, Position, Stroke, Surface};
+use super::surface::{Paint, Pen, Position, Surface};
 
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
-
-/// A path that is only stroked is drawn in pieces of about this many vertices,
-const STROKE_CHUNK: usize = 1 << 17;
-
-/// and one that is only filled in pieces of about this many, broken between subpaths.
-const FILL_CHUNK: usize = 1 << 20;
-
-/// SVG's limit of a mitre's length, in widths.
-const MITER_LIMIT: f32 = 4.0;
 
 /// A picture that memory should not be asked to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,21 +37,23 @@ fn bytes(size: &[u32; 2]) -> f64 {
 
 /// A picture in memory.
 pub(super) struct Png {
-    /// The picture, and the parts of it that have been entered, each with its corner.
-    parts: Vec<(Pixmap, [u32; 2])>,
-    paint: Paint,
-    path: PathBuilder,
-    /// The number of vertices in the path.
-    length: usize,
-    /// Where the subpath starts.
-    start: [f32; 2],
-    /// The pen's position, and the one before it if a straight line leads from there.
-    pen: [f32; 2],
-    before: Option<[f32; 2]>,
-    /// Whether the start of the subpath has been drawn in an earlier piece.
-    is_broken: bool,
-    /// Pieces of one path that is not opaque come together here before they are laid over the rest.
-    layer: Option<Pixmap>,
+    /// The part of the picture that is drawn on, and those that it was entered from.
+    part: Part,
+    outer: Vec<Part>,
+    /// The pens that have been used, by width.
+    pens: Vec<(f64, RoundPen)>,
+    /// The place of the pen that draws the path as coverage, if one does.
+    pen: Option<usize>,
+    /// Where it is, and where the subpath starts.
+    at: Position,
+    start: Position,
+    /// Whether the path may hold small polygons that are drawn as coverage,
+    covers: bool,
+    /// and the vertices of one that comes.
+    ring: Vec<Position>,
+    /// What tiny-skia draws of the path, if that is anything.
+    outline: Outline,
+    is_outlined: bool,
 }
 
 impl Png {
@@ -68,225 +63,185 @@ impl Png {
         if u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(TooManyPixels { size });
         }
-        let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+        let mut part = Part::new([0, 0], size).ok_or(TooManyPixels { size })?;
         if let Some(background) = background {
             let [red, green, blue, opacity] = background.rgba();
-            pixmap.fill(tiny_skia::Color::from_rgba8(red, green, blue, opacity));
+            part.pixmap
+                .fill(tiny_skia::Color::from_rgba8(red, green, blue, opacity));
         }
         Ok(Self {
-            parts: vec![(pixmap, [0, 0])],
-            paint: Paint::default(),
-            path: PathBuilder::new(),
-            length: 0,
-            start: [0.0; 2],
-            pen: [0.0; 2],
-            before: None,
-            is_broken: false,
-            layer: None,
+            part,
+            outer: Vec::new(),
+            pens: Vec::new(),
+            pen: None,
+            at: [0; 2],
+            start: [0; 2],
+            covers: false,
+            ring: Vec::with_capacity(MOST_VERTICES),
+            outline: Outline::default(),
+            is_outlined: false,
         })
     }
 
     /// Encodes the picture.
     pub(super) fn write(mut self, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
-        let Some((pixmap, _)) = self.parts.pop() else {
-            return Ok(());
-        };
+        self.part.settle();
         // Into memory first: the encoder would not tell why `out` fails.
         let mut bytes = Vec::new();
-        encode::encode(&pixmap, labels, &mut bytes)?;
+        encode::encode(&self.part.pixmap, labels, &mut bytes)?;
         out.write_all(&bytes)
     }
 
-    /// The pixels that are drawn on.
-    fn pixmap(&mut self) -> &mut Pixmap {
-        let Some((pixmap, _)) = self.parts.last_mut() else {
-            unreachable!("a part is left only after it has been entered");
-        };
-        pixmap
+    /// The place of the pen that a stroke is drawn with as coverage, if there is one.
+    fn pen(&mut self, pen: Pen) -> Option<usize> {
+        let is_round = pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0;
+        let width = pen.width;
+        if !is_round || !RoundPen::WIDTHS.contains(&width) {
+            return None;
+        }
+        let known = self.pens.iter().position(|(known, _)| *known == width);
+        known.or_else(|| {
+            self.pens.push((width, RoundPen::new(width)));
+            Some(self.pens.len() - 1)
+        })
     }
 
-    /// Draws what there is of the path.
-    fn flush(&mut self, is_whole: bool) {
-        let builder = std::mem::take(&mut self.path);
-        self.length = 0;
-        let Some(path) = builder.finish() else { return };
-        let opacity = self
-            .paint
-            .fill
-            .or(self.paint.stroke.map(|stroke| stroke.colour))
-            .map_or(255, |colour| colour.rgba()[3]);
-        let in_pieces = opacity < 255 && (self.layer.is_some() || !is_whole);
-        let paint = self.paint;
-        if !in_pieces {
-            draw(self.pixmap(), &path, &paint);
+    /// The plane, and the pen that draws the path on it.
+    #[inline]
+    fn stroke(&mut self) -> Option<(&mut Plane, &RoundPen)> {
+        let (_, pen) = self.pens.get(self.pen?)?;
+        Some((self.part.plane()?, pen))
+    }
+
+    /// Ends a subpath that may be a small polygon.
+    fn end_ring(&mut self) {
+        if self.ring.is_empty() {
             return;
         }
-        let (width, height) = (self.pixmap().width(), self.pixmap().height());
-        let mut layer = self.layer.take().or_else(|| Pixmap::new(width, height));
-        if let Some(layer) = &mut layer {
-            draw(layer, &path, &opaque(paint));
-            if is_whole {
-                let over = PixmapPaint {
-                    opacity: f32::from(opacity) / 255.0,
-                    ..PixmapPaint::default()
-                };
-                let none = Transform::identity();
-                self.pixmap()
-                    .draw_pixmap(0, 0, layer.as_ref(), &over, none, None);
-                return;
-            }
+        let plane = self.part.plane();
+        if plane.is_some_and(|plane| plane.polygon(&self.ring)) {
+            self.ring.clear();
+        } else {
+            self.hand_over_ring();
+            self.outline.close(&mut self.part.pixmap);
         }
-        self.layer = layer;
+    }
+
+    /// Has a subpath drawn by tiny-skia.
+    fn hand_over_ring(&mut self) {
+        let mut vertices = self.ring.drain(..);
+        if let Some(start) = vertices.next() {
+            self.outline.move_to(start);
+        }
+        vertices.for_each(|vertex| self.outline.line_to(vertex));
     }
 }
 
 impl Surface for Png {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
-        self.paint = *paint;
+        let may_cover = self.part.may_cover();
+        let stroke = paint.stroke.filter(|_| may_cover);
+        self.pen = stroke.and_then(|stroke| self.pen(stroke.pen));
+        self.covers = may_cover
+            && paint.stroke.is_none()
+            && paint.fill.is_some_and(|fill| fill == fill.opaque());
+        self.part.begin(paint, self.covers || self.pen.is_some());
+        let rest = Paint {
+            stroke: paint.stroke.filter(|_| self.pen.is_none()),
+            ..*paint
+        };
+        self.is_outlined = rest != Paint::default();
+        self.outline.begin(rest);
         Ok(())
     }
 
     #[inline]
     fn move_to(&mut self, to: Position) {
-        let [x, y] = pixels(to);
-        self.path.move_to(x, y);
-        self.length += 1;
-        (self.start, self.pen, self.before) = ([x, y], [x, y], None);
-        self.is_broken = false;
+        (self.start, self.at) = (to, to);
+        if let Some((plane, pen)) = self.stroke() {
+            plane.dot(pen, to);
+        }
+        if self.covers {
+            self.end_ring();
+            self.ring.push(to);
+        } else if self.is_outlined {
+            self.outline.move_to(to);
+        }
     }
 
     #[inline]
     fn line_to(&mut self, to: Position) {
-        let [x, y] = pixels(to);
-        self.path.line_to(x, y);
-        self.length += 1;
-        self.before = Some(self.pen);
-        self.pen = [x, y];
+        let from = std::mem::replace(&mut self.at, to);
+        if let Some((plane, pen)) = self.stroke() {
+            plane.line(pen, from, to);
+        }
+        if !self.is_outlined {
+            return;
+        }
+        if !self.ring.is_empty() {
+            if self.ring.len() < MOST_VERTICES {
+                self.ring.push(to);
+                return;
+            }
+            self.hand_over_ring();
+        }
+        self.outline.line_to(to);
     }
 
     #[inline]
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        let ([ax, ay], [bx, by], [x, y]) = (pixels(a), pixels(b), pixels(to));
-        self.path.cubic_to(ax, ay, bx, by, x, y);
-        // A curve is flattened to some lines.
-        self.length += 4;
-        self.before = None;
-        self.pen = [x, y];
+        let from = std::mem::replace(&mut self.at, to);
+        if let Some((plane, pen)) = self.stroke() {
+            plane.curve(pen, [from, a, b, to]);
+        }
+        if self.is_outlined {
+            self.hand_over_ring();
+            self.outline.curve_to(a, b, to);
+        }
     }
 
     fn close(&mut self) {
-        if self.is_broken {
-            let [x, y] = self.start;
-            self.path.line_to(x, y);
-        } else {
-            self.path.close();
+        let (from, to) = (self.at, self.start);
+        self.at = to;
+        if let Some((plane, pen)) = self.stroke() {
+            plane.line(pen, from, to);
         }
-        (self.pen, self.before) = (self.start, None);
-        if self.paint.stroke.is_none() && self.length > FILL_CHUNK {
-            self.flush(false);
+        if !self.ring.is_empty() {
+            self.end_ring();
+        } else if self.is_outlined {
+            self.outline.close(&mut self.part.pixmap);
         }
     }
 
     #[inline]
     fn hand_on(&mut self) -> io::Result<()> {
-        if self.length > STROKE_CHUNK && self.paint.fill.is_none() {
-            self.flush(false);
-            self.is_broken = true;
-            // The last line comes again, so that its corner with the next one is drawn.
-            let [x, y] = self.before.unwrap_or(self.pen);
-            self.path.move_to(x, y);
-            if self.before.is_some() {
-                self.path.line_to(self.pen[0], self.pen[1]);
-            }
+        if self.is_outlined {
+            self.outline.hand_on(&mut self.part.pixmap);
         }
         Ok(())
     }
 
     fn end(&mut self) -> io::Result<()> {
-        self.flush(true);
+        self.end_ring();
+        self.outline.end(&mut self.part.pixmap);
+        self.part.end();
         Ok(())
     }
 
-    fn enter(&mut self, corner: [u32; 2], [width, height]: [u32; 2]) -> io::Result<()> {
-        let pixmap = Pixmap::new(width, height).ok_or(io::ErrorKind::OutOfMemory)?;
-        self.parts.push((pixmap, corner));
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+        let part = Part::new(corner, size).ok_or(io::ErrorKind::OutOfMemory)?;
+        self.part.settle();
+        self.outer.push(std::mem::replace(&mut self.part, part));
         Ok(())
     }
 
-    #[expect(clippy::cast_possible_wrap, reason = "pictures are smaller than that")]
     fn leave(&mut self) -> io::Result<()> {
-        if let Some((part, [x, y])) = self.parts.pop() {
-            let (over, none) = (PixmapPaint::default(), Transform::identity());
-            self.pixmap()
-                .draw_pixmap(x as i32, y as i32, part.as_ref(), &over, none, None);
+        if let Some(outer) = self.outer.pop() {
+            let part = std::mem::replace(&mut self.part, outer);
+            part.lay_on(&mut self.part.pixmap);
         }
         Ok(())
     }
 
     fn label(&mut self, _: &str) {}
-}
-
-/// A position in pixels.
-#[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    reason = "what lies on the picture is exact to 0.01 pixels"
-)]
-fn pixels(position: Position) -> [f32; 2] {
-    position.map(|fine| (fine as f64 / FINE) as f32)
-}
-
-fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
-    let none = Transform::identity();
-    if let Some(fill) = paint.fill {
-        pixmap.fill_path(path, &ink(fill), FillRule::Winding, none, None);
-    }
-    // A stroke of no width is nothing, not a hairline.
-    if let Some(stroke) = paint.stroke
-        && stroke.pen.width > 0.0
-    {
-        pixmap.stroke_path(path, &ink(stroke.colour), &shape(&stroke), none, None);
-    }
-}
-
-fn ink(colour: Colour) -> Ink<'static> {
-    let mut ink = Ink::default();
-    let [red, green, blue, opacity] = colour.rgba();
-    ink.set_color_rgba8(red, green, blue, opacity);
-    ink
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "widths need no more than f32"
-)]
-fn shape(Stroke { pen, .. }: &Stroke) -> tiny_skia::Stroke {
-    let dash = pen.dash as f32;
-    tiny_skia::Stroke {
-        width: pen.width as f32,
-        miter_limit: MITER_LIMIT,
-        line_cap: match pen.cap {
-            Cap::Round => LineCap::Round,
-            Cap::Butt => LineCap::Butt,
-            Cap::Square => LineCap::Square,
-        },
-        line_join: match pen.join {
-            Join::Round => LineJoin::Round,
-            Join::Bevel => LineJoin::Bevel,
-            Join::Miter => LineJoin::Miter,
-        },
-        // None where there are no dashes.
-        dash: StrokeDash::new(vec![dash, dash], 0.0),
-    }
-}
-
-fn opaque(paint: Paint) -> Paint {
-    Paint {
-        fill: paint.fill.map(Colour::opaque),
-        stroke: paint.stroke.map(|stroke| Stroke {
-            colour: stroke.colour.opaque(),
-            ..stroke
-        }),
-    }
 }

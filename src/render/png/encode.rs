@@ -1,7 +1,6 @@
-use std::collections::HashMap;
 use std::io::{self, Write};
 
-use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
+use png::{BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use crate::render::Labels;
@@ -10,15 +9,20 @@ use crate::render::Labels;
 /// colours at most, grey where there is nothing else, without opacity where all is opaque.
 pub(super) fn encode(pixmap: &Pixmap, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
     let mut encoder = Encoder::new(out, pixmap.width(), pixmap.height());
-    // Line art has long runs of one colour, which filters only break up.
-    encoder.set_filter(Filter::NoFilter);
-    encoder.set_compression(Compression::Balanced);
     let colours = Colours::of(pixmap);
     let layout = colours.layout();
+    if matches!(layout.colour, ColorType::Rgb | ColorType::Rgba) {
+        // Half the time of what is usual, for a tenth more bytes: these pictures take longest.
+        encoder.set_deflate_compression(DeflateCompression::Level(2));
+    } else {
+        encoder.set_compression(Compression::Balanced);
+    }
+    // Line art has long runs of one colour, which filters, a compression's own too, only break up.
+    encoder.set_filter(Filter::NoFilter);
     encoder.set_color(layout.colour);
     encoder.set_depth(layout.depth);
     if layout.colour == ColorType::Indexed {
-        let colours = colours.sorted();
+        let colours = colours.palette();
         encoder.set_palette(
             colours
                 .iter()
@@ -43,13 +47,12 @@ pub(super) fn encode(pixmap: &Pixmap, labels: &Labels, out: &mut impl Write) -> 
     }
     let mut writer = encoder.write_header().map_err(io_error)?;
     let mut stream = writer.stream_writer().map_err(io_error)?;
-    let index = colours.index();
     let width = pixmap.width() as usize;
     let mut row = Vec::new();
     for pixels in pixmap.pixels().chunks_exact(width) {
         row.clear();
         match layout.colour {
-            ColorType::Indexed => indices(pixels, &index, layout.depth, &mut row),
+            ColorType::Indexed => indices(pixels, &colours.few, layout.depth, &mut row),
             ColorType::Grayscale => row.extend(pixels.iter().map(|pixel| pixel.red())),
             ColorType::GrayscaleAlpha => row.extend(pixels.iter().flat_map(|&pixel| {
                 let [grey, _, _, opacity] = rgba(pixel);
@@ -78,9 +81,61 @@ fn rgba(pixel: PremultipliedColorU8) -> Rgba {
 /// What colours a picture has.
 struct Colours {
     /// Every one of them, if there are 256 at most.
-    few: Option<Vec<PremultipliedColorU8>>,
+    few: Few,
     grey: bool,
     opaque: bool,
+}
+
+/// Some hundred colours, and where to find them: a hash table with linear probing.
+struct Few {
+    colours: Vec<PremultipliedColorU8>,
+    /// One more than the place of a colour, 0 where there is none.
+    slots: [u16; Self::SLOTS],
+}
+
+impl Few {
+    const MOST: usize = 256;
+    const SLOTS: usize = 1024;
+
+    /// The first colours.
+    fn new(colours: Vec<PremultipliedColorU8>) -> Self {
+        let mut few = Self {
+            colours: Vec::new(),
+            slots: [0; Self::SLOTS],
+        };
+        colours.into_iter().for_each(|colour| few.add(colour));
+        few
+    }
+
+    /// Where a colour is, or could be.
+    fn slot(&self, colour: PremultipliedColorU8) -> usize {
+        // Fibonacci hashing: the upper ten bits.
+        let mut slot = bits(colour).wrapping_mul(0x9E37_79B9) as usize >> 22;
+        while let Some(place) = self.slots[slot].checked_sub(1)
+            && self.colours[usize::from(place)] != colour
+        {
+            slot = (slot + 1) % Self::SLOTS;
+        }
+        slot
+    }
+
+    /// Adds a colour, unless there are more than enough.
+    fn add(&mut self, colour: PremultipliedColorU8) {
+        if self.colours.len() > Self::MOST {
+            return;
+        }
+        let slot = self.slot(colour);
+        if self.slots[slot] == 0 {
+            self.colours.push(colour);
+            self.slots[slot] = u16::try_from(self.colours.len()).unwrap_or_default();
+        }
+    }
+
+    /// The place of a colour that there is.
+    fn place(&self, colour: PremultipliedColorU8) -> u8 {
+        let place = self.slots[self.slot(colour)].saturating_sub(1);
+        u8::try_from(place).unwrap_or_default()
+    }
 }
 
 /// How pixels are laid out.
@@ -91,10 +146,8 @@ struct Layout {
 }
 
 impl Colours {
-    const FEW: usize = 256;
-
     fn of(pixmap: &Pixmap) -> Self {
-        let mut seen = HashMap::new();
+        let mut few = Few::new(Vec::new());
         let (mut grey, mut opaque) = (true, true);
         let mut last = None;
         for &pixel in pixmap.pixels() {
@@ -104,32 +157,24 @@ impl Colours {
             last = Some(pixel);
             grey &= pixel.red() == pixel.green() && pixel.green() == pixel.blue();
             opaque &= pixel.is_opaque();
-            if seen.len() <= Self::FEW {
-                seen.insert(bits(pixel), pixel);
-            }
+            few.add(pixel);
         }
-        let few = (seen.len() <= Self::FEW).then(|| {
-            let mut all: Vec<_> = seen.into_values().collect();
-            all.sort_unstable_by_key(|&pixel| bits(pixel));
-            all
-        });
-        Self { few, grey, opaque }
+        let mut sorted = few.colours;
+        sorted.sort_unstable_by_key(|&pixel| bits(pixel));
+        Self {
+            few: Few::new(sorted),
+            grey,
+            opaque,
+        }
     }
 
     /// The colours of a palette in its order.
-    fn sorted(&self) -> Vec<Rgba> {
-        let few = self.few.as_deref().unwrap_or_default();
-        few.iter().map(|&pixel| rgba(pixel)).collect()
-    }
-
-    /// The place of every colour in the palette.
-    fn index(&self) -> HashMap<u32, u8> {
-        let few = self.few.as_deref().unwrap_or_default();
-        few.iter().map(|&pixel| bits(pixel)).zip(0..=255).collect()
+    fn palette(&self) -> Vec<Rgba> {
+        self.few.colours.iter().map(|&pixel| rgba(pixel)).collect()
     }
 
     fn layout(&self) -> Layout {
-        let count = self.few.as_ref().map_or(usize::MAX, Vec::len);
+        let count = self.few.colours.len();
         let depth = match count {
             0..=2 => BitDepth::One,
             3..=4 => BitDepth::Two,
@@ -139,7 +184,7 @@ impl Colours {
         let colour = match (self.grey, self.opaque) {
             _ if count <= 16 => ColorType::Indexed,
             (true, true) => ColorType::Grayscale,
-            _ if count <= Self::FEW => ColorType::Indexed,
+            _ if count <= Few::MOST => ColorType::Indexed,
             (true, false) => ColorType::GrayscaleAlpha,
             (false, true) => ColorType::Rgb,
             (false, false) => ColorType::Rgba,
@@ -158,12 +203,7 @@ fn bits(pixel: PremultipliedColorU8) -> u32 {
 }
 
 /// A row of a picture with a palette: places in it, packed from the left.
-fn indices(
-    pixels: &[PremultipliedColorU8],
-    index: &HashMap<u32, u8>,
-    depth: BitDepth,
-    row: &mut Vec<u8>,
-) {
+fn indices(pixels: &[PremultipliedColorU8], few: &Few, depth: BitDepth, row: &mut Vec<u8>) {
     let depth = depth as usize;
     let mut last = None;
     let mut place = 0;
@@ -171,7 +211,7 @@ fn indices(
     for &pixel in pixels {
         if last != Some(pixel) {
             last = Some(pixel);
-            place = index.get(&bits(pixel)).copied().unwrap_or_default();
+            place = few.place(pixel);
         }
         used += depth;
         byte |= place << (8 - used);

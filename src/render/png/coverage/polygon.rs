@@ -1,0 +1,200 @@
+use std::sync::LazyLock;
+
+use super::{FINE, MARGIN, Plane, Position, index, mask};
+
+/// The most vertices of a polygon that is drawn here.
+pub(crate) const MOST_VERTICES: usize = 8;
+
+/// The most pixels of its width and height.
+const MOST_PIXELS: i64 = 8;
+
+/// Directions to an octant in which half planes are tabulated,
+const DIRECTIONS: usize = 8;
+
+/// and distances of their edges to a pixel's width.
+const DISTANCES: f64 = 64.0;
+
+/// Half planes whose edges are farther from the centre of a pixel than this, in `DISTANCES`, cover
+/// all of it or nothing.
+const FARTHEST: usize = 48;
+
+/// A half plane: what lies left of an edge, on the picture where y points down.
+#[derive(Clone, Copy, Default)]
+struct HalfPlane {
+    /// The twofold areas that a pixel right and one down take from that of edge and pixel's centre.
+    right: i64,
+    down: i64,
+    /// The area at the first pixel.
+    area: i64,
+    /// Areas become distances.
+    scale: f64,
+    /// The first mask of its direction in the table.
+    masks: usize,
+    /// All bits where the table holds the other side of the edge.
+    other: u64,
+}
+
+/// The masks of half planes by direction, from along x a quarter turn and another, and distance.
+static HALF_PLANES: LazyLock<Vec<u64>> = LazyLock::new(|| {
+    let mut masks = Vec::new();
+    for octant in 0..4 {
+        for direction in 0..=DIRECTIONS {
+            let slope = direction as f64 / DIRECTIONS as f64;
+            let [x, y] = match octant {
+                0 => [1.0, slope],
+                1 => [slope, 1.0],
+                2 => [-slope, 1.0],
+                _ => [-1.0, slope],
+            };
+            let length = f64::sqrt(1.0 + slope * slope);
+            for distance in 0..2 * FARTHEST {
+                let distance = (distance as f64 - FARTHEST as f64 + 0.5) / DISTANCES;
+                masks.push(mask(|[u, v]| {
+                    distance + (x * (v - 0.5) - y * (u - 0.5)) / length > 0.0
+                }));
+            }
+        }
+    }
+    masks
+});
+
+impl HalfPlane {
+    /// One side of the edge through a point along a vector; the centre of the first pixel.
+    #[inline]
+    fn of(point: Position, [x, y]: [i64; 2], centre: Position) -> Self {
+        let turned = y < 0 || (y == 0 && x < 0);
+        // One direction of every edge, so that the two sides are exact complements.
+        let [x, y] = if turned { [-x, -y] } else { [x, y] };
+        let area = x * (centre[1] - point[1]) - y * (centre[0] - point[0]);
+        let (across, down) = (x.abs() as f64, y as f64);
+        let octant = match (x >= 0, across >= down) {
+            (true, true) => 0,
+            (true, false) => 1,
+            (false, false) => 2,
+            (false, true) => 3,
+        };
+        let slope = across.min(down) / across.max(down);
+        let direction = number(slope * DIRECTIONS as f64 + 0.5);
+        Self {
+            right: -y * FINE,
+            down: x * FINE,
+            area,
+            scale: DISTANCES / FINE as f64 / (across * across + down * down).sqrt(),
+            masks: (octant * (DIRECTIONS + 1) + direction) * 2 * FARTHEST,
+            other: if turned { u64::MAX } else { 0 },
+        }
+    }
+
+    /// What it covers of a pixel.
+    #[inline]
+    fn mask(&self, table: &[u64], area: i64) -> u64 {
+        let farthest = FARTHEST as f64;
+        let distance = (area as f64 * self.scale + farthest).clamp(0.0, 2.0 * farthest - 1.0);
+        table[self.masks + number(distance)] ^ self.other
+    }
+}
+
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small numbers that are not negative"
+)]
+fn number(value: f64) -> usize {
+    value as i32 as usize
+}
+
+impl Plane {
+    /// Covers a polygon, if it is small and convex; otherwise nothing.
+    pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
+        let (Some(&last), true) = (vertices.last(), vertices.len() <= MOST_VERTICES) else {
+            return false;
+        };
+        let (mut least, mut most) = (last, last);
+        for vertex in vertices {
+            least = [0, 1].map(|axis| least[axis].min(vertex[axis]));
+            most = [0, 1].map(|axis| most[axis].max(vertex[axis]));
+        }
+        if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
+            return false;
+        }
+        let mut sides = [[0; 2]; MOST_VERTICES];
+        let mut before = last;
+        for (side, &vertex) in sides.iter_mut().zip(vertices) {
+            *side = [vertex[0] - before[0], vertex[1] - before[1]];
+            before = vertex;
+        }
+        let Some(orientation) = orientation(&sides[..vertices.len()]) else {
+            return false;
+        };
+        let pixels = |axis: usize| {
+            let first = least[axis].div_euclid(FINE).max(-MARGIN);
+            let last = most[axis].div_euclid(FINE);
+            [first, last.min(self.size[axis] + MARGIN - 1)]
+        };
+        let (columns, rows) = (pixels(0), pixels(1));
+        if orientation == 0 || columns[0] > columns[1] || rows[0] > rows[1] {
+            return true;
+        }
+        let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
+        let mut edges = [HalfPlane::default(); MOST_VERTICES];
+        let mut count = 0;
+        for (&side, &to) in sides.iter().zip(vertices) {
+            if side != [0, 0] {
+                let [x, y] = side.map(|along| along * orientation);
+                edges[count] = HalfPlane::of(to, [x, y], centre);
+                count += 1;
+            }
+        }
+        self.intersection(&mut edges[..count], columns, rows);
+        self.touched.add(columns, rows);
+        true
+    }
+
+    /// Covers what all half planes cover in a rectangle.
+    fn intersection(&mut self, edges: &mut [HalfPlane], columns: [i64; 2], rows: [i64; 2]) {
+        let table = HALF_PLANES.as_slice();
+        let width = index(columns[1] - columns[0] + 1);
+        for row in rows[0]..=rows[1] {
+            let start = index(row + MARGIN) * self.stride + index(columns[0] + MARGIN);
+            for (cell, column) in self.cells[start..start + width].iter_mut().zip(0..) {
+                *cell.get_mut() |= edges.iter().fold(u64::MAX, |mask, edge| {
+                    mask & edge.mask(table, edge.area + column * edge.right)
+                });
+            }
+            for edge in &mut *edges {
+                edge.area += edge.down;
+            }
+        }
+    }
+}
+
+/// Which way round a convex polygon with these sides runs: 1 if its inside is left of them on the
+/// picture where y points down, -1 if right, 0 if it has none. None of one that is not convex.
+#[inline]
+fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
+    let (mut lefts, mut rights) = (false, false);
+    let mut before = *sides.last()?;
+    for &side in sides {
+        let turn = before[0] * side[1] - before[1] * side[0];
+        lefts |= turn > 0;
+        rights |= turn < 0;
+        before = side;
+    }
+    match (lefts, rights) {
+        // Stars turn one way too, but more than once.
+        (true, true) => None,
+        _ if sides.len() > 4 && !turns_once(sides) => None,
+        _ => Some(i64::from(lefts) - i64::from(rights)),
+    }
+}
+
+/// Whether sides go right and left and up and down no more than once.
+fn turns_once(sides: &[[i64; 2]]) -> bool {
+    (0..2).all(|axis| {
+        let signs = sides.iter().map(|side| side[axis].signum());
+        let signs = signs.filter(|&sign| sign != 0);
+        let nexts = signs.clone().cycle().skip(1);
+        signs.zip(nexts).filter(|(sign, next)| sign != next).count() <= 2
+    })
+}

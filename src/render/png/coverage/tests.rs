@@ -1,0 +1,220 @@
+#![allow(clippy::cast_possible_truncation, reason = "positions are small")]
+
+use proptest::prelude::*;
+
+use super::{Plane, Position, RoundPen, SAMPLES};
+
+const SIZE: u32 = 64;
+
+/// The samples of every pixel that are covered by what is drawn.
+fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
+    let mut plane = Plane::new([SIZE; 2]);
+    draw(&mut plane);
+    let mut samples = vec![0; (SIZE * SIZE) as usize];
+    plane.drain(|pixel, covered| samples[pixel] = covered);
+    plane.drain(|pixel, _| panic!("pixel {pixel} is still covered"));
+    samples
+}
+
+/// The area that is covered, in pixels.
+fn area(samples: &[u32]) -> f64 {
+    f64::from(samples.iter().sum::<u32>()) / f64::from(SAMPLES)
+}
+
+fn length([x, y]: Position, [u, v]: Position) -> f64 {
+    f64::hypot((u - x) as f64, (v - y) as f64) / 100.0
+}
+
+/// What a stroke of one line covers.
+fn stroke(width: f64, from: Position, to: Position) -> Vec<u32> {
+    let pen = RoundPen::new(width);
+    samples(|plane| {
+        plane.dot(&pen, from);
+        plane.line(&pen, from, to);
+    })
+}
+
+/// A position so far inside that pens do not reach the border.
+fn inside() -> impl Strategy<Value = Position> {
+    [200..6200i64, 200..6200]
+}
+
+fn anywhere() -> impl Strategy<Value = Position> {
+    let coordinate = || prop_oneof![-1000..8000i64, -100_000_000_000..100_000_000_000i64];
+    [coordinate(), coordinate()]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_line_covers_its_area(width in 0.25..3.0, from in inside(), to in inside()) {
+        let radius = width / 2.0;
+        let expected = width * length(from, to) + std::f64::consts::PI * radius * radius;
+        let covered = area(&stroke(width, from, to));
+        // Samples lie in rows, some of them a tenth of a pixel apart.
+        prop_assert!(
+            (covered - expected).abs() <= 0.02 * expected + 0.05 * length(from, to) + 0.1,
+            "{covered} instead of {expected}"
+        );
+    }
+
+    #[test]
+    fn a_dot_covers_a_disk(width in 0.25..3.0, at in inside()) {
+        let expected = std::f64::consts::PI * width * width / 4.0;
+        let covered = area(&stroke(width, at, at));
+        prop_assert!((covered - expected).abs() <= 0.02 * expected + 0.08, "{covered} instead of {expected}");
+    }
+
+    #[test]
+    fn mirror_images_are_drawn_alike(width in 0.25..3.0, from in inside(), to in inside()) {
+        let mirror = |[x, y]: Position| [i64::from(SIZE) * 100 - x, y];
+        let one = stroke(width, from, to);
+        let other = stroke(width, mirror(from), mirror(to));
+        let rows = one.chunks(SIZE as usize).zip(other.chunks(SIZE as usize));
+        for (one, other) in rows {
+            for (one, other) in one.iter().zip(other.iter().rev()) {
+                prop_assert!(one.abs_diff(*other) <= SAMPLES / 5, "{one} and {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn order_and_repetition_do_not_show(
+        mut lines in proptest::collection::vec((inside(), inside()), 1..20),
+    ) {
+        let pens = [0.7, 1.5, 3.0].map(RoundPen::new);
+        let draw = |plane: &mut Plane, lines: &[(Position, Position)]| {
+            for (from, to) in lines {
+                plane.line(&pens[from[0].unsigned_abs() as usize % 3], *from, *to);
+            }
+        };
+        let once = samples(|plane| draw(plane, &lines));
+        let again = samples(|plane| {
+            draw(plane, &lines);
+            lines.reverse();
+            draw(plane, &lines);
+        });
+        prop_assert!(once == again);
+    }
+
+    #[test]
+    fn lines_from_anywhere_are_cut_at_the_border(from in anywhere(), to in anywhere()) {
+        // A line is as long on the picture as it is without any border, if that is not far.
+        let covered = area(&stroke(1.0, from, to));
+        let diagonal = f64::from(SIZE) * std::f64::consts::SQRT_2;
+        prop_assert!(covered <= 1.03 * diagonal.min(length(from, to)) + 2.0);
+        let polygon = [from, to, [from[0] + 100, from[1] + 100]];
+        samples(|plane| {
+            plane.polygon(&polygon);
+        });
+    }
+
+    #[test]
+    fn polygons_cover_their_area(centre in inside(), turn in 0.0..6.3f64, radius in 10.0..350.0f64, count in 3..8u32) {
+        let corner = |number| {
+            let (sine, cosine) = (turn + f64::from(number) * std::f64::consts::TAU / f64::from(count)).sin_cos();
+            [centre[0] + (radius * cosine) as i64, centre[1] + (radius * sine) as i64]
+        };
+        let corners: Vec<Position> = (0..count).map(corner).collect();
+        let nexts = corners.iter().cycle().skip(1);
+        let sides = || corners.iter().zip(nexts.clone());
+        let twice: i64 = sides().map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
+        let around: f64 = sides().map(|(p, q)| length(*p, *q)).sum();
+        let border = [centre[0], 6400 - centre[0], centre[1], 6400 - centre[1]];
+        prop_assume!(border.iter().all(|&border| border as f64 > radius));
+        let covered = samples(|plane| assert!(plane.polygon(&corners)));
+        let expected = twice as f64 / 20_000.0;
+        prop_assert!(
+            (area(&covered) - expected).abs() <= 0.04 * around + 0.03,
+            "{} instead of {expected}", area(&covered)
+        );
+        let backwards: Vec<Position> = corners.iter().rev().copied().collect();
+        prop_assert!(covered == samples(|plane| assert!(plane.polygon(&backwards))));
+    }
+
+    #[test]
+    fn neighbours_leave_no_gap_and_do_not_overlap(
+        corner in [500..5000i64, 500..5000],
+        [x, y] in [20..780i64, 20..780i64],
+        (u, v) in (1..19i64, 1..19i64),
+    ) {
+        let [left, top] = corner;
+        let square = [[left, top], [left + x, top], [left + x, top + y], [left, top + y]];
+        let middle = [left + x * u / 20, top + y * v / 20];
+        let whole = samples(|plane| assert!(plane.polygon(&square)));
+        let mut sum = vec![0; whole.len()];
+        for (from, to) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+            let part = [square[from], square[to], middle];
+            let part = samples(|plane| assert!(plane.polygon(&part)));
+            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        }
+        // Half planes are rounded, so that where three meet a sample may be missed or met twice.
+        for (whole, sum) in whole.iter().zip(sum) {
+            prop_assert!(whole.abs_diff(sum) <= 3, "{whole} and {sum}");
+        }
+
+    }
+}
+
+#[test]
+fn lines_have_their_ink_on_average() {
+    for width in [0.3, 0.5, 1.0, 1.5, 2.2, 3.0] {
+        let (mut covered, mut expected) = (0.0, 0.0);
+        for turn in 0..60 {
+            let (sine, cosine) = (f64::from(turn) / 60.0 * std::f64::consts::TAU).sin_cos();
+            let from = [3200 + 3 * turn, 3200 + 7 * turn].map(i64::from);
+            let to = [
+                from[0] + (2000.0 * cosine) as i64,
+                from[1] + (2000.0 * sine) as i64,
+            ];
+            covered += area(&stroke(width, from, to));
+            expected += width * (length(from, to) + std::f64::consts::PI * width / 4.0);
+        }
+        let excess = covered / expected - 1.0;
+        assert!(excess.abs() <= 0.02, "{excess:.4} too much at {width}");
+    }
+}
+
+#[test]
+fn a_line_through_the_whole_plane_is_drawn_where_it_is_seen() {
+    let far = 100_000_000_000;
+    let covered = stroke(1.0, [-far, 3250], [far, 3250]);
+    for (pixel, &samples) in covered.iter().enumerate() {
+        let expected = if pixel / SIZE as usize == 32 {
+            SAMPLES
+        } else {
+            0
+        };
+        assert!(
+            samples.abs_diff(expected) <= 2,
+            "{samples} in pixel {pixel}"
+        );
+    }
+}
+
+#[test]
+fn what_is_large_or_not_convex_is_left_to_others() {
+    let star = [0, 2, 4, 1, 3].map(|corner| {
+        let (sine, cosine) = (f64::from(corner) * std::f64::consts::TAU / 5.0).sin_cos();
+        [3000 + (300.0 * cosine) as i64, 3000 + (300.0 * sine) as i64]
+    });
+    let dart = [[0, 0], [200, 100], [0, 200], [50, 100]];
+    let bow = [[0, 0], [200, 200], [200, 0], [0, 200]];
+    let large = [[0, 0], [801, 0], [0, 100]];
+    for polygon in [&star[..], &dart, &bow, &large] {
+        let covered = samples(|plane| assert!(!plane.polygon(polygon)));
+        assert_eq!(area(&covered), 0.0);
+    }
+}
+
+#[test]
+fn polygons_without_an_inside_cover_nothing() {
+    for polygon in [
+        &[[5, 5]][..],
+        &[[5, 5], [90, 70]],
+        &[[5, 5], [90, 90], [205, 205]],
+    ] {
+        assert_eq!(area(&samples(|plane| assert!(plane.polygon(polygon)))), 0.0);
+    }
+}
