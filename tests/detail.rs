@@ -463,3 +463,30 @@ fn a_detail_that_cannot_be_had_is_refused() {
         assert!(!success && said.starts_with(message), "{said}");
     }
 }
+
+/// Where all elements of a step are equally long, a detail is a number of steps.
+#[test]
+fn a_detail_of_even_elements_is_a_number_of_steps() {
+    for name in [
+        "koch",
+        "dragon",
+        "hilbert",
+        "carpet",
+        "self-seeding-square",
+        "gosper",
+    ] {
+        let rule = library(name);
+        let mut options = Options {
+            size: Size::Long(100),
+            detail: detail(4.0, true),
+            ..Options::of(&rule)
+        };
+        let (picture, bytes) = drawn(&rule, 1000, &options);
+        options.detail = None;
+        assert!(picture.steps > 1, "{name}");
+        assert!(
+            drawn(&rule, picture.steps, &options) == (picture, bytes),
+            "{name}"
+        );
+    }
+}

@@ -113,6 +113,23 @@ impl Graph {
         longest * libm::pow(self.longest_ratio(), f64::from(steps))
     }
 
+    /// The length that all fertile elements of the initiator have, and the ratio of all fertile
+    /// instances, if there is one of each and the graph is plain: elements are replaced down to a
+    /// length in so many steps then.
+    #[must_use]
+    pub fn even_lengths(&self) -> Option<[f64; 2]> {
+        if !self.is_plain() || self.resets().contains(&true) {
+            return None;
+        }
+        let fertile = |instance: &&Instance| {
+            !matches!(self.objects[instance.object].replacement, Replacement::Kept)
+        };
+        let start = self.initiator.instances.iter().filter(fertile);
+        let later = self.instances().map(|(_, instance)| instance);
+        let start = one_length(start)?;
+        Some([start, one_length(later.filter(fertile))?])
+    }
+
     /// Whether all that is replaced again and again becomes smaller than any length: no object
     /// comes back to itself at its own size or larger, and no seed is placed as the initiator.
     ///
@@ -185,4 +202,13 @@ impl Graph {
             Replacement::Kept | Replacement::Beyond => false,
         }
     }
+}
+
+/// The length of all instances, if they have one.
+fn one_length<'g>(mut instances: impl Iterator<Item = &'g Instance>) -> Option<f64> {
+    // Rounding makes equal sides a little unequal.
+    const ROUNDING: f64 = 1e-12;
+    let length = instances.next()?.length;
+    let same = |instance: &Instance| (instance.length - length).abs() <= ROUNDING * length;
+    instances.all(same).then_some(length)
 }

@@ -64,6 +64,8 @@ struct Surveyor<'a> {
     graph: &'a Graph,
     growth: Growth<'a>,
     options: &'a Options,
+    /// The most steps.
+    limit: u32,
     /// The elements of the surveys that have been thrown away.
     elements: u64,
 }
@@ -87,6 +89,7 @@ impl<'a> Layout<'a> {
             graph,
             growth: *growth,
             options,
+            limit: growth.steps,
             elements: 0,
         };
         let mut survey = match (options.view.window, options.detail) {
@@ -131,7 +134,7 @@ impl<'a> Surveyor<'a> {
 
     /// Refuses a survey that has met the limit of steps where there should be none.
     fn check(&self, survey: &Survey<'a>) -> Result<(), NoDetail> {
-        let steps = self.growth.steps;
+        let steps = self.limit;
         let decides = |detail: Detail| detail.decides_steps;
         if self.options.detail.is_some_and(decides) && survey.steps >= steps && steps > 0 {
             return Err(NoDetail::TooFewSteps { steps });
@@ -169,12 +172,29 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
+    /// Surveys everything down to elements of a length.
+    fn survey_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
+        let Some([mut length, ratio]) = self.graph.even_lengths() else {
+            return self.survey(Sight::to_length(self.graph, shortest));
+        };
+        // All elements of a step are equally long: a number of steps says the same.
+        let mut steps = 0;
+        while length >= shortest && steps < self.limit {
+            length *= ratio;
+            steps += 1;
+        }
+        self.growth.steps = steps;
+        let mut survey = self.survey(Sight::unbounded())?;
+        survey.steps = steps;
+        Ok(survey)
+    }
+
     /// Surveys everything down to elements of a number of pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
         let start = self.graph.initiator().instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
         let mut shortest = longest * FIRST_LOOK;
-        let mut survey = self.survey(Sight::to_length(self.graph, shortest))?;
+        let mut survey = self.survey_down_to(shortest)?;
         for _ in 0..MOST_LOOKS {
             self.check(&survey)?;
             if !survey.bounds.is_empty() {
@@ -182,7 +202,7 @@ impl<'a> Surveyor<'a> {
             }
             shortest *= FIRST_LOOK;
             self.elements += survey.elements;
-            survey = self.survey(Sight::to_length(self.graph, shortest))?;
+            survey = self.survey_down_to(shortest)?;
         }
         for round in 1.. {
             self.check(&survey)?;
@@ -192,14 +212,14 @@ impl<'a> Surveyor<'a> {
                 break;
             }
             if round == MOST_ROUNDS {
-                if next < shortest / 2.0 && survey.steps < self.growth.steps {
+                if next < shortest / 2.0 && survey.steps < self.limit {
                     return Err(NoDetail::Vanishes.into());
                 }
                 break;
             }
             shortest = next;
             self.elements += survey.elements;
-            survey = self.survey(Sight::to_length(self.graph, shortest))?;
+            survey = self.survey_down_to(shortest)?;
         }
         Ok(survey)
     }
