@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 use std::num::NonZero;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -23,7 +24,8 @@ pub(crate) struct Line<'w, J> {
 
 struct Threads<J> {
     jobs: SyncSender<(u64, J)>,
-    done: Receiver<(u64, J)>,
+    /// What is done; nothing where a thread has panicked.
+    done: Receiver<Option<(u64, J)>>,
     waiting: BTreeMap<u64, J>,
     handed_out: u64,
     taken: u64,
@@ -57,13 +59,19 @@ pub(crate) fn in_order<J: Default + Send, T>(
                 loop {
                     let next = queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok((number, mut job)) = next else { return };
-                    work(&mut job);
-                    if finished.send((number, job)).is_err() {
+                    let worked = panic::catch_unwind(AssertUnwindSafe(|| work(&mut job)));
+                    // The others must not wait for what will not come.
+                    let told = finished.send(worked.is_ok().then_some((number, job)));
+                    if let Err(cause) = worked {
+                        panic::resume_unwind(cause);
+                    }
+                    if told.is_err() {
                         return;
                     }
                 }
             });
         }
+        drop((queue, finished));
         line.threads = Some(Threads {
             jobs,
             done,
@@ -130,10 +138,10 @@ impl<J: Default> Line<'_, J> {
                 continue;
             }
             match threads.done.recv() {
-                Ok((number, piece)) => {
+                Ok(Some((number, piece))) => {
                     threads.waiting.insert(number, piece);
                 }
-                Err(_) => return Err(io::Error::other("a thread has ended")),
+                Ok(None) | Err(_) => return Err(io::Error::other("a thread has ended")),
             }
         }
         Ok(())
@@ -184,5 +192,14 @@ mod tests {
             },
         );
         assert_eq!(failed.unwrap_err().kind(), io::ErrorKind::StorageFull);
+    }
+    #[test]
+    #[should_panic(expected = "scoped thread panicked")]
+    fn a_panic_ends_the_work() {
+        let work = |number: &mut u64| assert!(*number != 50);
+        in_order(NonZero::new(3).unwrap(), work, |line| {
+            let failed = (0..10_000).try_for_each(|number| line.hand_on(number, &mut |_| Ok(())));
+            assert!(failed.is_err());
+        });
     }
 }

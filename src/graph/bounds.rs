@@ -224,6 +224,9 @@ impl Graph {
                     if size <= NEGLIGIBLE * (1.0 + state.offset.abs()) {
                         if reach.alive[state.object] {
                             best = best.max(state.offset + state.lost);
+                        } else if steps.is_some() {
+                            // Whether it is drawn at this very step is not known.
+                            return None;
                         }
                         continue;
                     }

@@ -196,12 +196,12 @@ impl Canvas {
         )
     }
 
-    /// The map from the plane to the picture, in so many units a pixel.
-    pub(super) fn map(&self, units: f64) -> DAffine2 {
-        let scale = self.scale * units;
+    /// A map into the plane as one into the picture, in pixels.
+    pub(super) fn map(&self, map: &DAffine2) -> DAffine2 {
+        let scale = DMat2::from_diagonal(DVec2::new(self.scale, -self.scale));
         DAffine2 {
-            matrix2: DMat2::from_diagonal(DVec2::new(scale, -scale)),
-            translation: DVec2::new(-self.corner.x, self.corner.y) * scale,
+            matrix2: scale * map.matrix2,
+            translation: self.pixel(map.translation),
         }
     }
 }

@@ -9,6 +9,9 @@ use crate::style::{ColorBy, Style};
 
 use super::Survey;
 
+/// What is smaller than this multiple of the whole is left to the walk.
+const SPECK: f64 = 1e-6;
+
 /// A forecast of more steps than this is left to the walk.
 const MOST_STEPS: u32 = 10_000;
 
@@ -26,6 +29,12 @@ impl<'g> Survey<'g> {
         let stands = Standing::at(graph, growth.steps);
         let pad = |object: &Object| survey.pad(object);
         survey.bounds = graph.padded_bounds(growth.steps, pad)?;
+        // The graph is exact beside the whole of the rule, of which this may be a speck.
+        let corners = [survey.bounds.min(), survey.bounds.max()];
+        let far = corners.map(|corner| corner.abs().max_element());
+        if survey.bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1])) {
+            return None;
+        }
         survey.elements = level.elements;
         survey.fractals = level.fractals;
         survey.largest_index = level.elements;
@@ -140,6 +149,7 @@ mod tests {
 
     use super::Survey;
     use crate::catalogue::{Catalogue, Shelf};
+    use crate::diagnostic::Source;
     use crate::document::Document;
     use crate::geometry::DVec2;
     use crate::graph::Graph;
@@ -190,5 +200,30 @@ mod tests {
             }
         }
         assert!(told > 1000, "{told}");
+    }
+    /// What is drawn in some steps only, and what has shrunk to a speck.
+    #[test]
+    fn what_the_graph_does_not_tell_is_left_to_the_walk() {
+        let spine = "initiator: [[0, 0], {to: [1, 0], fertile: false}, {from: [1, 0], to: [1.5, 0]}]\n\
+                     generators:\n  a: [{from: [1, 0], to: [1.5, 0], visible: false}]\n  \
+                     b: [{from: [1, 0], to: [1.5, 0]}]\n\
+                     select: [{when: age % 2 == 1, use: b}, {use: a}]\n";
+        let speck = "initiator: segment\nbase_element: triangle\ngenerator: [[0, 0], {to: [0.33, -0.04]}]\n";
+        for text in [spine, speck] {
+            let source = Source::new("test.yaml", text);
+            let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+            let rule = Arc::new(document.resolve(&[]).unwrap().0);
+            for steps in [2, 20, 60, 80] {
+                let graph = Graph::compile(&rule, steps).unwrap();
+                let growth = Growth::steps(steps);
+                let style = Style::default();
+                let told = Survey::of(&graph, &growth, &style, steps).unwrap();
+                let mut walked = Survey::new(&graph, &style, steps);
+                walk(&graph, &growth, &mut walked).unwrap();
+                let off = told.bounds.size() - walked.bounds.size();
+                let size = walked.bounds.size().max_element();
+                assert!(off.abs().max_element() <= 1e-9 * size, "{text} at {steps}");
+            }
+        }
     }
 }

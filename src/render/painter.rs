@@ -1,6 +1,6 @@
 use std::io;
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::DVec2;
 use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Width};
@@ -66,8 +66,6 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
 pub(super) struct Painter<'a, 's, S> {
     scene: &'a Scene<'a>,
     pass: Pass,
-    /// From the plane to positions.
-    map: DAffine2,
     /// The class's colour, where colours tell something.
     colour: Option<Colour>,
     tracer: Tracer<'s, S>,
@@ -84,7 +82,6 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Self {
             scene,
             pass,
-            map: scene.canvas.map(FINE),
             colour: match pass {
                 Pass::Areas => None,
                 Pass::Class(class) => scene.classes.colour(class, scene.style),
@@ -105,7 +102,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     #[inline]
     fn position(&self, point: DVec2) -> Position {
-        position(self.map.transform_point2(point))
+        position(self.scene.canvas.pixel(point) * FINE)
     }
 
     /// Goes on with the open path if it looks alike, or begins a new one.
@@ -246,9 +243,10 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     /// Lines of one class that end in these points, one after another.
     fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) -> io::Result<()> {
         self.element(first)?;
-        let map = self.map * *run.map();
+        let map = self.scene.canvas.map(run.map());
         for &end in &ends[1..] {
-            self.tracer.line_to(position(map.transform_point2(end)));
+            self.tracer
+                .line_to(position(map.transform_point2(end) * FINE));
         }
         self.previous = ends.last().map(|&end| Previous {
             end: run.map().transform_point2(end),
