@@ -16,12 +16,14 @@ mod compile;
 mod count;
 mod error;
 mod forecast;
+mod limit;
 mod reach;
 mod state;
 
 pub use count::Count;
 pub use error::CompileError;
-pub use forecast::{Forecast, Level, Population, TooLarge};
+pub use forecast::{Forecast, Level, Population};
+pub use limit::TooLarge;
 
 use std::sync::Arc;
 

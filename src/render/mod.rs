@@ -84,8 +84,8 @@ pub struct Options {
     pub detail: Option<Detail>,
     /// What the file says of itself.
     pub labels: Labels,
-    /// The threads that work on it, as many as the machine has cores unless said otherwise. The
-    /// bytes do not depend on them.
+    /// The threads that write it, as many as the machine has cores unless said otherwise; a PNG takes
+    /// one. The bytes do not depend on them.
     pub threads: NonZero<usize>,
 }
 
