@@ -221,12 +221,11 @@ impl Graph {
                     continue;
                 }
                 if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
-                    if size <= NEGLIGIBLE * (1.0 + state.offset.abs()) {
+                    // What is not surely drawn at this very step is followed to its end.
+                    let known = reach.alive[state.object] || steps.is_none();
+                    if known && size <= NEGLIGIBLE * (1.0 + state.offset.abs()) {
                         if reach.alive[state.object] {
                             best = best.max(state.offset + state.lost);
-                        } else if steps.is_some() {
-                            // Whether it is drawn at this very step is not known.
-                            return None;
                         }
                         continue;
                     }
