@@ -29,8 +29,8 @@
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
-//! Names and files are the [`catalogue`]'s work, mistakes in files are
-//! [`diagnostic`]s, numbers in files are [`expression`]s.
+//! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in
+//! files are [`expression`]s, and text is written by many threads in order by [`parallel`].
 
 pub mod build;
 pub mod catalogue;

@@ -2,7 +2,9 @@
 //!
 //! The walk goes depth-first through the graph. It holds one entry a level, so its memory grows
 //! with the number of steps and not with the number of elements. Where new fractals are seeded, a
-//! fractal is walked once for its own elements and again, to ever greater depth, for its seeds.
+//! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
+//! an object becomes in its last steps is worked out once, as a block, for visitors that take
+//! elements by [`Run`]s.
 
 mod block;
 mod descent;

@@ -1,8 +1,8 @@
 //! Pictures of approximants.
 //!
-//! A picture is made in two walks or more: a survey that learns what there is to draw and how
-//! large it is, and one walk for every class of colour, so that no element is held in memory. What
-//! is walked over becomes paths in whole hundredths of a pixel, the same for every format. Walks
+//! A picture begins with a survey of what there is to draw and how large it is, which the graph
+//! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
+//! that no element is held in memory. What is walked over becomes paths in whole hundredths of a pixel, the same for every format. Walks
 //! leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
 
 mod canvas;
