@@ -30,8 +30,7 @@ fn rule(name: &str) -> Arc<Rule> {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     let document = Document::read(&source, &catalogue).unwrap();
-    let (rule, _) = document.resolve(&[]).unwrap();
-    Arc::new(rule)
+    document.resolve(&[]).unwrap().0.into_rule().unwrap()
 }
 
 fn graph(name: &str, steps: u32) -> Graph {
@@ -72,7 +71,7 @@ fn walk_elements(bencher: Bencher, (name, steps): (&str, u32)) {
 fn write_svg(bencher: Bencher, (name, steps): (&str, u32)) {
     let graph = graph(name, steps);
     let growth = Growth::steps(steps);
-    let options = Options::of(graph.rule());
+    let options = Options::of(rule(name).heading());
     let write = || render::write(&graph, &growth, &options, &mut io::sink()).unwrap();
     bencher
         .counter(ItemsCount::new(write().elements))

@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             title: format!("Polygons with {sides} sides"),
             ..Labels::default()
         },
-        ..Options::of(&rule)
+        ..Options::of(rule.heading())
     };
     let out = &mut io::BufWriter::new(io::stdout().lock());
     render::write(&graph, &Growth::steps(steps), &options, out)?;

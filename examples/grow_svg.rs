@@ -4,11 +4,9 @@
 
 use std::error::Error;
 use std::io;
-use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Options, Size};
 
@@ -21,12 +19,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let source = catalogue
         .rule(&name)
         .map_err(|error| error.message().to_owned())?;
-    let (rule, _warnings) = Document::read(&source, &catalogue)?.resolve(&[])?;
-    let rule = Arc::new(rule);
-    let graph = Graph::compile(&rule, steps)?;
+    let (model, _warnings) = Document::read(&source, &catalogue)?.resolve(&[])?;
+    let graph = model.compile(steps)?;
     let options = Options {
         size: Size::Long(800),
-        ..Options::of(&rule)
+        ..Options::of(model.heading())
     };
     let out = &mut io::BufWriter::new(io::stdout().lock());
     render::write(&graph, &Growth::steps(steps), &options, out)?;

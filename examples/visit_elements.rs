@@ -6,13 +6,11 @@
 
 use std::convert::Infallible;
 use std::error::Error;
-use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::DVec2;
-use kfrac::graph::Graph;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
 
 /// Writes L for every turn to the left and R for every turn to the right.
@@ -57,8 +55,8 @@ generators:
 select: {by_index: [left, right]}
 ";
     let source = Source::new("dragon", text);
-    let (rule, _warnings) = Document::read(&source, &Catalogue::embedded())?.resolve(&[])?;
-    let graph = Graph::compile(&Arc::new(rule), 5)?;
+    let (model, _warnings) = Document::read(&source, &Catalogue::embedded())?.resolve(&[])?;
+    let graph = model.compile(5)?;
     let mut turns = Turns::default();
     let walked = walk(&graph, &Growth::steps(5), &mut turns)?;
     println!("{} elements, turns {}", walked.elements, turns.word);

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use include_dir::{Dir, include_dir};
 
 use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+use crate::model::Kind;
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
 
@@ -28,6 +29,20 @@ pub enum Shelf {
 }
 
 impl Shelf {
+    /// The shelf of a kind of files that can be grown.
+    #[must_use]
+    pub fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Rule => Self::Rules,
+        }
+    }
+
+    /// The shelves of what can be grown, in the order in which names are looked up.
+    #[must_use]
+    pub fn grown() -> [Self; Kind::ALL.len()] {
+        Kind::ALL.map(Self::of)
+    }
+
     /// All shelves, in the order in which they are listed.
     pub const ALL: [Self; 4] = [
         Self::Rules,
@@ -117,7 +132,7 @@ impl Catalogue {
         let name = path.to_string_lossy();
         match fs::metadata(path) {
             Ok(metadata) if !metadata.is_dir() => return read_file(path),
-            Ok(_) if self.find(Shelf::Rules, &name).is_none() => {
+            Ok(_) if self.candidates(&Shelf::grown(), &name).is_empty() => {
                 return Err(Diagnostic::error(format!(
                     "'{name}' is a folder, not a rule file"
                 )));
@@ -128,7 +143,7 @@ impl Catalogue {
         if looks_like_path {
             return Err(Diagnostic::error(format!("there is no file '{name}'")));
         }
-        self.component(Shelf::Rules, &name)
+        self.named(&Shelf::grown(), &name)
     }
 
     /// The rule that the last one of a chain extends: a file beside it or by path, or a rule by name.
@@ -159,7 +174,7 @@ impl Catalogue {
         if !chain.iter().any(|rule| is_same_file(rule, &first)) {
             return Ok(first);
         }
-        for entry in self.candidates(Shelf::Rules, name) {
+        for entry in self.candidates(&Shelf::grown(), name) {
             let next = self.open(&entry)?;
             if !chain.iter().any(|rule| is_same_file(rule, &next)) {
                 return Ok(next);
@@ -174,14 +189,19 @@ impl Catalogue {
     ///
     /// If there is none of this name, or it cannot be read.
     pub fn component(&self, shelf: Shelf, name: &str) -> Result<Arc<Source>, Diagnostic> {
-        let Some(entry) = self.find(shelf, name) else {
-            let noun = shelf.noun();
+        self.named(&[shelf], name)
+    }
+
+    /// What has a name on one of some shelves.
+    fn named(&self, shelves: &[Shelf], name: &str) -> Result<Arc<Source>, Diagnostic> {
+        let Some(entry) = self.candidates(shelves, name).into_iter().next() else {
+            let noun = shelves[0].noun();
             let mut error =
                 Diagnostic::error(format!("there is no {noun} '{name}' in the library"));
             let names: Vec<_> = self
                 .entries()
                 .into_iter()
-                .filter(|entry| entry.shelf == shelf)
+                .filter(|entry| shelves.contains(&entry.shelf))
                 .collect();
             let names = names.iter().map(|entry| entry.name.as_str());
             error = error.hint(
@@ -209,33 +229,35 @@ impl Catalogue {
         Source::read(format!("library/{name}"), bytes.to_vec())
     }
 
-    fn find(&self, shelf: Shelf, name: &str) -> Option<Entry> {
-        self.candidates(shelf, name).into_iter().next()
-    }
-
-    /// All files of a name; the first hides the others.
-    fn candidates(&self, shelf: Shelf, name: &str) -> Vec<Entry> {
+    /// All files of a name on some shelves; the first hides the others.
+    fn candidates(&self, shelves: &[Shelf], name: &str) -> Vec<Entry> {
         let name = without_extension(name);
         let is_name = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
         if name.is_empty() || name.starts_with('.') || !name.chars().all(is_name) {
             return Vec::new();
         }
-        let entry = |path| Entry {
+        let entry = |shelf, path| Entry {
             name: name.into(),
             shelf,
             path,
         };
         let mut found = Vec::new();
         for folder in &self.folders {
-            let own = (shelf == Shelf::Rules).then(|| folder.clone());
-            for folder in [folder.join(shelf.folder())].into_iter().chain(own) {
+            let own = shelves.contains(&Shelf::Rules).then_some(Shelf::Rules);
+            let own = own.map(|shelf| (shelf, folder.clone()));
+            let shelved = shelves
+                .iter()
+                .map(|shelf| (*shelf, folder.join(shelf.folder())));
+            for (shelf, folder) in shelved.chain(own) {
                 let files = EXTENSIONS.map(|extension| folder.join(format!("{name}{extension}")));
                 let files = files.into_iter().filter(|path| path.is_file());
-                found.extend(files.map(|path| entry(Some(path))));
+                found.extend(files.map(|path| entry(shelf, Some(path))));
             }
         }
-        let embedded = EMBEDDED.get_file(format!("{}/{name}.yaml", shelf.folder()));
-        found.extend(embedded.map(|_| entry(None)));
+        for &shelf in shelves {
+            let embedded = EMBEDDED.get_file(format!("{}/{name}.yaml", shelf.folder()));
+            found.extend(embedded.map(|_| entry(shelf, None)));
+        }
         found
     }
 

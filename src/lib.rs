@@ -10,10 +10,10 @@
 //!  library/*.yaml, a user's file, a program (build)
 //!     │  document   what was written, with places in the file; parents and components put in
 //!     ▼
-//!  RuleDocument
-//!     │  rule       names looked up, expressions compiled, everything checked
+//!  the document of its kind, under a heading that all kinds have
+//!     │  resolve    names looked up, expressions compiled, everything checked
 //!     ▼
-//!  Rule             the validated model
+//!  model            a rule, validated
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
@@ -44,9 +44,12 @@ pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
+pub mod heading;
 pub mod measure;
+pub mod model;
 pub mod parallel;
 pub mod render;
+mod resolve;
 pub mod rule;
 pub mod style;
 mod wording;

@@ -15,22 +15,19 @@ mod mutations;
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::graph::Graph;
-use kfrac::rule::Parameter;
+use kfrac::heading::Parameter;
 
 /// All that `kfrac check` says of a rule.
 fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnostics> {
     let source = catalogue.rule(argument)?;
-    let (rule, mut found) = Document::read(&source, catalogue)?.resolve(&[])?;
-    let rule = Arc::new(rule);
-    let steps = rule.steps().unwrap_or(1).min(16);
-    if let Err(error) = Graph::compile(&rule, steps) {
-        found.push(error.diagnostic(&rule));
+    let (model, mut found) = Document::read(&source, catalogue)?.resolve(&[])?;
+    let steps = model.heading().steps.unwrap_or(1).min(16);
+    if let Err(error) = model.compile(steps) {
+        found.push(model.diagnostic(&error));
     }
     Ok(found)
 }
@@ -91,9 +88,9 @@ fn round_outlines_may_end_where_they_start() {
         );
         let source = Source::new("round.yaml", text);
         let document = Document::read(&source, &Catalogue::embedded()).unwrap();
-        let (rule, doubts) = document.resolve(&[]).unwrap();
+        let (model, doubts) = document.resolve(&[]).unwrap();
         assert!(doubts.is_empty(), "{doubts}");
-        let base_element = &rule.base_elements()[0];
+        let base_element = &model.rule().unwrap().base_elements()[0];
         assert!(base_element.is_closed());
         assert_eq!(base_element.pieces().len(), pieces, "{outline}");
         assert_eq!(
@@ -131,7 +128,7 @@ fn a_rule_sets_the_parameters_of_its_parents_components() {
     ]);
     let catalogue = Catalogue::embedded();
     let parameters = |name: &str| {
-        let (rule, _) = read(&folder.path().join(name), &catalogue)
+        let (model, _) = read(&folder.path().join(name), &catalogue)
             .resolve(&[])
             .unwrap();
         let of = |parameter: &Parameter| {
@@ -142,7 +139,12 @@ fn a_rule_sets_the_parameters_of_its_parents_components() {
                 parameter.max,
             )
         };
-        rule.parameters().iter().map(of).collect::<Vec<_>>()
+        model
+            .heading()
+            .parameters
+            .iter()
+            .map(of)
+            .collect::<Vec<_>>()
     };
     let sway = ("sway".to_owned(), 5.0, Some(0.0), Some(60.0));
     let spread = |most| ("spread".to_owned(), 10.0, Some(0.0), Some(most));
@@ -164,7 +166,7 @@ fn a_rule_extends_a_file_beside_it_and_the_rule_that_it_hides() {
     let catalogue = Catalogue::with_folders(vec![folder.path().into()]);
     for name in ["koch", "koch.yml", "other", "other.yaml"] {
         let document = read(Path::new(name), &catalogue);
-        let (rule, _) = document.resolve(&[]).unwrap();
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         // The embedded rule with a generator of this library.
         assert_eq!(rule.generators()[0].parts()[0].elements.len(), 1);
         assert_eq!(

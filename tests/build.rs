@@ -9,7 +9,8 @@ mod random;
 use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
-use kfrac::rule::{BaseElement, Parameter, Piece, Placement, Rule, arc};
+use kfrac::heading::Parameter;
+use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
 use kfrac::style::{Cap, Colour, Palette, Style, View, Width};
 
 const SEGMENT: [(i32, i32); 2] = [(0, 0), (1, 0)];
@@ -48,11 +49,20 @@ fn assert_is(expected: &Rule, rule: &RuleBuilder) {
     let built = rule.build().unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(built, *expected);
     let again = common::document_of(&rule.document().unwrap().to_yaml());
-    assert_eq!(again.resolve(&[]).unwrap().0, *expected, "saved as YAML");
+    assert_eq!(
+        **again.resolve(&[]).unwrap().0.rule().unwrap(),
+        *expected,
+        "saved as YAML"
+    );
 }
 
 fn assert_is_written(text: &str, rule: &RuleBuilder) {
-    let (expected, _) = common::document_of(text).resolve(&[]).unwrap();
+    let expected = common::document_of(text)
+        .resolve(&[])
+        .unwrap()
+        .0
+        .into_rule()
+        .unwrap();
     assert_is(&expected, rule);
 }
 

@@ -29,12 +29,9 @@ fn library(name: &str) -> Arc<Rule> {
 
 fn read(text: &str) -> Arc<Rule> {
     let document: Document = document_of(text);
-    Arc::new(
-        document
-            .resolve(&[])
-            .unwrap_or_else(|e| panic!("{e}{text}"))
-            .0,
-    )
+    let resolved = document.resolve(&[]);
+    let (model, _) = resolved.unwrap_or_else(|e| panic!("{e}{text}"));
+    model.into_rule().unwrap()
 }
 
 /// Collects elements down to a length, and what has been replaced on the way.
@@ -197,7 +194,7 @@ fn window(rule: &Rule, window: [f64; 4], side: u32) -> Options {
             margin: 0.0,
         },
         size: Size::Exactly(side, side),
-        ..Options::of(rule)
+        ..Options::of(rule.heading())
     }
 }
 
@@ -314,7 +311,7 @@ fn what_has_no_end_is_refused() {
         let graph = compiled(&rule, limit);
         let options = Options {
             detail: detail(1.0, true),
-            ..Options::of(&rule)
+            ..Options::of(rule.heading())
         };
         let growth = Growth::steps(limit);
         match render::write(&graph, &growth, &options, &mut Vec::new()) {
@@ -479,7 +476,7 @@ fn a_detail_of_even_elements_is_a_number_of_steps() {
         let mut options = Options {
             size: Size::Long(100),
             detail: detail(4.0, true),
-            ..Options::of(&rule)
+            ..Options::of(rule.heading())
         };
         let (picture, bytes) = drawn(&rule, 1000, &options);
         options.detail = None;

@@ -4,13 +4,12 @@
 
 mod common;
 
-use kfrac::graph::Graph;
 use kfrac::measure::{Similarity, similarity_dimension};
 
 fn dimension(text: &str) -> Similarity {
     let document = common::document_of(text);
-    let (rule, _) = document.resolve(&[]).unwrap();
-    similarity_dimension(&Graph::compile(&std::sync::Arc::new(rule), 3).unwrap())
+    let (model, _) = document.resolve(&[]).unwrap();
+    similarity_dimension(&model.compile(3).unwrap())
 }
 
 fn value(text: &str) -> f64 {

@@ -22,7 +22,7 @@ fn names() -> impl Iterator<Item = String> {
 
 /// The figure of a rule as a file, with its size.
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
-    let (rule, _) = document.resolve(&[]).unwrap();
+    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
     let title = rule.description().title.clone().unwrap_or_default();
     let options = Options {
         format,
@@ -34,7 +34,7 @@ fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, 
         ..Options::default()
     };
     let mut bytes = Vec::new();
-    let size = rule::write(&rule, document.rule(), &options, &mut bytes).unwrap();
+    let size = rule::write(&rule, document.rule().unwrap(), &options, &mut bytes).unwrap();
     (bytes, size)
 }
 

@@ -26,12 +26,9 @@ fn read(text: &str) -> Arc<Rule> {
     let source = Source::new("random.yaml", text);
     let document =
         Document::read(&source, &Catalogue::embedded()).unwrap_or_else(|e| panic!("{e}{text}"));
-    Arc::new(
-        document
-            .resolve(&[])
-            .unwrap_or_else(|e| panic!("{e}{text}"))
-            .0,
-    )
+    let resolved = document.resolve(&[]);
+    let (model, _) = resolved.unwrap_or_else(|e| panic!("{e}{text}"));
+    model.into_rule().unwrap()
 }
 
 /// Everything that a walk tells.
@@ -258,7 +255,7 @@ proptest! {
             let graph = Graph::compile(&rule, steps).unwrap();
             let mut bytes = Vec::new();
             let growth = Growth { seed, ..Growth::steps(steps) };
-            let options = Options { size: Size::Long(300), threads, ..Options::of(&rule) };
+            let options = Options { size: Size::Long(300), threads, ..Options::of(rule.heading()) };
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)
         };
@@ -373,7 +370,7 @@ fn blocks_of_the_library_are_the_elements_one_by_one() {
     for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
         let source = catalogue.open(entry).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
-        let rule = Arc::new(document.resolve(&[]).unwrap().0);
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let steps = rule.steps().unwrap_or(6);
         let graph = Graph::compile(&rule, steps).unwrap();
         blocks_agree(

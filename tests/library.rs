@@ -81,7 +81,7 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
     let options = Options {
         size,
         labels,
-        ..Options::of(rule)
+        ..Options::of(rule.heading())
     };
     let mut bytes = Vec::new();
     render::write(graph, &Growth::steps(steps), &options, &mut bytes)

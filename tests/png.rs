@@ -121,7 +121,7 @@ fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
     let options = |format| Options {
         format,
         size: Size::Long(size),
-        ..Options::of(rule)
+        ..Options::of(rule.heading())
     };
     let svg = drawn(rule, steps, &options(Format::Svg));
     let png = read_png(&drawn(rule, steps, &options(Format::Png)));
@@ -242,7 +242,7 @@ fn pixels_take_no_more_bits_than_they_need() {
         let options = Options {
             format: Format::Png,
             size: Size::Long(300),
-            ..Options::of(&rule)
+            ..Options::of(rule.heading())
         };
         let read = read_png(&drawn(&rule, 3, &options));
         assert_eq!((read.colour, read.depth), expected, "{text}");
@@ -259,7 +259,7 @@ fn a_png_says_what_it_is() {
             description: "Step 2 of koch.".into(),
             provenance: "# kfrac grow 'Schöne Regel.yaml'\ninitiator: segment\n".into(),
         },
-        ..Options::of(&rule)
+        ..Options::of(rule.heading())
     };
     let texts = read_png(&drawn(&rule, 2, &options)).texts;
     let expected = [
@@ -280,7 +280,7 @@ fn pictures_that_are_too_large_are_refused_with_the_memory_they_would_take() {
     let options = Options {
         format: Format::Png,
         size: Size::Exactly(200_000, 100_000),
-        ..Options::of(&rule)
+        ..Options::of(rule.heading())
     };
     let mut bytes = Vec::new();
     let error =

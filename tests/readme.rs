@@ -6,7 +6,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 use std::convert::Infallible;
-use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
@@ -66,11 +65,11 @@ fn check(file: &str, text: &str) -> usize {
         let source = Source::new(name.as_str(), text.as_str());
         let document = Document::read(&source, &catalogue)
             .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
-        let (rule, warnings) = document
+        let (model, warnings) = document
             .resolve(&[])
             .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
         assert!(warnings.is_empty(), "{name}: {warnings:#?}");
-        let graph = Graph::compile(&Arc::new(rule), 2).unwrap();
+        let graph = model.compile(2).unwrap();
         let mut visible = Visible {
             graph: &graph,
             count: 0,

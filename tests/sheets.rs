@@ -27,7 +27,7 @@ fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::Written, St
         .collect();
     let options = Options {
         size: Size::Long(200),
-        ..Options::of(&rule)
+        ..Options::of(rule.heading())
     };
     let mut bytes = Vec::new();
     let written = sheet::write(&cells, columns, &options, &mut bytes).unwrap();

@@ -74,10 +74,10 @@ fn read(source: &Arc<Source>) -> Option<(Document, Arc<Rule>)> {
     let read = Document::read(source, &Catalogue::embedded())
         .and_then(|document| document.resolve(&[]).map(|resolved| (document, resolved)));
     match read {
-        Ok((document, (rule, warnings))) => {
+        Ok((document, (model, warnings))) => {
             assert!(!warnings.has_errors(), "{warnings}");
             said(&warnings);
-            Some((document, Arc::new(rule)))
+            Some((document, model.into_rule()?))
         }
         Err(errors) => {
             assert!(errors.has_errors(), "refused without an error");
@@ -161,7 +161,7 @@ fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, S
             provenance: String::new(),
         },
         threads: NonZero::<usize>::MIN,
-        ..Options::of(rule)
+        ..Options::of(rule.heading())
     };
     let mut svg = Vec::new();
     render::write(graph, growth, &options, &mut svg).map_err(|error| error.to_string())?;

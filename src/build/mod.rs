@@ -32,7 +32,8 @@
 //!
 //! ```
 //! use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
-//! use kfrac::rule::{Parameter, Placement};
+//! use kfrac::heading::Parameter;
+//! use kfrac::rule::Placement;
 //!
 //! let roof = Elements::new()
 //!     .point((0, 0))
@@ -50,8 +51,8 @@
 //!     .generator("roof", swaying)
 //!     .document()?;
 //! println!("{}", document.to_yaml());
-//! let (rule, doubts) = document.resolve(&[])?;
-//! assert!(rule.is_random() && doubts.is_empty());
+//! let (model, doubts) = document.resolve(&[])?;
+//! assert!(model.rule().is_some_and(|rule| rule.is_random()) && doubts.is_empty());
 //! # Ok::<(), kfrac::diagnostic::Diagnostics>(())
 //! ```
 
@@ -64,11 +65,14 @@ pub use elements::{Element, Elements};
 pub use generator::{Generator, Move};
 pub use number::{Number, Point};
 
+use std::sync::Arc;
+
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
-use crate::rule::{BaseElement, Description, Parameter, Rule};
+use crate::heading::{Description, Parameter};
+use crate::rule::{BaseElement, Rule};
 use crate::style::{Style, View};
 
 use written::Entries;
@@ -233,7 +237,10 @@ impl RuleBuilder {
     /// All that is wrong with it: no element in a list, no generator or one that is not there, a
     /// number that is not finite, an expression that cannot be read, and so on.
     pub fn build(&self) -> Result<Rule, Diagnostics> {
-        let (rule, _doubts) = self.document()?.resolve(&[])?;
-        Ok(rule)
+        let (model, _doubts) = self.document()?.resolve(&[])?;
+        let rule = model.into_rule();
+        Ok(Arc::unwrap_or_clone(rule.unwrap_or_else(|| {
+            unreachable!("what is built says no other kind")
+        })))
     }
 }

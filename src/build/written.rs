@@ -1,7 +1,8 @@
 //! The values of a rule as a file writes them.
 
 use crate::document::node::{Key, Node, Value};
-use crate::rule::{BaseElement, Description, Piece};
+use crate::heading::Description;
+use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Named, Palette, Style, View, Width};
 
 use super::{Number, Point};

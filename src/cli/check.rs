@@ -1,14 +1,12 @@
 //! `kfrac check`: everything that is wrong with rule files.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::Document;
-use crate::graph::Graph;
 
 use super::{Failure, help, output, rule, text};
 
@@ -83,12 +81,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let source = rule::open(file, catalogue)?;
     let document = Document::read(&source, catalogue)?;
-    let (rule, mut diagnostics) = document.resolve(&[])?;
-    let rule = Arc::new(rule);
-    let steps = rule.steps().unwrap_or(1).min(16);
+    let (model, mut diagnostics) = document.resolve(&[])?;
+    let steps = model.heading().steps.unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
-    if let Err(error) = Graph::compile(&rule, steps) {
-        diagnostics.push(error.diagnostic(&rule));
+    if let Err(error) = model.compile(steps) {
+        diagnostics.push(model.diagnostic(&error));
     }
     Ok(diagnostics)
 }

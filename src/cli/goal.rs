@@ -56,7 +56,9 @@ impl Goal {
                 return drawn;
             };
             let more = (2 * steps).min(steps::MOST_STEPS);
-            graph = Graph::compile(&loaded.rule, more)
+            graph = loaded
+                .model
+                .compile(more)
                 .map_err(|error| RenderError::Walk(WalkError::NotFinite(error)))?;
             // A graph that is too large to resolve cannot be cut.
             if more == steps || graph.counts_index() {

@@ -183,8 +183,8 @@ impl Arguments {
         options.extend(self.picture.options());
         render::Options {
             format,
-            style: self.picture.style(&loaded.rule),
-            view: self.picture.view(&loaded.rule),
+            style: self.picture.style(loaded.model.heading()),
+            view: self.picture.view(loaded.model.heading()),
             size: self.size,
             threads: self.growth.threads(),
             detail: goal.detail(),

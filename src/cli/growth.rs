@@ -125,7 +125,9 @@ impl GrowthArguments {
         match error {
             RenderError::Io(error) => output::failed(error, path),
             RenderError::Walk(WalkError::Cancelled) => Failure::Interrupted,
-            RenderError::Walk(WalkError::NotFinite(error)) => error.diagnostic(&loaded.rule).into(),
+            RenderError::Walk(WalkError::NotFinite(error)) => {
+                loaded.model.diagnostic(&error).into()
+            }
             RenderError::Walk(WalkError::TooManyElements { .. }) => {
                 let limit = counted(&self.max_elements.into(), "element");
                 anyhow!(

@@ -8,9 +8,10 @@ use crate::catalogue::Catalogue;
 use crate::estimate::{Estimate, Estimator};
 use crate::geometry::Bounds;
 use crate::graph::{Count, Graph, Level};
+use crate::heading::Parameter;
 use crate::measure::similarity_dimension;
 use crate::render::Options;
-use crate::rule::Parameter;
+use crate::rule::Generator;
 use crate::wording;
 
 use super::growth::{bounds, rough_bounds};
@@ -194,12 +195,13 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         counts.map(Some)
     });
     let similarity = similarity_dimension(graph);
-    let params = loaded.rule.parameters().iter();
+    let heading = loaded.model.heading();
+    let params = heading.parameters.iter();
     Info {
         name: &loaded.name,
-        kind: "rule",
+        kind: loaded.model.kind().name(),
         space: 2,
-        title: loaded.rule.description().title.as_deref(),
+        title: heading.description.title.as_deref(),
         params: params
             .map(|parameter| (parameter.name.clone(), number(parameter.value)))
             .collect(),
@@ -231,7 +233,7 @@ struct Row {
 fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Option<Vec<Row>> {
     /// Boxes change little from here on.
     const SETTLED: u32 = 12;
-    let options = Options::of(&loaded.rule);
+    let options = Options::of(loaded.model.heading());
     let estimator = Estimator::new(graph, &options);
     let mut forecast = graph.forecast()?;
     let mut rows = Vec::new();
@@ -262,8 +264,8 @@ fn corners(bounds: &Bounds) -> Corners {
 /// For people.
 fn described(loaded: &Loaded, info: &Info<'_>) -> String {
     let mut text = String::new();
-    let rule = &loaded.rule;
-    let description = rule.description();
+    let heading = loaded.model.heading();
+    let description = &heading.description;
     let mut line = |label: &str, value: &str| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{label:<12}{value}");
@@ -281,14 +283,14 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
     if !description.tags.is_empty() {
         line("tags", &description.tags.join(", "));
     }
-    for parameter in rule.parameters() {
+    for parameter in &heading.parameters {
         line("parameter", &parameter_line(parameter));
     }
-    let names: Vec<_> = rule
-        .generators()
-        .iter()
-        .map(crate::rule::Generator::name)
-        .collect();
+    let generators = loaded
+        .model
+        .rule()
+        .map_or(&[][..], |rule| rule.generators());
+    let names: Vec<_> = generators.iter().map(Generator::name).collect();
     if names.len() > 1 {
         line("generators", &names.join(", "));
     }

@@ -12,7 +12,7 @@ pub(super) fn labels(
     subcommand: &str,
     options: impl IntoIterator<Item = (&'static str, String)>,
 ) -> render::Labels {
-    let description = loaded.rule.description();
+    let description = &loaded.model.heading().description;
     let title = description
         .title
         .clone()
@@ -22,7 +22,7 @@ pub(super) fn labels(
         env!("CARGO_PKG_VERSION"),
         command(loaded, subcommand, options)
     );
-    for parameter in loaded.rule.parameters() {
+    for parameter in &loaded.model.heading().parameters {
         provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
     }
     provenance.push_str(&loaded.document.to_yaml());

@@ -2,8 +2,8 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::heading::Heading;
 use crate::render::Size;
-use crate::rule::Rule;
 use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Width};
 
 /// Options of pictures.
@@ -47,8 +47,8 @@ pub(super) struct PictureArguments {
 
 impl PictureArguments {
     /// The rule's style with what is asked for.
-    pub(super) fn style(&self, rule: &Rule) -> Style {
-        let own = rule.style();
+    pub(super) fn style(&self, heading: &Heading) -> Style {
+        let own = &heading.style;
         Style {
             stroke: self.stroke.or(own.stroke),
             width: self.stroke_width.unwrap_or(own.width),
@@ -67,10 +67,10 @@ impl PictureArguments {
     }
 
     /// The rule's view with what is asked for.
-    pub(super) fn view(&self, rule: &Rule) -> View {
+    pub(super) fn view(&self, heading: &Heading) -> View {
         View {
-            window: self.view.or(rule.view().window),
-            margin: self.margin.unwrap_or(rule.view().margin),
+            window: self.view.or(heading.view.window),
+            margin: self.margin.unwrap_or(heading.view.margin),
         }
     }
 

@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity, Source, did_you_mean};
 use crate::document::{Document, Setting};
 use crate::expression::{Expression, Scope};
 use crate::graph::Graph;
-use crate::rule::Rule;
+use crate::model::Model;
 
 use super::{Failure, text};
 
@@ -68,15 +68,16 @@ pub(super) struct Loaded {
     /// What messages call it.
     pub(super) name: String,
     pub(super) document: Document,
-    pub(super) rule: Arc<Rule>,
+    pub(super) model: Model,
     /// The parameters that were set.
     pub(super) settings: Vec<Setting>,
 }
 
 impl Loaded {
-    /// The rule's graph, resolved for a number of steps.
+    /// The graph, resolved for a number of steps.
     pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
-        Graph::compile(&self.rule, steps).map_err(|error| error.diagnostic(&self.rule).into())
+        let compiled = self.model.compile(steps);
+        compiled.map_err(|error| self.model.diagnostic(&error).into())
     }
 }
 
@@ -128,14 +129,14 @@ impl RuleArguments {
         for setting in &self.set {
             self.check_setting(setting, &document, &name)?;
         }
-        let (rule, warnings) = document.resolve(&self.set)?;
+        let (model, warnings) = document.resolve(&self.set)?;
         if !quiet && !warnings.is_empty() {
             text::complain(&warnings);
         }
         Ok(Loaded {
             name,
             document,
-            rule: Arc::new(rule),
+            model,
             settings: self.set.clone(),
         })
     }
@@ -147,7 +148,7 @@ impl RuleArguments {
         document: &Document,
         rule: &str,
     ) -> Result<(), Failure> {
-        let params = &document.rule().params;
+        let params = &document.heading().params;
         if !params.iter().any(|param| param.name.value == setting.name) {
             let names = params.iter().map(|param| param.name.value.as_str());
             let hint = match did_you_mean(&setting.name, names.clone()) {

@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 impl Arguments {
     /// The rule's style, with strokes that suit small pictures unless their width is asked for.
     fn style(&self, loaded: &Loaded) -> Style {
-        let mut style = self.picture.style(&loaded.rule);
+        let mut style = self.picture.style(loaded.model.heading());
         if let (Width::Pixels(width), None) = (&mut style.width, self.picture.stroke_width) {
             let (Size::Long(side) | Size::Exactly(side, _)) = self.size;
             *width *= (f64::from(side) / 1024.0).clamp(0.5, 1.0);
@@ -119,7 +119,7 @@ impl Arguments {
         render::Options {
             format,
             style: self.style(loaded),
-            view: self.picture.view(&loaded.rule),
+            view: self.picture.view(loaded.model.heading()),
             size: self.size,
             threads: self.growth.threads(),
             detail: None,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
+use crate::document::KindDocument;
 use crate::figure::rule;
+use crate::model::Model;
 use crate::render::{self, RenderError, Size};
 use crate::style::{Colour, Named};
 use crate::wording;
@@ -56,12 +58,15 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let path = arguments.output.as_ref().unwrap_or(&default);
     let options = arguments.options(&loaded, format);
     let ([width, height], bytes) = output::write(path, arguments.quiet, |out, _| {
-        rule::write(&loaded.rule, loaded.document.rule(), &options, out).map_err(
-            |error| match error {
-                RenderError::Io(error) => output::failed(error, path),
-                other => anyhow::Error::new(other).into(),
-            },
-        )
+        let written = match (&loaded.model, loaded.document.kind()) {
+            (Model::Rule(rule), KindDocument::Rule(document)) => {
+                rule::write(rule, document, &options, out)
+            }
+        };
+        written.map_err(|error| match error {
+            RenderError::Io(error) => output::failed(error, path),
+            other => anyhow::Error::new(other).into(),
+        })
     })?;
     if !arguments.quiet {
         text::say(&format!(

@@ -77,7 +77,7 @@ pub(super) fn parse_several(text: &str) -> Result<Several, String> {
 /// to 12, that has no more than 20,000 elements; 6 where that is not known.
 pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure> {
     const DEEPEST: u32 = 12;
-    if let Some(steps) = asked.or(loaded.rule.steps()) {
+    if let Some(steps) = asked.or(loaded.model.heading().steps) {
         return Ok(steps);
     }
     let graph = loaded.compile(DEEPEST)?;

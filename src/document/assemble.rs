@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf, is_same_file};
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest};
+
+use crate::model::Kind;
 
 use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
-use super::read::{DESCRIPTION, KIND, RULE, check_description};
+use super::read::{DESCRIPTION, check_description, shape};
 use super::yaml::{Budget, Size};
 
 /// A parent may have a parent, and so on, up to this many.
@@ -15,13 +17,13 @@ const MOST_PARENTS: usize = 32;
 /// Behind this many components that are not there, no more are looked for.
 const MOST_MISSING: usize = 100;
 
-/// The rule in a source with everything in it that it names, and whether all of that was found;
-/// `None` if it is no rule.
+/// The rule in a source with everything in it that it names, its kind, and whether all of that was
+/// found; `None` if it is no rule.
 pub(super) fn assemble(
     source: &Arc<Source>,
     catalogue: &Catalogue,
     diagnostics: &mut Diagnostics,
-) -> Option<(Node, bool)> {
+) -> Option<(Node, Kind, bool)> {
     let mut assembly = Assembly {
         catalogue,
         diagnostics,
@@ -33,6 +35,8 @@ pub(super) fn assemble(
         too_large: false,
         generation: 0,
         complete: true,
+        kind: None,
+        extending: None,
     };
     let (place, mut entries) = assembly.extended(source)?;
     for (_, node) in &entries {
@@ -40,9 +44,9 @@ pub(super) fn assemble(
     }
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
-    let complete = assembly.complete;
+    let (kind, complete) = (assembly.kind.unwrap_or_default(), assembly.complete);
     let value = Value::Mapping(entries);
-    Some((Node { place, value }, complete))
+    Some((Node { place, value }, kind, complete))
 }
 
 struct Assembly<'a> {
@@ -63,6 +67,10 @@ struct Assembly<'a> {
     generation: usize,
     /// Whether everything that is named has been found.
     complete: bool,
+    /// The kind of the file, which is that of its parents.
+    kind: Option<Kind>,
+    /// Where a parent is named, while it is read.
+    extending: Option<Place>,
 }
 
 /// A component that a rule names.
@@ -93,20 +101,12 @@ impl Assembly<'_> {
         let node = self.parse(source)?;
         let Value::Mapping(entries) = node.value else {
             let message = format!("a rule is needed here, this is {}", node.kind());
-            self.error(&node.place, message, RULE.hint);
+            self.error(&node.place, message, shape(Kind::default()).hint);
             return None;
         };
-        let kind = entries.iter().find(|(key, _)| key.name == "kind");
-        if let Some((_, kind)) = kind
-            && !matches!(&kind.value, Value::Text(kind) if kind == KIND)
-        {
-            let message = format!("kind '{}' is not known", kind.place.text());
-            self.error(&kind.place, message, "kind: rule, which may be left out");
-            // The keys of another kind are not a rule's, so there is no use in looking at them.
-            nearest(kind.place.text(), [KIND])?;
-        }
+        let kind = self.kind_of(&entries)?;
         let keys = entries.iter().map(|(key, _)| key);
-        let meant = RULE.meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
+        let meant = shape(kind).meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
         let mut known = Vec::new();
         for (name, (mut key, value)) in meant.into_iter().zip(entries) {
             if let Some(name) = name {
@@ -122,6 +122,39 @@ impl Assembly<'_> {
             }
         }
         Some((node.place, known))
+    }
+
+    /// The kind that a file says it is, which must be that of the file that extends it.
+    fn kind_of(&mut self, entries: &Entries) -> Option<Kind> {
+        let written = entries.iter().find(|(key, _)| key.name == "kind");
+        let known = |name: &str| Kind::ALL.into_iter().find(|kind| kind.name() == name);
+        let said = match written {
+            None => Kind::default(),
+            Some((_, node)) => match &node.value {
+                Value::Text(name) if known(name).is_some() => known(name)?,
+                _ => {
+                    let message = format!("kind '{}' is not known", node.place.text());
+                    let names = listed(Kind::ALL.into_iter().map(Kind::name));
+                    let hint = format!("the kinds are: {names}; without `kind` it is a rule");
+                    self.error(&node.place, message, &hint);
+                    // Of keys whose kind is not known there is nothing to say.
+                    known(nearest(node.place.text(), Kind::ALL.map(Kind::name))?)?
+                }
+            },
+        };
+        match self.kind {
+            Some(kind) if kind != said => {
+                let place = self.extending.clone()?;
+                let message = format!("this is of kind '{}', not '{}'", said.name(), kind.name());
+                let hint = format!("a file extends one of its own kind: kind: {}", said.name());
+                self.error(&place, message, &hint);
+                None
+            }
+            _ => {
+                self.kind = Some(said);
+                Some(said)
+            }
+        }
     }
 
     /// A rule with its parents' keys where it names none of its own.
@@ -169,6 +202,7 @@ impl Assembly<'_> {
             return None;
         }
         self.chain.push(Arc::clone(&found));
+        self.extending = Some(parent.place.clone());
         Some(self.extended(&found)?.1)
     }
 

@@ -1,9 +1,10 @@
 //! Files as written: what was read, with places, before anything is looked up or evaluated.
 //!
 //! [`Document::read`] parses a file, puts its parents (`extends`) and components into it, and
-//! reads the result into a [`RuleDocument`]. Nothing outside this module sees YAML.
+//! reads the result into the document of its kind. Nothing outside this module sees YAML.
 
 mod assemble;
+mod heading;
 mod merge;
 pub mod node;
 mod read;
@@ -12,12 +13,12 @@ mod rule;
 mod schema;
 mod shape;
 mod style;
-mod unused;
 mod yaml;
 
+pub use heading::{HeadingDocument, ParameterDocument};
 pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
-    ParameterDocument, PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
+    PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
 };
 
 pub use schema::schema;
@@ -27,7 +28,8 @@ use std::sync::Arc;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Place, Source};
 use crate::expression::Expression;
-use crate::rule::Rule;
+use crate::model::Model;
+use crate::resolve;
 
 use node::Node;
 
@@ -75,11 +77,28 @@ impl Point {
     }
 }
 
+/// What a file of some kind says, as it is written.
+#[derive(Clone, Debug)]
+pub enum KindDocument {
+    /// A production rule.
+    Rule(RuleDocument),
+}
+
+impl KindDocument {
+    /// What files of all kinds say.
+    #[must_use]
+    pub fn heading(&self) -> &HeadingDocument {
+        match self {
+            Self::Rule(rule) => &rule.heading,
+        }
+    }
+}
+
 /// A file with its parents and components put into it.
 #[derive(Clone, Debug)]
 pub struct Document {
     node: Node,
-    rule: RuleDocument,
+    kind: KindDocument,
     warnings: Diagnostics,
 }
 
@@ -92,29 +111,42 @@ impl Document {
     pub fn read(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
         let mut diagnostics = Diagnostics::default();
         let assembled = assemble::assemble(source, catalogue, &mut diagnostics);
-        let Some((node, complete)) = assembled else {
+        let Some((node, kind, complete)) = assembled else {
             return Err(diagnostics.without_repeats());
         };
-        let Some(rule) = read::read(&node, complete, &mut diagnostics) else {
+        let Some(kind) = read::read(kind, &node, complete, &mut diagnostics) else {
             return Err(diagnostics.without_repeats());
         };
         if diagnostics.has_errors() {
-            // What can be said about names and values is said too.
-            let (Ok((_, more)) | Err(more)) = Rule::resolve(&rule, &[]);
-            diagnostics.extend(more);
+            // What is wrong with names and values is said too.
+            diagnostics.extend(resolve::resolve(&kind, &[]).err().unwrap_or_default());
             return Err(diagnostics.without_repeats());
         }
         Ok(Self {
             node,
-            rule,
+            kind,
             warnings: diagnostics.without_repeats(),
         })
     }
 
-    /// The rule as written.
+    /// What the file says.
     #[must_use]
-    pub fn rule(&self) -> &RuleDocument {
-        &self.rule
+    pub fn kind(&self) -> &KindDocument {
+        &self.kind
+    }
+
+    /// What files of all kinds say.
+    #[must_use]
+    pub fn heading(&self) -> &HeadingDocument {
+        self.kind.heading()
+    }
+
+    /// The rule as written, if it is one.
+    #[must_use]
+    pub fn rule(&self) -> Option<&RuleDocument> {
+        match &self.kind {
+            KindDocument::Rule(rule) => Some(rule),
+        }
     }
 
     /// The file with its parents and components inlined, as YAML that reads back as the same.
@@ -123,18 +155,17 @@ impl Document {
         self.node.to_yaml()
     }
 
-    /// The validated rule, with parameters set by name, and what is doubtful, but not wrong.
+    /// The validated model, with parameters set by name, and what is doubtful, but not wrong.
     ///
     /// # Errors
     ///
     /// All that is wrong with it.
-    pub fn resolve(&self, settings: &[Setting]) -> Result<(Rule, Diagnostics), Diagnostics> {
+    pub fn resolve(&self, settings: &[Setting]) -> Result<(Model, Diagnostics), Diagnostics> {
         let mut all = self.warnings.clone();
-        match Rule::resolve(&self.rule, settings) {
-            Ok((rule, doubts)) => {
-                all.extend(unused::parameters(&self.rule, self.node.place.source()));
+        match resolve::resolve(&self.kind, settings) {
+            Ok((model, doubts)) => {
                 all.extend(doubts);
-                Ok((rule, all.without_repeats()))
+                Ok((model, all.without_repeats()))
             }
             Err(mistakes) => {
                 all.extend(mistakes);

@@ -1,9 +1,10 @@
-//! From nodes to a rule as written. What is wrong is noted and something unknown stands in for it,
+//! From nodes to a file as written. What is wrong is noted and something unknown stands in for it,
 //! so that everything else is looked at as well.
 
 mod base_element;
 mod elements;
 mod generator;
+mod heading;
 mod parameters;
 mod rule;
 mod select;
@@ -11,5 +12,42 @@ mod select;
 pub(super) use base_element::BASE_ELEMENT;
 pub(super) use elements::{ELEMENTS, INITIATOR};
 pub(super) use generator::GENERATOR;
+pub(super) use heading::{DESCRIPTION, check_description};
 pub(super) use parameters::{PARAMETER, PARAMS};
-pub(super) use rule::{DESCRIPTION, KIND, RULE, check_description, read};
+pub(super) use rule::RULE;
+
+use crate::diagnostic::{Diagnostics, Place};
+use crate::model::Kind;
+
+use super::KindDocument;
+use super::node::Node;
+use super::reader::Reader;
+use super::shape::Shape;
+
+/// The keys of a kind of file that can be grown.
+pub(super) fn shape(kind: Kind) -> &'static Shape {
+    match kind {
+        Kind::Rule => &RULE,
+    }
+}
+
+/// Reads a file with its parents and components in it; `complete` if all of them were found.
+pub(super) fn read(
+    kind: Kind,
+    node: &Node,
+    complete: bool,
+    diagnostics: &mut Diagnostics,
+) -> Option<KindDocument> {
+    let mut reader = Reader::after(diagnostics);
+    let document = match kind {
+        Kind::Rule => rule::read_rule(&mut reader, node, complete).map(KindDocument::Rule),
+    };
+    diagnostics.extend(reader.diagnostics);
+    document
+}
+
+/// The first line of a place: enough to say which mapping lacks something.
+fn first_line(place: &Place) -> Place {
+    let end = place.text().find(['\n', '\r']);
+    place.within(0..end.unwrap_or(usize::MAX))
+}

@@ -4,18 +4,15 @@
 //! [unknown](crate::expression::Expression::unknown) or a name that is missing stands in for it.
 
 use crate::diagnostic::Place;
-use crate::rule::{Description, Placement};
-use crate::style::{Style, View};
+use crate::rule::Placement;
 
-use super::{Number, Point, Written};
+use super::{HeadingDocument, Number, Point, Written};
 
 /// A production rule as written, with its components in it.
 #[derive(Clone, Debug)]
 pub struct RuleDocument {
-    /// Title, source and the like.
-    pub description: Description,
-    /// The parameters, in the order of the file.
-    pub params: Vec<ParameterDocument>,
+    /// What files of all kinds say.
+    pub heading: HeadingDocument,
     /// The initiator.
     pub initiator: InitiatorDocument,
     /// The generators by name; `generator` is one without a name.
@@ -24,34 +21,6 @@ pub struct RuleDocument {
     pub select: Option<SelectDocument>,
     /// The base element of all elements that have none of their own.
     pub base_element: Option<BaseElementDocument>,
-    /// What `grow` does without `--steps`.
-    pub steps: Option<Number>,
-    /// The published similarity dimension.
-    pub dimension: Option<Number>,
-    /// The set's own dimension, where copies overlap.
-    pub hausdorff_dimension: Option<Number>,
-    /// How it is drawn.
-    pub style: Style,
-    /// What part of the plane is drawn.
-    pub view: View,
-    /// Whether all of it could be found. Where a parent or a component is missing, names that are
-    /// not known may be its own.
-    pub complete: bool,
-}
-
-/// A parameter as written.
-#[derive(Clone, Debug)]
-pub struct ParameterDocument {
-    /// Its name.
-    pub name: Written<String>,
-    /// Its value.
-    pub value: Number,
-    /// The least value that it may have.
-    pub min: Option<Number>,
-    /// The largest value that it may have.
-    pub max: Option<Number>,
-    /// What it means.
-    pub about: Option<String>,
 }
 
 /// An initiator as written.

@@ -162,7 +162,9 @@ impl<'r> Compiler<'r> {
             .flat_map(|generator| generator.parts())
             .any(|part| part.placement.seeds());
         Ok(Graph {
-            rule: Arc::clone(rule),
+            rule: Some(Arc::clone(rule)),
+            base_elements: rule.base_elements().into(),
+            origins: rule.generators().len(),
             objects: self.objects,
             initiator: whole.body,
             depth: beyond.then_some(self.steps),

@@ -141,7 +141,7 @@ impl Graph {
             let mut seeds = Vec::new();
             let behaviour = |object: &usize| self.objects[*object].behaviour;
             let mut behaviours = alternative.objects.iter().map(behaviour);
-            for part in self.rule.generators()[alternative.generator].parts() {
+            for part in self.evaluated().generators()[alternative.generator].parts() {
                 let behaviours = behaviours.by_ref().take(part.elements.len());
                 if part.placement.seeds() {
                     let mut seed: Vec<usize> = behaviours.collect();
@@ -411,7 +411,7 @@ impl<'g> Forecast<'g> {
                 }
                 Replacement::Evaluated(alternatives) => {
                     let alternative = &alternatives[0];
-                    let parts = graph.rule.generators()[alternative.generator].parts();
+                    let parts = graph.evaluated().generators()[alternative.generator].parts();
                     for _ in parts.iter().filter(|part| part.placement.seeds()) {
                         self.fractals += &tally.count;
                     }

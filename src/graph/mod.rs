@@ -115,7 +115,11 @@ pub struct Production {
 /// within the depth that the graph was compiled for has its replacement.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    pub(crate) rule: Arc<Rule>,
+    /// The rule whose generators are evaluated where elements stand; `None` if none is.
+    pub(crate) rule: Option<Arc<Rule>>,
+    pub(crate) base_elements: Arc<[BaseElement]>,
+    /// The number of origins that objects may have.
+    pub(crate) origins: usize,
     pub(crate) objects: Vec<Object>,
     pub(crate) initiator: Chain,
     pub(crate) depth: Option<u32>,
@@ -126,10 +130,18 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The rule that the graph was compiled from.
+    /// The rule whose generators are evaluated where elements stand.
+    pub(crate) fn evaluated(&self) -> &Rule {
+        let Some(rule) = &self.rule else {
+            unreachable!("only rules are evaluated while a walk goes on");
+        };
+        rule
+    }
+
+    /// The number of origins that objects may have: of generators of a rule.
     #[must_use]
-    pub fn rule(&self) -> &Rule {
-        &self.rule
+    pub fn origins(&self) -> usize {
+        self.origins
     }
 
     /// The objects.
@@ -147,7 +159,7 @@ impl Graph {
     /// The base elements that objects refer to.
     #[must_use]
     pub fn base_elements(&self) -> &[BaseElement] {
-        &self.rule.base_elements
+        &self.base_elements
     }
 
     /// The number of steps for which every object is resolved; `None` if for any number.

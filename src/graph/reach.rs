@@ -195,7 +195,7 @@ impl Graph {
                 .iter()
                 .any(|seed| seed.placement == Placement::SeedsAsInitiator),
             Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                let parts = self.rule.generators()[alternative.generator].parts();
+                let parts = self.evaluated().generators()[alternative.generator].parts();
                 let mut parts = parts.iter();
                 parts.any(|part| part.placement == Placement::SeedsAsInitiator)
             }),

@@ -406,7 +406,7 @@ impl<'g> Descent<'g> {
         let Replacement::Evaluated(alternatives) = &self.graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");
         };
-        let rule = self.graph.rule();
+        let rule = self.graph.evaluated();
         #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
         let moment = Moment {
             index: rank.max(1) as f64,

@@ -47,7 +47,7 @@ impl Classes {
         let largest = match by {
             ColorBy::None | ColorBy::Fractal | ColorBy::Index => 0,
             ColorBy::Step | ColorBy::Age => u64::from(steps),
-            ColorBy::Generator => graph.rule().generators().len() as u64,
+            ColorBy::Generator => graph.origins() as u64,
             ColorBy::Direction => 3,
         };
         Self { by, largest }

@@ -145,8 +145,6 @@ impl Standing {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::Survey;
     use crate::catalogue::{Catalogue, Shelf};
     use crate::diagnostic::Source;
@@ -164,7 +162,7 @@ mod tests {
         for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
-            let rule = Arc::new(document.resolve(&[]).unwrap().0);
+            let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
             let graph = Graph::compile(&rule, 3).unwrap();
             for (_, color_by) in ColorBy::NAMES {
                 for width in [Width::Pixels(1.0), Width::Relative(0.2)] {
@@ -212,7 +210,7 @@ mod tests {
         for text in [spine, speck] {
             let source = Source::new("test.yaml", text);
             let document = Document::read(&source, &Catalogue::embedded()).unwrap();
-            let rule = Arc::new(document.resolve(&[]).unwrap().0);
+            let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
             for steps in [2, 20, 60, 80] {
                 let graph = Graph::compile(&rule, steps).unwrap();
                 let growth = Growth::steps(steps);

@@ -34,8 +34,8 @@ use std::num::NonZero;
 
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
+use crate::heading::Heading;
 use crate::parallel::all_cores;
-use crate::rule::Rule;
 use crate::style::{Colour, Named, Style, View, Width};
 
 use self::layout::Layout;
@@ -104,12 +104,12 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The style and the view that a rule proposes.
+    /// The style and the view that a file proposes.
     #[must_use]
-    pub fn of(rule: &Rule) -> Self {
+    pub fn of(heading: &Heading) -> Self {
         Self {
-            style: rule.style().clone(),
-            view: *rule.view(),
+            style: heading.style.clone(),
+            view: heading.view,
             ..Self::default()
         }
     }

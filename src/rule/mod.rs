@@ -8,88 +8,45 @@
 mod base_element;
 pub mod draw;
 mod generator;
-mod resolve;
 mod selection;
 
 pub use base_element::{BaseElement, Piece, arc};
 pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
-pub(crate) use resolve::MOST_STEPS;
 pub use selection::Selection;
 
 use crate::geometry::DVec2;
+use crate::heading::{Description, Heading, Parameter};
 use crate::style::{Style, View};
-
-/// What a file says about itself.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Description {
-    /// The title.
-    pub title: Option<String>,
-    /// A few sentences.
-    pub about: Option<String>,
-    /// The paper, book or person that it comes from.
-    pub source: Option<String>,
-    /// Words to find it by.
-    pub tags: Vec<String>,
-}
-
-/// A parameter with its value.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// The name that expressions and `--set` call it by.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// The least value that it may have.
-    pub min: Option<f64>,
-    /// The largest value that it may have.
-    pub max: Option<f64>,
-    /// What it means.
-    pub about: Option<String>,
-}
-
-impl Parameter {
-    /// A parameter without limits.
-    #[must_use]
-    pub fn new(name: impl Into<String>, value: f64) -> Self {
-        Self {
-            name: name.into(),
-            value,
-            min: None,
-            max: None,
-            about: None,
-        }
-    }
-}
 
 /// A production rule: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    pub(crate) description: Description,
-    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) heading: Heading,
     pub(crate) points: Vec<DVec2>,
     pub(crate) initiator: Part,
     pub(crate) generators: Vec<Generator>,
     pub(crate) selection: Selection,
     pub(crate) base_elements: Vec<BaseElement>,
-    pub(crate) steps: Option<u32>,
-    pub(crate) dimension: Option<f64>,
-    pub(crate) hausdorff_dimension: Option<f64>,
-    pub(crate) style: Style,
-    pub(crate) view: View,
 }
 
 impl Rule {
+    /// What files of all kinds say.
+    #[must_use]
+    pub fn heading(&self) -> &Heading {
+        &self.heading
+    }
+
     /// Title, source and the like.
     #[must_use]
     pub fn description(&self) -> &Description {
-        &self.description
+        &self.heading.description
     }
 
     /// The parameters with their values.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
-        &self.parameters
+        &self.heading.parameters
     }
 
     /// The initiator's elements; their points are those of [`Rule::initiator_points`].
@@ -125,31 +82,31 @@ impl Rule {
     /// The number of steps that the file proposes.
     #[must_use]
     pub fn steps(&self) -> Option<u32> {
-        self.steps
+        self.heading.steps
     }
 
     /// The published similarity dimension.
     #[must_use]
     pub fn dimension(&self) -> Option<f64> {
-        self.dimension
+        self.heading.dimension
     }
 
     /// The published Hausdorff dimension, where it differs from the similarity dimension.
     #[must_use]
     pub fn hausdorff_dimension(&self) -> Option<f64> {
-        self.hausdorff_dimension
+        self.heading.hausdorff_dimension
     }
 
     /// How it is drawn.
     #[must_use]
     pub fn style(&self) -> &Style {
-        &self.style
+        &self.heading.style
     }
 
     /// What part of the plane is drawn.
     #[must_use]
     pub fn view(&self) -> &View {
-        &self.view
+        &self.heading.view
     }
 
     /// Whether anything depends on draws: a random function, or selection at random.

@@ -1,7 +1,6 @@
 //! Small files that ask for much: told in bounded time and memory, or refused.
 
 use std::fs;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use kfrac::catalogue::Catalogue;
@@ -121,8 +120,8 @@ fn many_parameters_are_inherited() {
 fn graph_of(text: &str, steps: u32) -> Graph {
     let source = Source::new("hostile.yaml", text);
     let document = Document::read(&source, &Catalogue::embedded()).unwrap();
-    let (rule, _) = document.resolve(&[]).unwrap();
-    Graph::compile(&Arc::new(rule), steps).unwrap()
+    let (model, _) = document.resolve(&[]).unwrap();
+    model.compile(steps).unwrap()
 }
 
 #[test]

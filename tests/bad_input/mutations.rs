@@ -1,13 +1,11 @@
 //! The library's files with random mistakes in them.
 
 use std::fs;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::graph::Graph;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -154,9 +152,8 @@ fn with_mistakes(text: &str, mistakes: &[(Index, Mistake)]) -> String {
 fn digest(text: &str) -> Result<(), Diagnostics> {
     let catalogue = Catalogue::embedded();
     let source = Source::new("mutated.yaml", text);
-    let (rule, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
-    let rule = Arc::new(rule);
-    Graph::compile(&rule, 2).map_err(|error| error.diagnostic(&rule))?;
+    let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
+    model.compile(2).map_err(|error| model.diagnostic(&error))?;
     Ok(())
 }
 

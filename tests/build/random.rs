@@ -5,7 +5,8 @@ use std::sync::Arc;
 use kfrac::build::{Element, Elements, Generator, Move, Number, RuleBuilder};
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::graph::Graph;
-use kfrac::rule::{Parameter, Placement};
+use kfrac::heading::Parameter;
+use kfrac::rule::Placement;
 use proptest::collection::vec;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL};
 use proptest::prelude::*;
@@ -135,7 +136,8 @@ proptest! {
         match rule.build() {
             Ok(built) => {
                 let text = rule.document().unwrap().to_yaml();
-                prop_assert_eq!(&common::document_of(&text).resolve(&[]).unwrap().0, &built);
+                let again = common::document_of(&text).resolve(&[]).unwrap().0;
+                prop_assert_eq!(&**again.rule().unwrap(), &built);
                 let _may_not_be_finite = Graph::compile(&Arc::new(built), 2);
             }
             Err(errors) => prop_assert!(errors.has_errors()),

@@ -28,11 +28,11 @@ pub(crate) fn document_of(text: &str) -> Document {
 
 /// The validated rule, which must not be doubtful.
 pub(crate) fn resolved(document: &Document, settings: &[Setting]) -> Arc<Rule> {
-    let (rule, warnings) = document
+    let (model, warnings) = document
         .resolve(settings)
         .unwrap_or_else(|errors| panic!("{}", errors.render(false)));
     assert!(warnings.is_empty(), "{}", warnings.render(false));
-    Arc::new(rule)
+    model.into_rule().unwrap()
 }
 
 /// The graph of a rule, resolved for some steps.

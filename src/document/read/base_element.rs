@@ -6,7 +6,7 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{BaseElementDocument, PieceDocument};
 use crate::document::shape::{Form, Shape, Way, key, needed_key};
 
-use super::rule::first_line;
+use super::first_line;
 
 pub(in crate::document) const BASE_ELEMENT: Shape = Shape {
     what: "a base element",

@@ -7,7 +7,7 @@ use crate::document::rule::{Entry, InitiatorDocument, Listed};
 use crate::document::shape::{Form, Shape, key, needed_key};
 
 use super::base_element::{BASE_ELEMENT_OF, read_base_element};
-use super::rule::first_line;
+use super::first_line;
 
 const ELEMENT: Shape = Shape {
     what: "an element",

@@ -9,8 +9,8 @@ use crate::document::{Number, Written};
 use crate::rule::Placement;
 
 use super::elements::{ABOUT_ELEMENTS, ELEMENTS, read_entries, required_entries};
+use super::first_line;
 use super::parameters::written;
-use super::rule::first_line;
 
 pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",

@@ -1,8 +1,8 @@
 //! Parameters.
 
+use crate::document::heading::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
-use crate::document::rule::ParameterDocument;
 use crate::document::shape::{Form, Member, Needed, Shape, key};
 use crate::document::{Number, Written};
 use crate::expression::Expression;

@@ -5,8 +5,8 @@ use crate::document::reader::Reader;
 use crate::document::rule::SelectDocument;
 use crate::document::shape::{Form, Shape, Way, key, needed_key};
 
+use super::first_line;
 use super::parameters::written;
-use super::rule::first_line;
 
 const SELECTION: Shape = Shape {
     what: "a selection",

@@ -6,7 +6,8 @@ use crate::document::{
     Written,
 };
 use crate::expression::{Dependence, Expression};
-use crate::rule::{Generator, Moment, Parameter, Placement};
+use crate::heading::Parameter;
+use crate::rule::{Generator, Moment, Placement};
 
 /// More points than this are not told one by one.
 const MOST_POINTS: usize = 6;

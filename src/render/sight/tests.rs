@@ -198,7 +198,7 @@ fn compare(
 fn read(text: &str) -> Arc<Rule> {
     let source = Source::new("random.yaml", text);
     let document = Document::read(&source, &Catalogue::embedded()).unwrap();
-    Arc::new(document.resolve(&[]).unwrap().0)
+    document.resolve(&[]).unwrap().0.into_rule().unwrap()
 }
 
 proptest! {
@@ -249,7 +249,7 @@ fn windows_of_the_library_show_their_part() {
     ] {
         let source = catalogue.component(Shelf::Rules, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
-        let rule = Arc::new(document.resolve(&[]).unwrap().0);
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let plain = Style {
             // Where elements are numbered, all are visited.
             color_by: ColorBy::Step,

@@ -3,8 +3,9 @@
 use crate::document::{Entry, Listed, Point, RuleDocument};
 use crate::geometry::{DVec2, Direction};
 
-use super::super::{ListedElement, Part, Placement};
-use super::{Resolver, whole_number};
+use super::OfRule;
+use crate::resolve::{Resolver, whole_number};
+use crate::rule::{ListedElement, Part, Placement};
 
 /// A point of a list, and its number.
 struct ListedPoint {
@@ -12,7 +13,7 @@ struct ListedPoint {
     number: usize,
 }
 
-impl Resolver {
+impl Resolver<OfRule> {
     /// The elements of a list; `points` are numbered on from those that are there.
     pub(super) fn elements(
         &mut self,

@@ -4,21 +4,23 @@ use crate::diagnostic::{did_you_mean, listed};
 use crate::document::{Entry, Number, RuleDocument, SelectDocument, Written};
 use crate::expression::Scope;
 
-use super::super::Selection;
-use super::{MOST_MISTAKES, Place, Resolver};
+use super::OfRule;
+use crate::diagnostic::Place;
+use crate::resolve::{MOST_MISTAKES, Resolver};
+use crate::rule::Selection;
 
 /// A condition, if there is one, and a generator, if it could be read.
 type Case = (Option<Number>, Option<Written<String>>);
 
-impl Resolver {
+impl Resolver<OfRule> {
     pub(super) fn generator_named(&mut self, name: &Written<String>) -> Option<usize> {
-        let found = self.generator_numbers.get(&name.value).copied();
+        let found = self.kind.generator_numbers.get(&name.value).copied();
         if found.is_none()
             && !self.incomplete
-            && !self.generator_names.is_empty()
+            && !self.kind.generator_names.is_empty()
             && self.mistakes < MOST_MISTAKES
         {
-            let known = self.generator_names.iter().map(String::as_str);
+            let known = self.kind.generator_names.iter().map(String::as_str);
             let hint = did_you_mean(&name.value, known.clone())
                 .unwrap_or_else(|| format!("the generators are: {}", listed(known)));
             let message = format!("there is no generator '{}'", name.value);

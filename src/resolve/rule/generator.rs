@@ -7,10 +7,11 @@ use crate::document::{Entry, GeneratorDocument, Number, Point, Written};
 use crate::expression::{Program, Scope};
 use crate::geometry::DVec2;
 
-use super::super::{Generator, ListedElement, Origin, Part, Placement};
-use super::Resolver;
+use super::OfRule;
+use crate::resolve::Resolver;
+use crate::rule::{Generator, ListedElement, Origin, Part, Placement};
 
-impl Resolver {
+impl Resolver<OfRule> {
     pub(super) fn generator(
         &mut self,
         name: &Written<String>,

@@ -1,58 +1,17 @@
-//! Base elements.
+//! Outlines: a point, then straight and round pieces.
 
-use crate::document::{BaseElementDocument, PieceDocument, Point};
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::document::{BaseElementDocument, PieceDocument};
+use crate::geometry::DVec2;
+use crate::rule::{Piece, arc};
 
-use super::super::base_element::arc;
-use super::super::{BaseElement, Piece};
 use super::Resolver;
 
-impl Resolver {
-    /// The number of a base element, which is made if its place is new.
-    pub(super) fn base_element(&mut self, document: &BaseElementDocument) -> usize {
-        let known = self
-            .base_element_places
-            .iter()
-            .find(|(place, _)| *place == document.place);
-        if let Some((_, known)) = known {
-            return *known;
-        }
-        let before = self.diagnostics.len();
-        let (outline, frame) = (self.outline(document), self.base_frame(document));
-        let made = match (outline, frame) {
-            (Some((start, pieces)), Some(frame)) if self.diagnostics.len() == before => {
-                let map = frame.map.inverse();
-                let pieces = pieces.iter().map(|piece| piece.transformed(&map)).collect();
-                let start = map.transform_point2(start);
-                let made = BaseElement::new(start, pieces, document.closed);
-                if made.is_none() {
-                    self.error_with_hint(
-                        &document.place,
-                        "this base element has no extent",
-                        "its points must not all be the same",
-                    );
-                }
-                made
-            }
-            _ => None,
-        };
-        // Something harmless in the place of a wrong one, so that it is not reported again.
-        let number = self.known_or_new(made.unwrap_or_else(BaseElement::line));
-        self.base_element_places
-            .push((document.place.clone(), number));
-        number
-    }
-
-    /// One number for all that look alike, whether named twice or written twice.
-    fn known_or_new(&mut self, made: BaseElement) -> usize {
-        let known = self.base_elements.iter().position(|known| *known == made);
-        known.unwrap_or_else(|| {
-            self.base_elements.push(made);
-            self.base_elements.len() - 1
-        })
-    }
-
-    fn outline(&mut self, document: &BaseElementDocument) -> Option<(DVec2, Vec<Piece>)> {
+impl<K> Resolver<K> {
+    /// The start and the pieces of an outline in its own coordinates.
+    pub(super) fn outline(
+        &mut self,
+        document: &BaseElementDocument,
+    ) -> Option<(DVec2, Vec<Piece>)> {
         let mut pieces = document.pieces.iter();
         let start = match pieces.next() {
             Some(PieceDocument::Line(point)) => self.constant_point(point)?,
@@ -119,31 +78,5 @@ impl Resolver {
             self.error_with_hint(&last.end().place, message, hint);
         }
         Some((start, outline))
-    }
-
-    /// The frame that a base element's own coordinates have in the unit frame.
-    fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame> {
-        let mut end = |point: &Option<Point>, default: DVec2| match point {
-            Some(point) => self.constant_point(point),
-            None => Some(default),
-        };
-        let (from, to) = (
-            end(&document.from, DVec2::ZERO)?,
-            end(&document.to, DVec2::X)?,
-        );
-        if from == to {
-            let place = document
-                .from
-                .as_ref()
-                .or(document.to.as_ref())
-                .map(|point| &point.place);
-            let place = place.unwrap_or(&document.place).clone();
-            self.error_with_hint(
-                &place,
-                "`from` and `to` of this base element coincide",
-                "they come to lie on (0, 0) and (1, 0)",
-            );
-        }
-        Some(Frame::between(from, to, Direction::Normal))
     }
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoints};
 use crate::expression::{Program, Scope, Type, is_reserved};
 
-use super::super::draw::{Distribution, Variable};
-use super::super::{Moment, Move};
-use super::{Resolver, is_name, whole_number};
+use super::OfRule;
+use crate::resolve::{Resolver, is_name, whole_number};
+use crate::rule::draw::{Distribution, Variable};
+use crate::rule::{Moment, Move};
 
 /// More moves than this are refused: each costs time in every replacement.
 const MOST_MOVES: usize = 1000;
@@ -18,7 +19,7 @@ struct Shared {
     inner: Arc<[usize]>,
 }
 
-impl Resolver {
+impl Resolver<OfRule> {
     pub(super) fn variables(
         &mut self,
         document: &GeneratorDocument,

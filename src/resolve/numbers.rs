@@ -1,13 +1,14 @@
 //! Numbers: expressions in a scope.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Place};
 use crate::document::{Number, Point};
 use crate::expression::{Expression, ExpressionError, Program, Scope, Type};
 use crate::geometry::DVec2;
+use crate::rule::Moment;
 
-use super::{MOST_MISTAKES, Moment, Place, Resolver};
+use super::{MOST_MISTAKES, Resolver};
 
-impl Resolver {
+impl<K> Resolver<K> {
     /// The program of a number in a scope; unknown where it is wrong, which is said.
     pub(super) fn program(&mut self, number: &Number, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Number, scope)
@@ -29,6 +30,8 @@ impl Resolver {
         if part.is_unknown() || self.mistakes >= MOST_MISTAKES {
             return Program::unknown();
         }
+        let names = part.names().into_iter();
+        self.used.extend(names.map(|(name, _)| name.to_owned()));
         let program = match result {
             Type::Number => part.compile(scope),
             Type::Condition => part.compile_condition(scope),

@@ -2,17 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::document::{Number, ParameterDocument, RuleDocument, Setting};
+use crate::document::{HeadingDocument, Number, ParameterDocument, Setting};
 use crate::expression::is_reserved;
+use crate::heading::Parameter;
+use crate::rule::Moment;
 
-use super::super::{Moment, Parameter};
 use super::{Resolver, is_name};
 
-impl Resolver {
+impl<K> Resolver<K> {
     /// The parameters, which expressions see from here on.
     pub(super) fn parameters(
         &mut self,
-        document: &RuleDocument,
+        document: &HeadingDocument,
         settings: &[Setting],
     ) -> Vec<Parameter> {
         if !document.complete {

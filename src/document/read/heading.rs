@@ -1,0 +1,114 @@
+//! What files of all kinds say.
+
+use crate::diagnostic::Diagnostics;
+use crate::document::heading::HeadingDocument;
+use crate::document::node::{Node, Value};
+use crate::document::reader::{Fields, Reader};
+use crate::document::shape::{Form, Member, Shape, key};
+use crate::document::style::{STYLE, VIEW, read_style, read_view};
+use crate::heading::Description;
+use crate::resolve::MOST_STEPS;
+
+use super::parameters::read_params;
+
+/// The keys that describe a file and have no meaning inside another.
+pub(in crate::document) const DESCRIPTION: [Member; 5] = [
+    key("title", Form::Text, "A title, in a few words."),
+    key("about", Form::Text, "A few sentences on what it is."),
+    key(
+        "source",
+        Form::Text,
+        "Where it comes from: who published it, and when.",
+    ),
+    key(
+        "tags",
+        Form::List(&Form::Text, 0, None),
+        "Words by which `kfrac list WORD` finds it.",
+    ),
+    key(
+        "format",
+        Form::Exactly(FORMAT),
+        "The version of this format; may be left out.",
+    ),
+];
+
+/// The version of the format.
+const FORMAT: u32 = 1;
+
+/// How far a file is grown and how it is drawn unless somebody says otherwise, and what is known of it.
+pub(super) const LIKING: [Member; 5] = [
+    key(
+        "steps",
+        Form::Whole(0, Some(MOST_STEPS)),
+        "How often elements are replaced, if `--steps` does not say.",
+    ),
+    key(
+        "dimension",
+        Form::Number,
+        "The published similarity dimension. It does not change the picture.",
+    ),
+    key(
+        "hausdorff_dimension",
+        Form::Number,
+        "The published dimension of the set itself, where it is smaller because copies overlap.",
+    ),
+    key("style", Form::Mapping(&STYLE), "How it is drawn."),
+    key(
+        "view",
+        Form::Mapping(&VIEW),
+        "Which part of the plane is drawn.",
+    ),
+];
+
+/// Reads what files of all kinds say.
+pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> HeadingDocument {
+    HeadingDocument {
+        description: read_description(reader, fields),
+        params: read_params(reader, fields.take("params")),
+        steps: reader.optional_number(fields.take("steps")),
+        dimension: reader.optional_number(fields.take("dimension")),
+        hausdorff_dimension: reader.optional_number(fields.take("hausdorff_dimension")),
+        style: read_style(reader, fields.take("style")),
+        view: read_view(reader, fields.take("view")),
+        complete: false,
+        place: fields.place.clone(),
+    }
+}
+
+/// Reads what a component says of itself; only what is wrong with it matters.
+pub(in crate::document) fn check_description(node: &Node, diagnostics: &mut Diagnostics) {
+    const DESCRIBED: Shape = Shape {
+        what: "a description",
+        keys: &[&DESCRIPTION],
+        ways: &[],
+        hint: "title: Koch curve",
+    };
+    let mut reader = Reader::after(diagnostics);
+    if let Some(fields) = reader.fields(node, &DESCRIBED) {
+        read_description(&mut reader, &fields);
+    }
+    diagnostics.extend(reader.diagnostics);
+}
+
+fn read_description(reader: &mut Reader, fields: &Fields<'_>) -> Description {
+    if let Some(format) = fields.take("format")
+        && !matches!(format.value, Value::Number(version) if version == f64::from(FORMAT))
+    {
+        let message = format!(
+            "version '{}' of the format is not known",
+            format.place.text()
+        );
+        reader.error_with_hint(&format.place, message, "format: 1");
+    }
+    let mut text = |key| fields.take(key).and_then(|node| reader.text(node));
+    let (title, about, source) = (text("title"), text("about"), text("source"));
+    let tags = fields.take("tags").map_or(&[][..], |node| {
+        reader.list(node, "a list of tags", "tags: [curve, koch]")
+    });
+    Description {
+        title,
+        about,
+        source,
+        tags: tags.iter().filter_map(|tag| reader.text(tag)).collect(),
+    }
+}

@@ -1,0 +1,49 @@
+//! What files of all kinds say.
+
+use crate::document::{HeadingDocument, Number, Setting};
+use crate::heading::Heading;
+
+use super::{MOST_STEPS, Resolver, numbers, whole_number};
+
+impl<K> Resolver<K> {
+    /// The heading of a file; expressions see its parameters from here on.
+    pub(super) fn heading(&mut self, document: &HeadingDocument, settings: &[Setting]) -> Heading {
+        self.incomplete = !document.complete;
+        let parameters = self.parameters(document, settings);
+        if self.incomplete {
+            self.constants.accept_any_name();
+        }
+        let steps = document.steps.as_ref();
+        Heading {
+            description: document.description.clone(),
+            parameters,
+            steps: steps.and_then(|number| self.steps(number)),
+            dimension: self.dimension(document.dimension.as_ref()),
+            hausdorff_dimension: self.dimension(document.hausdorff_dimension.as_ref()),
+            style: document.style.clone(),
+            view: document.view,
+        }
+    }
+
+    fn steps(&mut self, number: &Number) -> Option<u32> {
+        let value = self.constant(number)?;
+        let whole = whole_number(value, MOST_STEPS);
+        if whole.is_none() {
+            let message = format!(
+                "a number of steps is a whole number from 0 to 1,000,000{}",
+                numbers::but(number, value)
+            );
+            if value > 0.0 && value <= f64::from(MOST_STEPS) {
+                let hint = format!("steps: {}", value.trunc());
+                self.error_with_hint(&number.place, message, hint);
+            } else {
+                self.error(&number.place, message);
+            }
+        }
+        whole
+    }
+
+    fn dimension(&mut self, number: Option<&Number>) -> Option<f64> {
+        self.constant(number?)
+    }
+}

@@ -1,0 +1,66 @@
+//! Production rules.
+
+mod base_element;
+mod elements;
+mod generator;
+mod random;
+mod selection;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::diagnostic::Place;
+use crate::document::RuleDocument;
+use crate::heading::Heading;
+use crate::rule::{BaseElement, Moment, Rule, Selection};
+
+use super::Resolver;
+
+/// What is known while a rule is resolved.
+#[derive(Default)]
+pub(super) struct OfRule {
+    base_elements: Vec<BaseElement>,
+    /// Where base elements were written, and their numbers.
+    base_element_places: Vec<(Place, usize)>,
+    generator_names: Vec<String>,
+    generator_numbers: HashMap<String, usize>,
+}
+
+impl Resolver<OfRule> {
+    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Heading) -> Rule {
+        match &document.base_element {
+            Some(document) => {
+                self.base_element(document);
+            }
+            None => {
+                self.kind.base_elements.push(BaseElement::line());
+            }
+        }
+        let names = document.generators.iter().map(|(name, _)| &name.value);
+        self.kind.generator_names = names.cloned().collect();
+        let numbers = self.kind.generator_names.iter().cloned().zip(0..);
+        self.kind.generator_numbers = numbers.collect();
+
+        let mut moment = self.constants.clone();
+        for (slot, name) in Moment::NAMES.into_iter().enumerate() {
+            moment.variable(name, slot);
+        }
+        let moment = Arc::new(moment);
+        let (points, initiator) = self.initiator(document);
+        let generators: Vec<_> = document
+            .generators
+            .iter()
+            .map(|(name, generator)| self.generator(name, generator, &moment))
+            .collect();
+        let selection = self.selection(document, &moment);
+        self.check_generators_are_selected(document);
+        Rule {
+            heading,
+            points,
+            initiator,
+            generators,
+            selection: selection.unwrap_or(Selection::Always(0)),
+            base_elements: std::mem::take(&mut self.kind.base_elements),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Base elements.
+
+use crate::document::{BaseElementDocument, Point};
+use crate::geometry::{DVec2, Direction, Frame};
+use crate::resolve::Resolver;
+
+use super::OfRule;
+use crate::rule::BaseElement;
+
+impl Resolver<OfRule> {
+    /// The number of a base element, which is made if its place is new.
+    pub(super) fn base_element(&mut self, document: &BaseElementDocument) -> usize {
+        let known = self
+            .kind
+            .base_element_places
+            .iter()
+            .find(|(place, _)| *place == document.place);
+        if let Some((_, known)) = known {
+            return *known;
+        }
+        let before = self.diagnostics.len();
+        let (outline, frame) = (self.outline(document), self.base_frame(document));
+        let made = match (outline, frame) {
+            (Some((start, pieces)), Some(frame)) if self.diagnostics.len() == before => {
+                let map = frame.map.inverse();
+                let pieces = pieces.iter().map(|piece| piece.transformed(&map)).collect();
+                let start = map.transform_point2(start);
+                let made = BaseElement::new(start, pieces, document.closed);
+                if made.is_none() {
+                    self.error_with_hint(
+                        &document.place,
+                        "this base element has no extent",
+                        "its points must not all be the same",
+                    );
+                }
+                made
+            }
+            _ => None,
+        };
+        // Something harmless in the place of a wrong one, so that it is not reported again.
+        let number = self.known_or_new(made.unwrap_or_else(BaseElement::line));
+        self.kind
+            .base_element_places
+            .push((document.place.clone(), number));
+        number
+    }
+
+    /// One number for all that look alike, whether named twice or written twice.
+    fn known_or_new(&mut self, made: BaseElement) -> usize {
+        let known = self
+            .kind
+            .base_elements
+            .iter()
+            .position(|known| *known == made);
+        known.unwrap_or_else(|| {
+            self.kind.base_elements.push(made);
+            self.kind.base_elements.len() - 1
+        })
+    }
+
+    /// The frame that a base element's own coordinates have in the unit frame.
+    fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame> {
+        let mut end = |point: &Option<Point>, default: DVec2| match point {
+            Some(point) => self.constant_point(point),
+            None => Some(default),
+        };
+        let (from, to) = (
+            end(&document.from, DVec2::ZERO)?,
+            end(&document.to, DVec2::X)?,
+        );
+        if from == to {
+            let place = document
+                .from
+                .as_ref()
+                .or(document.to.as_ref())
+                .map(|point| &point.place);
+            let place = place.unwrap_or(&document.place).clone();
+            self.error_with_hint(
+                &place,
+                "`from` and `to` of this base element coincide",
+                "they come to lie on (0, 0) and (1, 0)",
+            );
+        }
+        Some(Frame::between(from, to, Direction::Normal))
+    }
+}
