@@ -10,7 +10,7 @@ use std::num::NonZero;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kfrac::chaos::{Classes, Game, Map, System, Window, play};
+use kfrac::chaos::{ClassBy, Game, Map, System, Window, play};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 
 fn main() {
@@ -46,7 +46,7 @@ fn window(side: u32) -> Window {
     }
 }
 
-fn bench(bencher: Bencher, system: &System, side: u32, classes: Classes, threads: usize) {
+fn bench(bencher: Bencher, system: &System, side: u32, classes: ClassBy, threads: usize) {
     let window = window(side);
     let game = Game {
         points: POINTS,
@@ -63,18 +63,18 @@ fn bench(bencher: Bencher, system: &System, side: u32, classes: Classes, threads
 #[divan::bench(args = [(1024, 1), (1024, 2), (8192, 1)])]
 fn fern_by_side_and_threads(bencher: Bencher, (side, threads): (u32, usize)) {
     let system = System::new(fern()).unwrap();
-    bench(bencher, &system, side, Classes::One, threads);
+    bench(bencher, &system, side, ClassBy::One, threads);
 }
 
 #[divan::bench]
 fn fern_by_last_map(bencher: Bencher) {
     let system = System::new(fern()).unwrap();
-    bench(bencher, &system, 1024, Classes::Map { ago: 0 }, 1);
+    bench(bencher, &system, 1024, ClassBy::Map { ago: 0 }, 1);
 }
 
 #[divan::bench]
 fn recurrent_fern(bencher: Bencher) {
     let transitions = (0..4).map(|map| vec![1.0, 9.0, f64::from(map), 2.0]);
     let system = System::recurrent(fern(), transitions.collect()).unwrap();
-    bench(bencher, &system, 1024, Classes::One, 1);
+    bench(bencher, &system, 1024, ClassBy::One, 1);
 }

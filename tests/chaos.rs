@@ -5,9 +5,11 @@
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
 
-use kfrac::chaos::{Classes, Game, GameError, Histogram, Map, Shape, Start, System, Window, play};
+use kfrac::chaos::{ClassBy, Game, GameError, Histogram, Map, Shape, Start, System, Window, play};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::grow::Progress;
+use kfrac::render::{Density, Labels, Shades, Tone, write_density};
+use kfrac::style::{Colour, Palette};
 
 const FERN: [[f64; 7]; 4] = [
     [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],
@@ -154,9 +156,9 @@ fn threads_do_not_tell() {
     };
     let window = fern_window(200);
     for (system, start, classes) in [
-        (fern(), Start::Attractor, Classes::One),
-        (fern(), starts, Classes::Map { ago: 2 }),
-        (recurrent, Start::Attractor, Classes::Map { ago: 0 }),
+        (fern(), Start::Attractor, ClassBy::One),
+        (fern(), starts, ClassBy::Map { ago: 2 }),
+        (recurrent, Start::Attractor, ClassBy::Map { ago: 0 }),
     ] {
         let on = |threads| {
             let game = Game {
@@ -189,9 +191,9 @@ fn counts_are_pinned() {
             (hash ^ u64::from(count)).wrapping_mul(0x0000_0100_0000_01b3)
         })
     };
-    assert_eq!(hash(Classes::One, 0), 15_809_100_387_334_199_307);
-    assert_eq!(hash(Classes::One, 1), 2_093_549_398_278_060_051);
-    let last_but_one = Classes::Map { ago: 1 };
+    assert_eq!(hash(ClassBy::One, 0), 15_809_100_387_334_199_307);
+    assert_eq!(hash(ClassBy::One, 1), 2_093_549_398_278_060_051);
+    let last_but_one = ClassBy::Map { ago: 1 };
     assert_eq!(hash(last_but_one, 0), 14_089_862_966_029_706_963);
 }
 
@@ -258,7 +260,8 @@ fn points_lie_on_the_gasket() {
         if count > 0 {
             let pixel = DVec2::new((place % 300) as f64, (place / 300) as f64) + 0.5;
             let point = back.transform_point2(pixel);
-            assert!(distance(point, DVec2::ZERO, 1.0, 16, 1.0) < 1e-4, "{point}");
+            let near = distance(point, DVec2::ZERO, 1.0, 16, 1e-4);
+            assert!(near < 1e-4, "{point}");
             hit += 1;
         }
     }
@@ -285,7 +288,7 @@ fn weights_are_honoured_and_classes_are_tiles() {
     let system = System::new(digits.collect()).unwrap();
     for ago in 0..2 {
         let game = Game {
-            classes: Classes::Map { ago },
+            classes: ClassBy::Map { ago },
             ..game(400_000)
         };
         let columns = columns(&play(&system, &ternary(2), &game).unwrap());
@@ -341,7 +344,7 @@ fn condensation_sets_are_drawn_at_every_level() {
     ];
     let system = System::new(maps).unwrap();
     let game = Game {
-        classes: Classes::Map { ago: 0 },
+        classes: ClassBy::Map { ago: 0 },
         ..game(400_000)
     };
     let columns = columns(&play(&system, &ternary(3), &game).unwrap());
@@ -452,4 +455,67 @@ fn no_points_are_an_empty_histogram() {
     let histogram = play(&fern(), &fern_window(64), &game(0)).unwrap();
     assert_eq!((histogram.points(), histogram.inside()), (0, 0));
     assert_eq!(histogram.counts(0).len(), 64 * 64);
+}
+
+/// The pixels of a picture of two points in a row of three, the second one hit three times as often.
+fn pixels(density: &Density, classes: ClassBy) -> Vec<[u8; 4]> {
+    let point = |x| Map::Condensation(Shape::point(DVec2::new(x, 0.5)).unwrap());
+    let system = System::new(vec![(point(0.5), 1.0), (point(1.5), 3.0)]).unwrap();
+    let game = Game {
+        classes,
+        ..game(100_000)
+    };
+    let histogram = play(&system, &window(DVec2::Y, 1.0, [3, 1]), &game).unwrap();
+    let mut bytes = Vec::new();
+    write_density(&histogram, density, &Labels::default(), &mut bytes).unwrap();
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().unwrap();
+    // Few colours are written as a palette, which is read as colours with opacity.
+    let mut pixels = [0; 12];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels.as_chunks().0.to_vec()
+}
+
+#[test]
+fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
+    let paper = Some(Colour::grey(255));
+    let linear = Density {
+        tone: Tone::Linear,
+        background: paper,
+        ..Density::default()
+    };
+    let [first, second, none] = pixels(&linear, ClassBy::One)[..] else {
+        panic!("three pixels");
+    };
+    assert_eq!((second, none), ([0, 0, 0, 255], [255; 4]));
+    // A third of the ink.
+    assert!(first[0].abs_diff(170) <= 3 && first[3] == 255, "{first:?}");
+
+    let plain = Density {
+        tone: Tone::Plain,
+        background: None,
+        ..linear.clone()
+    };
+    let drawn = pixels(&plain, ClassBy::One);
+    assert_eq!(drawn, [[0, 0, 0, 255], [0, 0, 0, 255], [0; 4]]);
+
+    let inks = [
+        Colour::of_rgba([255, 0, 0, 255]),
+        Colour::of_rgba([0, 0, 255, 255]),
+    ];
+    let classes = Density {
+        shades: Shades::Classes(inks.into()),
+        ..plain
+    };
+    let drawn = pixels(&classes, ClassBy::Map { ago: 0 });
+    assert_eq!(drawn, [[255, 0, 0, 255], [0, 0, 255, 255], [0; 4]]);
+
+    let palette = Density {
+        shades: Shades::Palette(Palette::default()),
+        ..linear
+    };
+    let drawn = pixels(&palette, ClassBy::One);
+    assert_eq!(drawn[1], Palette::default().at(1.0).rgba());
+    assert_eq!(drawn[2], [255; 4]);
 }

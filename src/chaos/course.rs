@@ -3,7 +3,7 @@ use crate::geometry::{DAffine2, DVec2};
 use super::alias::AliasTable;
 use super::random::{LANES, Scalar};
 use super::system::System;
-use super::{Classes, Game, Map, Start, Window};
+use super::{ClassBy, Game, Map, Start, Window};
 
 /// Steps of a walker that starts on the attractor, before another one starts: enough walks for all
 /// threads, and long enough that the warm-up takes little.
@@ -29,7 +29,7 @@ pub(super) struct Course<'a> {
     pub(super) window: &'a Window,
     /// The bins of a class: its pixels, and one for what lies outside.
     pub(super) stride: u32,
-    pub(super) classes: Classes,
+    pub(super) classes: ClassBy,
     pub(super) seed: u64,
     start: &'a Start,
     /// Steps of a walker that count.

@@ -56,7 +56,7 @@ pub enum Start {
 
 /// What points are told apart by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Classes {
+pub enum ClassBy {
     /// Nothing: one class.
     #[default]
     One,
@@ -80,7 +80,7 @@ pub struct Game<'a> {
     /// Where walks start; on the attractor unless said otherwise.
     pub start: Start,
     /// What points are told apart by; nothing unless said otherwise.
-    pub classes: Classes,
+    pub classes: ClassBy,
     /// The threads that play, as many as the machine has cores unless said otherwise. The result
     /// does not depend on them.
     pub threads: NonZero<usize>,
@@ -96,7 +96,7 @@ impl Default for Game<'_> {
             points: 10_000_000,
             seed: 0,
             start: Start::default(),
-            classes: Classes::default(),
+            classes: ClassBy::default(),
             threads: all_cores(),
             cancel: None,
             progress: None,
@@ -150,8 +150,8 @@ const MOST_PIXELS: u32 = 1 << 22;
 pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogram, GameError> {
     check(window, game)?;
     let classes = match game.classes {
-        Classes::One => 1,
-        Classes::Map { .. } => system.maps().len(),
+        ClassBy::One => 1,
+        ClassBy::Map { .. } => system.maps().len(),
     };
     let size @ [width, height] = window.size;
     let pixels = u64::from(width) * u64::from(height);
@@ -240,7 +240,7 @@ mod tests {
     }
 
     /// One wave, in single or in double precision.
-    fn counts(window: &Window, classes: Classes, is_double: bool) -> Vec<u32> {
+    fn counts(window: &Window, classes: ClassBy, is_double: bool) -> Vec<u32> {
         let (system, all) = (fern(), Mutex::new(None));
         let game = Game {
             points: 400_000,
@@ -260,7 +260,7 @@ mod tests {
     fn single_precision_is_enough_where_it_is_used() {
         for (side, most) in [(256, 0.000_5), (1024, 0.002)] {
             let window = window(side, f64::from(side) / 10.2);
-            let classes = Classes::One;
+            let classes = ClassBy::One;
             let game = Game::default();
             assert!(!Course::new(&fern(), &window, &game).is_double);
             let [single, double] = [false, true].map(|double| counts(&window, classes, double));
@@ -294,8 +294,8 @@ mod tests {
     #[test]
     fn both_ways_to_walk_have_one_measure() {
         let window = window(16, 1.6);
-        let few = counts(&window, Classes::One, false);
-        let by_map = counts(&window, Classes::Map { ago: 0 }, false);
+        let few = counts(&window, ClassBy::One, false);
+        let by_map = counts(&window, ClassBy::Map { ago: 0 }, false);
         let classes: Vec<_> = by_map.chunks_exact(16 * 16 + 1).collect();
         for pixel in 0..256 {
             let any: u32 = classes.iter().map(|counts| counts[pixel]).sum();

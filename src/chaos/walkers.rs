@@ -13,7 +13,7 @@ use super::random::{LANES, Lanes, Scalar};
 use super::real::Real;
 use super::system::Map;
 use super::tally::{Cancelled, Tally};
-use super::{Classes, Shape};
+use super::{ClassBy, Shape};
 
 /// Steps that are walked before they are counted.
 const STEPS: usize = 64;
@@ -46,7 +46,7 @@ fn walk_in<T: Real>(
     wave: u64,
     tally: &mut Tally<'_>,
 ) -> Result<(), Cancelled> {
-    let is_plain = course.classes == Classes::One && !course.system.is_recurrent();
+    let is_plain = course.classes == ClassBy::One && !course.system.is_recurrent();
     let maps = course.maps.iter().copied().collect::<Option<Vec<_>>>();
     match maps {
         Some(maps) if is_plain && maps.len() <= 2 => {
@@ -259,8 +259,8 @@ impl<'a, T: Real> Any<'a, T> {
         )]
         let last: [u32; LANES] = std::array::from_fn(|lane| course.start(wave, lane).1 as u32);
         let (ago, stride) = match course.classes {
-            Classes::One => (0, 0),
-            Classes::Map { ago } => (ago, course.stride),
+            ClassBy::One => (0, 0),
+            ClassBy::Map { ago } => (ago, course.stride),
         };
         Self {
             raster: Raster::new(course),
