@@ -26,6 +26,9 @@
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
+//! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
+//! `render` turns into pictures.
+//!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
@@ -34,6 +37,7 @@
 
 pub mod build;
 pub mod catalogue;
+pub mod chaos;
 pub mod cli;
 pub mod diagnostic;
 pub mod document;

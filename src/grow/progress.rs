@@ -31,7 +31,7 @@ impl Progress {
         (expected > 0).then_some(expected)
     }
 
-    pub(super) fn count(&self, elements: u64) {
+    pub(crate) fn count(&self, elements: u64) {
         self.walked.fetch_add(elements, Ordering::Relaxed);
     }
 }

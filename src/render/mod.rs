@@ -7,6 +7,7 @@
 
 mod canvas;
 mod classes;
+mod density;
 mod known;
 mod layout;
 mod painter;
@@ -20,6 +21,7 @@ mod tracer;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
+pub use density::{Density, Shades, Tone, write_density};
 pub use layout::{Detail, NoDetail};
 pub use png::TooManyPixels;
 pub use survey::Survey;

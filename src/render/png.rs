@@ -6,6 +6,8 @@ mod encode;
 mod part;
 mod skia;
 
+pub(super) use encode::encode as write_pixels;
+
 use std::io::{self, Write};
 
 use crate::style::{Cap, Colour, Join};

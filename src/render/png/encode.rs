@@ -7,7 +7,11 @@ use crate::render::Labels;
 
 /// Writes pixels as PNG, with no more bits a pixel than they need: indexed where there are 256
 /// colours at most, grey where there is nothing else, without opacity where all is opaque.
-pub(super) fn encode(pixmap: &Pixmap, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
+pub(in crate::render) fn encode(
+    pixmap: &Pixmap,
+    labels: &Labels,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let mut encoder = Encoder::new(out, pixmap.width(), pixmap.height());
     let colours = Colours::of(pixmap);
     let layout = colours.layout();

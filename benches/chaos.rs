@@ -1,0 +1,80 @@
+//! The chaos game: points a second that walkers walk and a histogram counts.
+
+#![allow(missing_docs, reason = "a program of its own")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a benchmark ends where it unwraps nothing"
+)]
+
+use std::num::NonZero;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use kfrac::chaos::{ClassBy, Game, Map, System, Window, play};
+use kfrac::geometry::{DAffine2, DMat2, DVec2};
+
+fn main() {
+    divan::main();
+}
+
+const POINTS: u64 = 16 << 20;
+
+/// Barnsley's fern: a, b, c, d, e, f and the weight of x → ax + by + e, y → cx + dy + f.
+const FERN: [[f64; 7]; 4] = [
+    [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],
+    [0.85, 0.04, -0.04, 0.85, 0.0, 1.6, 0.85],
+    [0.2, -0.26, 0.23, 0.22, 0.0, 1.6, 0.07],
+    [-0.15, 0.28, 0.26, 0.24, 0.0, 0.44, 0.07],
+];
+
+fn fern() -> Vec<(Map, f64)> {
+    let map = |[a, b, c, d, e, f, weight]: [f64; 7]| {
+        let map = DAffine2::from_cols_array(&[a, c, b, d, e, f]);
+        (Map::Affine(map), weight)
+    };
+    FERN.map(map).into()
+}
+
+/// The window of the fern in a square picture.
+fn window(side: u32) -> Window {
+    let scale = f64::from(side) / 10.2;
+    let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
+    let corner = DVec2::new(5.1, 10.1) * scale;
+    Window {
+        to_pixels: DAffine2::from_mat2_translation(matrix, corner),
+        size: [side; 2],
+    }
+}
+
+fn bench(bencher: Bencher, system: &System, side: u32, classes: ClassBy, threads: usize) {
+    let window = window(side);
+    let game = Game {
+        points: POINTS,
+        classes,
+        threads: NonZero::new(threads).unwrap(),
+        ..Game::default()
+    };
+    bencher
+        .counter(ItemsCount::new(POINTS))
+        .bench(|| play(system, &window, &game).unwrap());
+}
+
+/// No cache holds the counters of 8192 x 8192 pixels.
+#[divan::bench(args = [(1024, 1), (1024, 2), (8192, 1)])]
+fn fern_by_side_and_threads(bencher: Bencher, (side, threads): (u32, usize)) {
+    let system = System::new(fern()).unwrap();
+    bench(bencher, &system, side, ClassBy::One, threads);
+}
+
+#[divan::bench]
+fn fern_by_last_map(bencher: Bencher) {
+    let system = System::new(fern()).unwrap();
+    bench(bencher, &system, 1024, ClassBy::Map { ago: 0 }, 1);
+}
+
+#[divan::bench]
+fn recurrent_fern(bencher: Bencher) {
+    let transitions = (0..4).map(|map| vec![1.0, 9.0, f64::from(map), 2.0]);
+    let system = System::recurrent(fern(), transitions.collect()).unwrap();
+    bench(bencher, &system, 1024, ClassBy::One, 1);
+}

@@ -1,0 +1,145 @@
+//! Choice by weight from one random word.
+
+/// A table to choose from by weight in constant time, without a branch (Walker 1977, built as Vose
+/// 1991 has it).
+#[derive(Clone, Debug)]
+pub(super) struct AliasTable {
+    /// The upper bits of a word that choose an entry.
+    bits: u32,
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// The entry stands for itself where the rest of the word lies below this, 2³² being all of it;
+    rest: u32,
+    /// else for this one.
+    alias: u32,
+}
+
+impl AliasTable {
+    /// Tables for rows of weights, all of one length and none all zero, one after the other. Chances
+    /// are exact to 2⁻³² times the number of weights.
+    pub(super) fn of_rows(rows: &[Vec<f64>]) -> Self {
+        let count = rows.first().map_or(0, Vec::len);
+        // Two entries at least: a shift by all bits of a word is none.
+        let bits = count.next_power_of_two().trailing_zeros().max(1);
+        let entries = rows.iter().flat_map(|row| entries(row, 1 << bits));
+        Self {
+            bits,
+            entries: entries.collect(),
+        }
+    }
+
+    /// Chooses from a row.
+    #[inline(always)]
+    pub(super) fn choose(&self, row: usize, word: u32) -> usize {
+        let own = (word >> (32 - self.bits)) as usize;
+        let Entry { rest, alias } = self.entries[(row << self.bits) + own];
+        if (word << self.bits) < rest {
+            own
+        } else {
+            alias as usize
+        }
+    }
+}
+
+/// The entries of a row of weights, filled up to a number of them.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "indices are small, and chances lie between 0 and 1"
+)]
+fn entries(weights: &[f64], count: usize) -> Vec<Entry> {
+    let total: f64 = weights.iter().sum();
+    let mut chances: Vec<f64> = weights
+        .iter()
+        .map(|weight| weight / total * count as f64)
+        .collect();
+    chances.resize(count, 0.0);
+    let mut entries: Vec<Entry> = (0..count as u32)
+        .map(|alias| Entry { rest: 0, alias })
+        .collect();
+    let (mut poor, mut rich): (Vec<_>, Vec<_>) = (0..count).partition(|&own| chances[own] < 1.0);
+    while let (Some(&own), Some(&giver)) = (poor.last(), rich.last()) {
+        poor.pop();
+        entries[own] = Entry {
+            rest: (chances[own] * 2f64.powi(32)) as u32,
+            alias: giver as u32,
+        };
+        chances[giver] -= 1.0 - chances[own];
+        if chances[giver] < 1.0 {
+            rich.pop();
+            poor.push(giver);
+        }
+    }
+    // Those that are left are full but for rounding, and stand for themselves either way. One that
+    // has no chance at all would be left by rounding only.
+    let heaviest = (0..weights.len()).fold(0, |heaviest, own| {
+        if weights[own] > weights[heaviest] {
+            own
+        } else {
+            heaviest
+        }
+    });
+    for own in poor {
+        if weights.get(own).is_none_or(|&weight| weight == 0.0) {
+            entries[own].alias = heaviest as u32;
+        }
+    }
+    entries
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The chance of every choice, counted over the words that tell entries apart.
+    fn chances(table: &AliasTable, row: usize, count: usize) -> Vec<f64> {
+        let mut chances = vec![0.0; count];
+        for entry in 0..1u32 << table.bits {
+            let Entry { rest, alias } =
+                table.entries[((row as u32) << table.bits | entry) as usize];
+            let own = f64::from(rest) / 2f64.powi(32);
+            if own > 0.0 {
+                chances[entry as usize] += own;
+            }
+            chances[alias as usize] += 1.0 - own;
+        }
+        let all = f64::from(1u32 << table.bits);
+        chances.iter().map(|chance| chance / all).collect()
+    }
+
+    #[test]
+    fn chances_are_the_weights() {
+        let rows = [
+            vec![0.01, 0.85, 0.07, 0.07],
+            vec![1.0, 1.0, 1.0, 1.0],
+            vec![0.0, 0.0, 5.0, 0.0],
+            vec![1e-6, 0.0, 0.0, 3.0],
+        ];
+        let table = AliasTable::of_rows(&rows);
+        for (index, row) in rows.iter().enumerate() {
+            let total: f64 = row.iter().sum();
+            for (chance, weight) in chances(&table, index, 4).iter().zip(row) {
+                assert!((chance - weight / total).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_weight_is_never_chosen() {
+        for count in [1, 2, 3, 5, 7, 12] {
+            for only in 0..count {
+                let mut weights = vec![0.0; count];
+                weights[only] = 0.3;
+                let table = AliasTable::of_rows(&[weights]);
+                for word in [0, 1, 1 << 27, 1 << 31, u32::MAX - 1, u32::MAX] {
+                    assert_eq!(table.choose(0, word), only);
+                }
+                assert_eq!(chances(&table, 0, count)[only], 1.0);
+            }
+        }
+    }
+}

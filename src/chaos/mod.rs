@@ -1,0 +1,311 @@
+//! Random iteration, the *chaos game*: the attractor of an iterated function system, and the
+//! P-balanced measure on it, from random walks (Barnsley & Demko 1985; Demko, Hodges & Naylor 1985).
+//!
+//! A [`System`] has maps with weights. At each step a walker is moved by one of them, chosen at
+//! random; the fraction of its steps that end in a part of the plane tends to the measure of that
+//! part. [`play`] counts them, pixel by pixel, as a [`Histogram`].
+//!
+//! Walkers walk side by side, in waves that have their own random numbers each, so neither the
+//! order of waves nor the number of threads tells in the result; it is the same on every machine.
+//! They walk in single precision as long as that displaces no point by more than 1/64 pixel, which is
+//! estimated along a walk; else in double precision.
+
+mod alias;
+mod course;
+mod histogram;
+mod moments;
+mod random;
+mod real;
+mod shape;
+mod system;
+mod tally;
+mod walkers;
+
+pub use histogram::{Histogram, Window};
+pub use moments::Moments;
+pub use shape::{NoExtent, Shape};
+pub use system::{Map, System, SystemError};
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use crate::geometry::DVec2;
+use crate::grow::Progress;
+use crate::parallel::all_cores;
+
+use self::course::Course;
+use self::tally::{Cancelled, Tally};
+
+/// Where walks start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Start {
+    /// On the attractor, and spread over it: all points that are counted lie on it.
+    #[default]
+    Attractor,
+    /// At points of one's own, in turn. What a walker passes on its way to the attractor is counted,
+    /// though not the point itself (Demko, Hodges & Naylor 1985, figure 4.5).
+    Points {
+        /// The points; where there are none, walks start on the attractor.
+        points: Vec<DVec2>,
+        /// The steps of a walk. The fewer, the more of them are on the way.
+        steps: NonZero<u32>,
+    },
+}
+
+/// What points are told apart by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ClassBy {
+    /// Nothing: one class.
+    #[default]
+    One,
+    /// The map that was applied some steps ago, a class a map. The last one, 0 steps ago, tells in
+    /// which of the tiles f_i(A) of the attractor A a point lies; the one before, in which of the
+    /// f_j(f_i(A)) within its tile; and so on. The map that an approximant of n steps applies first
+    /// is the one n − 1 steps ago. A walk that is younger has the map that it began with.
+    Map {
+        /// How many steps ago.
+        ago: u8,
+    },
+}
+
+/// How the game is played.
+#[derive(Clone, Debug)]
+pub struct Game<'a> {
+    /// The number of points; ten million unless said otherwise.
+    pub points: u64,
+    /// What the walk's choices depend on; 0 unless said otherwise.
+    pub seed: u64,
+    /// Where walks start; on the attractor unless said otherwise.
+    pub start: Start,
+    /// What points are told apart by; nothing unless said otherwise.
+    pub classes: ClassBy,
+    /// The threads that play, as many as the machine has cores unless said otherwise. The result
+    /// does not depend on them.
+    pub threads: NonZero<usize>,
+    /// The game ends soon after this is set.
+    pub cancel: Option<&'a AtomicBool>,
+    /// Where the game tells how far it is, in points.
+    pub progress: Option<&'a Progress>,
+}
+
+impl Default for Game<'_> {
+    fn default() -> Self {
+        Self {
+            points: 10_000_000,
+            seed: 0,
+            start: Start::default(),
+            classes: ClassBy::default(),
+            threads: all_cores(),
+            cancel: None,
+            progress: None,
+        }
+    }
+}
+
+/// Why a game has no result.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GameError {
+    /// The histogram is larger than memory should be asked to hold.
+    #[error(
+        "{0} x {1} pixels in {classes} classes take more than {most} counters",
+        size[0], size[1], most = MOST_BINS
+    )]
+    TooManyBins {
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// The number of classes.
+        classes: usize,
+    },
+    /// The window has no pixel, more than 2²² on a side, or a map that has no inverse.
+    #[error("the window is empty, too large or flat")]
+    Window,
+    /// A start is not finite.
+    #[error("start {start} is not finite")]
+    Start {
+        /// Its number, from 0.
+        start: usize,
+    },
+    /// The game was cancelled.
+    #[error("interrupted")]
+    Cancelled,
+}
+
+/// The most counters, those for what lies outside left out: a gibibyte a thread.
+const MOST_BINS: u64 = 1 << 28;
+
+/// The most counters of all threads together.
+const MOST_BINS_OF_THREADS: u64 = 1 << 29;
+
+/// The largest side of a window.
+const MOST_PIXELS: u32 = 1 << 22;
+
+/// Plays the chaos game.
+///
+/// # Errors
+///
+/// If the window, its map, the histogram or a start is not what it can be, or if the game is
+/// cancelled.
+pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogram, GameError> {
+    check(window, game)?;
+    let classes = match game.classes {
+        ClassBy::One => 1,
+        ClassBy::Map { .. } => system.maps().len(),
+    };
+    let size @ [width, height] = window.size;
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels.saturating_mul(classes as u64) > MOST_BINS {
+        return Err(GameError::TooManyBins { size, classes });
+    }
+    let course = Course::new(system, window, game);
+    let bins = course.stride as usize * classes;
+    if let Some(progress) = game.progress {
+        progress.expect(game.points);
+    }
+    let all = Mutex::new(None);
+    let next = AtomicU64::new(0);
+    let walk = || {
+        let mut tally = Tally::new(bins, &all, game.progress, game.cancel);
+        loop {
+            let wave = next.fetch_add(1, Ordering::Relaxed);
+            if wave >= course.waves() {
+                tally.finish();
+                return Ok(());
+            }
+            walkers::walk(&course, wave, &mut tally)?;
+        }
+    };
+    let threads = (game.threads.get() as u64)
+        .min(MOST_BINS_OF_THREADS / bins as u64)
+        .min(course.waves())
+        .max(1);
+    let walked: Result<(), Cancelled> = thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(walk)).collect();
+        let mut walked = walk();
+        for other in others {
+            match other.join() {
+                Ok(other) => walked = walked.and(other),
+                Err(cause) => std::panic::resume_unwind(cause),
+            }
+        }
+        walked
+    });
+    walked.map_err(|Cancelled| GameError::Cancelled)?;
+    let counts = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let counts = counts.unwrap_or_else(|| vec![0; bins]);
+    Ok(Histogram::new(size, classes, game.points, counts))
+}
+
+fn check(window: &Window, game: &Game<'_>) -> Result<(), GameError> {
+    let sides = 1..=MOST_PIXELS;
+    let inverse = window.to_pixels.inverse();
+    if !window.size.iter().all(|side| sides.contains(side)) || !inverse.is_finite() {
+        return Err(GameError::Window);
+    }
+    if let Start::Points { points, .. } = &game.start
+        && let Some(start) = points.iter().position(|point| !point.is_finite())
+    {
+        return Err(GameError::Start { start });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{DAffine2, DMat2};
+
+    /// The fern: steep, slow to contract, and with maps of all kinds.
+    fn fern() -> System {
+        let table = [
+            [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],
+            [0.85, 0.04, -0.04, 0.85, 0.0, 1.6, 0.85],
+            [0.2, -0.26, 0.23, 0.22, 0.0, 1.6, 0.07],
+            [-0.15, 0.28, 0.26, 0.24, 0.0, 0.44, 0.07],
+        ];
+        let maps = table.map(|[a, b, c, d, e, f, weight]| {
+            let map = DAffine2::from_cols_array(&[a, c, b, d, e, f]);
+            (Map::Affine(map), weight)
+        });
+        System::new(maps.into()).unwrap()
+    }
+
+    fn window(side: u32, scale: f64) -> Window {
+        let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
+        Window {
+            to_pixels: DAffine2::from_mat2_translation(matrix, DVec2::new(5.1, 10.1) * scale),
+            size: [side; 2],
+        }
+    }
+
+    /// One wave, in single or in double precision.
+    fn counts(window: &Window, classes: ClassBy, is_double: bool) -> Vec<u32> {
+        let (system, all) = (fern(), Mutex::new(None));
+        let game = Game {
+            points: 400_000,
+            classes,
+            ..Game::default()
+        };
+        let mut course = Course::new(&system, window, &game);
+        course.is_double = is_double;
+        let mut tally = Tally::new(4 * course.stride as usize, &all, None, None);
+        walkers::walk(&course, 0, &mut tally).unwrap();
+        tally.finish();
+        all.into_inner().unwrap().unwrap()
+    }
+
+    /// In the same walk few points come to another pixel: those within the error of an edge.
+    #[test]
+    fn single_precision_is_enough_where_it_is_used() {
+        for (side, most) in [(256, 0.000_5), (1024, 0.002)] {
+            let window = window(side, f64::from(side) / 10.2);
+            let classes = ClassBy::One;
+            let game = Game::default();
+            assert!(!Course::new(&fern(), &window, &game).is_double);
+            let [single, double] = [false, true].map(|double| counts(&window, classes, double));
+            let differ: u64 = single
+                .iter()
+                .zip(&double)
+                .map(|(a, b)| u64::from(a.abs_diff(*b)))
+                .sum();
+            assert!(differ as f64 / 800_000.0 < most, "{side}: {differ}");
+        }
+    }
+
+    #[test]
+    fn double_precision_is_taken_where_it_matters() {
+        for (side, scale, is_double) in [
+            (1024, 100.0, false),
+            (4096, 400.0, false),
+            (8192, 800.0, false),
+            (16_384, 1600.0, true),
+            // A part, much enlarged.
+            (512, 1e5, true),
+        ] {
+            let window = window(side, scale);
+            let game = Game::default();
+            let course_is_double = Course::new(&fern(), &window, &game).is_double;
+            assert_eq!(course_is_double, is_double, "{side}");
+        }
+    }
+
+    /// Whether all maps are applied and one is taken, or looked up: the measure is the same.
+    #[test]
+    fn both_ways_to_walk_have_one_measure() {
+        let window = window(16, 1.6);
+        let few = counts(&window, ClassBy::One, false);
+        let by_map = counts(&window, ClassBy::Map { ago: 0 }, false);
+        let classes: Vec<_> = by_map.chunks_exact(16 * 16 + 1).collect();
+        for pixel in 0..256 {
+            let any: u32 = classes.iter().map(|counts| counts[pixel]).sum();
+            let expected = f64::from(few[pixel]);
+            // Both vary, and points come in runs.
+            let error = 16.0 * (expected + 10.0).sqrt();
+            assert!(
+                (f64::from(any) - expected).abs() < error,
+                "{pixel} {any} {expected}"
+            );
+        }
+    }
+}

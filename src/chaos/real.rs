@@ -1,0 +1,78 @@
+use std::ops::{Add, Mul, Sub};
+
+/// The numbers that walkers walk in. Sums and products are those of IEEE 754, each rounded on its
+/// own, so they are the same on every machine.
+pub(super) trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + PartialOrd
+{
+    const ZERO: Self;
+
+    /// From here on, up to twice as much, numbers are exactly the whole ones.
+    const WHOLE: Self;
+
+    fn of(value: f64) -> Self;
+
+    /// The lower bits of the mantissa: of a number from [`WHOLE`](Self::WHOLE) on, how far it is
+    /// above.
+    fn mantissa(self) -> u32;
+
+    /// The whole part of a number from 0 to 2²². A cast would do, but has to look after all other
+    /// numbers, which keeps it from being done for many walkers at once.
+    #[inline(always)]
+    fn floor(self) -> u32 {
+        let rounded = self + Self::WHOLE;
+        let is_up = rounded - Self::WHOLE > self;
+        rounded.mantissa().wrapping_sub(u32::from(is_up))
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const WHOLE: Self = 8_388_608.0;
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    #[inline(always)]
+    fn mantissa(self) -> u32 {
+        self.to_bits() & 0x007f_ffff
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const WHOLE: Self = 4_503_599_627_370_496.0;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower bits are meant")]
+    fn mantissa(self) -> u32 {
+        self.to_bits() as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_parts_are_exact() {
+        for whole in [0u32, 1, 2, 3, 4, 1023, 1024, 4095, 1 << 20, (1 << 22) - 1] {
+            let value = f64::from(whole);
+            for part in [0.0, 0.25, 0.5, 0.75] {
+                assert_eq!((value + part).floor(), f64::from(whole));
+                assert_eq!(Real::floor(value + part), whole);
+                assert_eq!(Real::floor(f32::of(value + part)), whole);
+            }
+            assert_eq!(Real::floor((value + 1.0).next_down()), whole);
+            assert_eq!(Real::floor(f32::of(value + 1.0).next_down()), whole);
+        }
+    }
+}
