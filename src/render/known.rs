@@ -145,6 +145,7 @@ impl Standing {
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZero;
     use std::sync::Arc;
 
     use super::Survey;
@@ -217,7 +218,8 @@ mod tests {
                 let graph = Graph::compile(&rule, steps).unwrap();
                 let growth = Growth::steps(steps);
                 let style = Style::default();
-                let told = Survey::of(&graph, &growth, &style, steps).unwrap();
+                let told =
+                    Survey::of(&graph, &growth, &style, steps, NonZero::<usize>::MIN).unwrap();
                 let mut walked = Survey::new(&graph, &style, steps);
                 walk(&graph, &growth, &mut walked).unwrap();
                 let off = told.bounds.size() - walked.bounds.size();
