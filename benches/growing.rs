@@ -18,7 +18,7 @@ use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
 use kfrac::export;
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::grow::{Element, Fractal, Growth, Visitor, count, walk};
 use kfrac::render::{self, Options};
 use kfrac::rule::Rule;
 
@@ -65,6 +65,17 @@ fn walk_elements(bencher: Bencher, (name, steps): (&str, u32)) {
     bencher
         .counter(ItemsCount::new(elements))
         .bench(|| walk(&graph, &growth, &mut Looks).unwrap());
+}
+
+#[divan::bench(args = [("koch", 11, 1), ("koch", 11, 2), ("dragon", 22, 1), ("dragon", 22, 2), ("random-tree", 14, 2)])]
+fn count_elements(bencher: Bencher, (name, steps, threads): (&str, u32, usize)) {
+    let graph = graph(name, steps);
+    let growth = Growth::steps(steps);
+    let threads = NonZero::new(threads).unwrap();
+    let elements = count(&graph, &growth, threads).unwrap().walked.elements;
+    bencher
+        .counter(ItemsCount::new(elements))
+        .bench(|| count(&graph, &growth, threads).unwrap());
 }
 
 #[divan::bench(args = [("koch", 9), ("dragon", 16), ("carpet", 5)])]

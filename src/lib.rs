@@ -18,7 +18,7 @@
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
 //!     ├── measure   similarity dimension
-//!     │  grow       a depth-first walk
+//!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
 //!     ├── render    pictures: SVG, PNG; estimate: how large they will be
@@ -33,7 +33,9 @@
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
 //! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in
-//! files are [`expression`]s, and text is written by many threads in order by [`parallel`].
+//! files are [`expression`]s, and [`parallel`] shares work between threads. One thread walks down to
+//! subtrees of some thousand elements, any thread walks over these, and what comes of them, text
+//! included, is put together in order: the bytes do not depend on the number of threads.
 
 pub mod build;
 pub mod catalogue;

@@ -1,11 +1,10 @@
 //! Work on many threads whose results come in order.
 
-use std::collections::BTreeMap;
-use std::io;
+use std::collections::{BTreeMap, VecDeque};
 use std::num::NonZero;
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::mpsc::{self, Receiver, SyncSender};
-use std::sync::{Mutex, PoisonError};
+use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 /// The number of threads that the machine runs at once.
@@ -14,135 +13,176 @@ pub fn all_cores() -> NonZero<usize> {
     thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
 }
 
-/// Pieces of work that are on their way, and those that are done and wait for earlier ones.
-pub(crate) struct Line<'w, J> {
-    work: &'w (dyn Fn(&mut J) + Sync),
-    threads: Option<Threads<J>>,
-    /// Pieces to be used again.
-    spare: Vec<J>,
-}
-
-struct Threads<J> {
-    jobs: SyncSender<(u64, J)>,
-    /// What is done; nothing where a thread has panicked.
-    done: Receiver<Option<(u64, J)>>,
-    waiting: BTreeMap<u64, J>,
-    handed_out: u64,
-    taken: u64,
-    /// No more pieces than this are on their way.
-    most: u64,
-}
-
-/// Runs `body` beside `threads` − 1 threads that do the pieces of work that it hands to the line;
-/// with one thread it does them itself.
-pub(crate) fn in_order<J: Default + Send, T>(
+/// Threads that do what is handed to them, and the one that hands it out, which helps while it
+/// waits.
+pub(crate) struct Team<'w> {
+    queue: Mutex<Queue<'w>>,
+    called: Condvar,
     threads: NonZero<usize>,
-    work: impl Fn(&mut J) + Sync,
-    body: impl FnOnce(&mut Line<'_, J>) -> T,
-) -> T {
-    let workers = threads.get() - 1;
-    let mut line = Line {
-        work: &work,
-        threads: None,
-        spare: Vec::new(),
+}
+
+#[derive(Default)]
+struct Queue<'w> {
+    jobs: VecDeque<Job<'w>>,
+    is_over: bool,
+}
+
+type Job<'w> = Box<dyn FnOnce() + Send + 'w>;
+
+/// Runs `body` with a team of `threads`, the thread that it runs on included.
+pub(crate) fn with_team<'w, T>(threads: NonZero<usize>, body: impl FnOnce(&Team<'w>) -> T) -> T {
+    let team = Team {
+        queue: Mutex::default(),
+        called: Condvar::new(),
+        threads,
     };
-    if workers == 0 {
-        return body(&mut line);
-    }
     thread::scope(|scope| {
-        let (jobs, queue) = mpsc::sync_channel::<(u64, J)>(workers);
-        let (finished, done) = mpsc::channel();
-        let queue = std::sync::Arc::new(Mutex::new(queue));
-        for _ in 0..workers {
-            let (queue, finished, work) = (queue.clone(), finished.clone(), &work);
-            scope.spawn(move || {
-                loop {
-                    let next = queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
-                    let Ok((number, mut job)) = next else { return };
-                    let worked = panic::catch_unwind(AssertUnwindSafe(|| work(&mut job)));
-                    // The others must not wait for what will not come.
-                    let told = finished.send(worked.is_ok().then_some((number, job)));
-                    if let Err(cause) = worked {
-                        panic::resume_unwind(cause);
-                    }
-                    if told.is_err() {
-                        return;
-                    }
-                }
-            });
+        // However the body ends, nothing more is handed out: the threads end.
+        let _over = Over(&team);
+        for _ in 1..threads.get() {
+            scope.spawn(|| team.serve());
         }
-        drop((queue, finished));
-        line.threads = Some(Threads {
-            jobs,
+        body(&team)
+    })
+}
+
+struct Over<'t, 'w>(&'t Team<'w>);
+
+impl Drop for Over<'_, '_> {
+    fn drop(&mut self) {
+        self.0.queue().is_over = true;
+        self.0.called.notify_all();
+    }
+}
+
+impl<'w> Team<'w> {
+    fn queue(&self) -> MutexGuard<'_, Queue<'w>> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn call(&self, job: Job<'w>) {
+        self.queue().jobs.push_back(job);
+        self.called.notify_one();
+    }
+
+    /// Does what is handed out, as long as anything may be.
+    fn serve(&self) {
+        loop {
+            let idle = |queue: &mut Queue<'w>| queue.jobs.is_empty() && !queue.is_over;
+            let waited = self.called.wait_while(self.queue(), idle);
+            let mut queue = waited.unwrap_or_else(PoisonError::into_inner);
+            if queue.is_over {
+                return;
+            }
+            let job = queue.jobs.pop_front();
+            drop(queue);
+            job.into_iter().for_each(|job| job());
+        }
+    }
+
+    /// Does one job that no thread has taken yet, if there is one.
+    fn help(&self) -> bool {
+        let job = self.queue().jobs.pop_front();
+        job.map(|job| job()).is_some()
+    }
+
+    /// A line of pieces to which `work` is done.
+    pub(crate) fn line<J: Send + 'w>(&self, work: fn(&mut J)) -> Line<'_, 'w, J> {
+        let (finished, done) = mpsc::channel();
+        Line {
+            team: self,
+            work,
+            finished,
             done,
             waiting: BTreeMap::new(),
             handed_out: 0,
             taken: 0,
-            most: 4 * workers as u64,
-        });
-        let told = body(&mut line);
-        // Nothing more is handed out: the threads end.
-        drop(line);
-        told
-    })
+            spare: Vec::new(),
+        }
+    }
 }
 
-impl<J: Default> Line<'_, J> {
-    /// A piece that is to be filled: a new one, or one that has been used.
-    pub(crate) fn piece(&mut self) -> J {
-        self.spare.pop().unwrap_or_default()
+/// Pieces of work that are on their way, and those that are done and wait for earlier ones.
+pub(crate) struct Line<'t, 'w, J> {
+    team: &'t Team<'w>,
+    work: fn(&mut J),
+    /// What is done; nothing where the work has panicked.
+    finished: Sender<Option<(u64, J)>>,
+    done: Receiver<Option<(u64, J)>>,
+    waiting: BTreeMap<u64, J>,
+    handed_out: u64,
+    taken: u64,
+    /// Pieces to be used again.
+    spare: Vec<J>,
+}
+
+/// So many pieces a thread are on their way at most.
+const PIECES_A_THREAD: u64 = 2;
+
+impl<'w, J: Send + 'w> Line<'_, 'w, J> {
+    /// A piece that has been used, if there is one.
+    pub(crate) fn spare(&mut self) -> Option<J> {
+        self.spare.pop()
     }
 
     /// Hands a piece to the threads. `take` gets what is done, in the order in which it came.
-    pub(crate) fn hand_on(
+    pub(crate) fn hand_on<E>(
         &mut self,
         mut piece: J,
-        take: &mut dyn FnMut(&mut J) -> io::Result<()>,
-    ) -> io::Result<()> {
-        let Some(threads) = &mut self.threads else {
-            (self.work)(&mut piece);
-            take(&mut piece)?;
+        take: &mut dyn FnMut(&mut J) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let threads = self.team.threads.get() as u64;
+        let work = self.work;
+        if threads == 1 {
+            work(&mut piece);
+            let taken = take(&mut piece);
             self.spare.push(piece);
-            return Ok(());
-        };
-        // A thread that panicked has hung up; the scope hands its panic on.
-        let handed = threads.jobs.send((threads.handed_out, piece));
-        handed.map_err(|_| io::Error::other("a thread has ended"))?;
-        threads.handed_out += 1;
-        let most = threads.most;
-        self.take_until(most, take)
+            return taken;
+        }
+        let (number, finished) = (self.handed_out, self.finished.clone());
+        self.team.call(Box::new(move || {
+            let worked = panic::catch_unwind(AssertUnwindSafe(|| work(&mut piece)));
+            // Who waits must not wait for what will not come; nobody may be waiting any more.
+            let _ = finished.send(worked.is_ok().then_some((number, piece)));
+            if let Err(cause) = worked {
+                panic::resume_unwind(cause);
+            }
+        }));
+        self.handed_out += 1;
+        self.take_until(PIECES_A_THREAD * threads, take)
     }
 
     /// Waits for all pieces.
-    pub(crate) fn finish(
+    pub(crate) fn finish<E>(
         &mut self,
-        take: &mut dyn FnMut(&mut J) -> io::Result<()>,
-    ) -> io::Result<()> {
+        take: &mut dyn FnMut(&mut J) -> Result<(), E>,
+    ) -> Result<(), E> {
         self.take_until(0, take)
     }
 
-    /// Takes what is done, and waits while more than `most` pieces are on their way.
-    fn take_until(
+    /// Takes what is done, and helps or waits while more than `most` pieces are on their way.
+    fn take_until<E>(
         &mut self,
         most: u64,
-        take: &mut dyn FnMut(&mut J) -> io::Result<()>,
-    ) -> io::Result<()> {
-        let Some(threads) = &mut self.threads else {
-            return Ok(());
-        };
-        while threads.handed_out - threads.taken > most {
-            if let Some(mut piece) = threads.waiting.remove(&threads.taken) {
-                threads.taken += 1;
+        take: &mut dyn FnMut(&mut J) -> Result<(), E>,
+    ) -> Result<(), E> {
+        while self.handed_out - self.taken > most {
+            if let Some(mut piece) = self.waiting.remove(&self.taken) {
+                self.taken += 1;
                 take(&mut piece)?;
                 self.spare.push(piece);
                 continue;
             }
-            match threads.done.recv() {
-                Ok(Some((number, piece))) => {
-                    threads.waiting.insert(number, piece);
-                }
-                Ok(None) | Err(_) => return Err(io::Error::other("a thread has ended")),
-            }
+            let done = match self.done.try_recv() {
+                Err(TryRecvError::Empty) if self.team.help() => continue,
+                Err(_) => self.done.recv().ok().flatten(),
+                Ok(done) => done,
+            };
+            let Some((number, piece)) = done else {
+                // The scope hands the panic on once the other threads have ended.
+                panic::resume_unwind(Box::new("a thread has panicked"));
+            };
+            self.waiting.insert(number, piece);
         }
         Ok(())
     }
@@ -150,26 +190,28 @@ impl<J: Default> Line<'_, J> {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use super::*;
 
     #[test]
     fn results_come_in_order_on_any_number_of_threads() {
         for threads in [1, 2, 5] {
             let square = |(number, result): &mut (u64, u64)| {
-                if *number % 7 == 0 {
+                if number.is_multiple_of(7) {
                     thread::yield_now();
                 }
                 *result = *number * *number;
             };
             let mut results = Vec::new();
-            let threads = NonZero::new(threads).unwrap();
-            in_order(threads, square, |line| {
+            with_team(NonZero::new(threads).unwrap(), |team| {
+                let mut line = team.line(square);
                 let mut take = |piece: &mut (u64, u64)| {
                     results.push(piece.1);
-                    Ok(())
+                    io::Result::Ok(())
                 };
                 for number in 0..1000 {
-                    let mut piece = line.piece();
+                    let mut piece = line.spare().unwrap_or_default();
                     piece.0 = number;
                     line.hand_on(piece, &mut take).unwrap();
                 }
@@ -180,26 +222,50 @@ mod tests {
         }
     }
 
+    /// What comes of one line goes on in another: both are served by the same threads.
+    #[test]
+    fn lines_may_feed_lines() {
+        for threads in [1, 2, 5] {
+            let mut results = Vec::new();
+            with_team(NonZero::new(threads).unwrap(), |team| {
+                let mut doubled = team.line(|number: &mut u64| *number *= 2);
+                let mut raised = team.line(|number: &mut u64| *number += 1);
+                let mut keep = |number: &mut u64| {
+                    results.push(*number);
+                    io::Result::Ok(())
+                };
+                for number in 0..1000 {
+                    let mut hand_on = |number: &mut u64| raised.hand_on(*number, &mut keep);
+                    doubled.hand_on(number, &mut hand_on).unwrap();
+                }
+                let mut hand_on = |number: &mut u64| raised.hand_on(*number, &mut keep);
+                doubled.finish(&mut hand_on).unwrap();
+                raised.finish(&mut keep).unwrap();
+            });
+            let expected: Vec<u64> = (0..1000).map(|number| 2 * number + 1).collect();
+            assert_eq!(results, expected);
+        }
+    }
+
     #[test]
     fn what_fails_ends_the_work() {
-        let threads = NonZero::new(3).unwrap();
-        let failed = in_order(
-            threads,
-            |_: &mut u64| {},
-            |line| {
-                let mut take = |_: &mut u64| Err(io::ErrorKind::StorageFull.into());
-                (0..100).try_for_each(|number| line.hand_on(number, &mut take))
-            },
-        );
+        let failed: io::Result<()> = with_team(NonZero::new(3).unwrap(), |team| {
+            let mut line = team.line(|_: &mut u64| {});
+            let mut take = |_: &mut u64| Err(io::ErrorKind::StorageFull.into());
+            (0..100).try_for_each(|number| line.hand_on(number, &mut take))
+        });
         assert_eq!(failed.unwrap_err().kind(), io::ErrorKind::StorageFull);
     }
+
     #[test]
-    #[should_panic(expected = "scoped thread panicked")]
+    #[should_panic(expected = "panicked")]
     fn a_panic_ends_the_work() {
-        let work = |number: &mut u64| assert!(*number != 50);
-        in_order(NonZero::new(3).unwrap(), work, |line| {
-            let failed = (0..10_000).try_for_each(|number| line.hand_on(number, &mut |_| Ok(())));
-            assert!(failed.is_err());
+        let work = |number: &mut u64| assert!(*number != 50, "the work panicked");
+        with_team(NonZero::new(3).unwrap(), |team| {
+            let mut line = team.line(work);
+            let mut take = |_: &mut u64| io::Result::Ok(());
+            let all = (0..10_000).try_for_each(|number| line.hand_on(number, &mut take));
+            assert!(all.is_ok(), "the work should have been missed");
         });
     }
 }

@@ -98,12 +98,11 @@ mod tests {
     /// The chance of every choice, counted over the words that tell entries apart.
     fn chances(table: &AliasTable, row: usize, count: usize) -> Vec<f64> {
         let mut chances = vec![0.0; count];
-        for entry in 0..1u32 << table.bits {
-            let Entry { rest, alias } =
-                table.entries[((row as u32) << table.bits | entry) as usize];
+        for entry in 0..1usize << table.bits {
+            let Entry { rest, alias } = table.entries[row << table.bits | entry];
             let own = f64::from(rest) / 2f64.powi(32);
             if own > 0.0 {
-                chances[entry as usize] += own;
+                chances[entry] += own;
             }
             chances[alias as usize] += 1.0 - own;
         }

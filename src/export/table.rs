@@ -3,8 +3,8 @@ use std::num::NonZero;
 
 use crate::geometry::{DVec2, Direction};
 use crate::graph::Graph;
-use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, Walked, walk};
-use crate::parallel::{Line, in_order};
+use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, Walked, walk_with};
+use crate::parallel::with_team;
 
 /// How the rows of a table are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,26 +53,33 @@ pub fn write(
     {
         progress.expect(elements);
     }
-    in_order(
-        threads,
-        |rows: &mut Rows| rows.format(format),
-        |line| {
-            let mut writer = Writer {
-                graph,
-                fractal: Fractal::default(),
-                rows: Rows::default(),
-                line,
-                out,
-            };
-            let walked = walk(graph, growth, &mut writer)?;
-            writer.finish().map_err(WalkError::Visitor)?;
-            Ok(walked)
-        },
-    )
+    with_team(threads, |team| {
+        let mut line = team.line(Rows::format);
+        let mut write = |rows: &mut Rows| out.write_all(&rows.text);
+        let fresh = || Collector {
+            graph,
+            fractal: Fractal::default(),
+            goes_on: 0,
+            rows: Vec::new(),
+        };
+        let walked = walk_with(team, graph, growth, Some(MANY), fresh, |span, seam| {
+            let goes_on = span.goes_on.min(span.rows.len());
+            span.goes_on = 0;
+            for row in &mut span.rows[..goes_on] {
+                row.index += seam.before;
+            }
+            let mut rows = line.spare().unwrap_or_else(|| Rows::of(format));
+            rows.rows.clear();
+            std::mem::swap(&mut rows.rows, &mut span.rows);
+            line.hand_on(rows, &mut write)
+        })?;
+        line.finish(&mut write).map_err(WalkError::Visitor)?;
+        Ok(walked)
+    })
 }
 
-/// So many rows are written at once.
-const MANY: usize = 4096;
+/// About so many rows are written at once.
+const MANY: u64 = 1 << 12;
 
 /// What a row tells.
 struct Row {
@@ -85,17 +92,25 @@ struct Row {
 }
 
 /// Rows, and the text that they become.
-#[derive(Default)]
 struct Rows {
+    format: Format,
     rows: Vec<Row>,
     text: Vec<u8>,
 }
 
 impl Rows {
-    fn format(&mut self, format: Format) {
+    fn of(format: Format) -> Self {
+        Self {
+            format,
+            rows: Vec::new(),
+            text: Vec::new(),
+        }
+    }
+
+    fn format(&mut self) {
         self.text.clear();
         let mut line = Cells {
-            format,
+            format: self.format,
             text: &mut self.text,
         };
         for row in &self.rows {
@@ -158,37 +173,26 @@ impl Cells<'_> {
     }
 }
 
-/// Collects rows and has them written.
-struct Writer<'a, 'l, W: Write> {
-    graph: &'a Graph,
+/// Collects the rows of a span.
+struct Collector<'g> {
+    graph: &'g Graph,
     fractal: Fractal,
-    rows: Rows,
-    line: &'a mut Line<'l, Rows>,
-    out: &'a mut W,
+    /// The number of rows whose fractal has not begun in the span.
+    goes_on: usize,
+    rows: Vec<Row>,
 }
 
-impl<W: Write> Writer<'_, '_, W> {
-    fn hand_on(&mut self) -> io::Result<()> {
-        let mut next = self.line.piece();
-        next.rows.clear();
-        let rows = std::mem::replace(&mut self.rows, next);
-        let out = &mut self.out;
-        self.line
-            .hand_on(rows, &mut |rows| out.write_all(&rows.text))
-    }
-
-    fn finish(mut self) -> io::Result<()> {
-        self.hand_on()?;
-        let out = &mut self.out;
-        self.line.finish(&mut |rows| out.write_all(&rows.text))
-    }
-}
-
-impl<W: Write> Visitor for Writer<'_, '_, W> {
+impl Visitor for Collector<'_> {
     type Error = io::Error;
+
+    fn go_on(&mut self, fractal: Fractal) {
+        self.fractal = fractal;
+        self.goes_on = usize::MAX;
+    }
 
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
         self.fractal = fractal;
+        self.goes_on = self.goes_on.min(self.rows.len());
         Ok(())
     }
 
@@ -198,7 +202,7 @@ impl<W: Write> Visitor for Writer<'_, '_, W> {
             let message = "an element lies beyond the range of numbers";
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
-        self.rows.rows.push(Row {
+        self.rows.push(Row {
             fractal: self.fractal,
             index: element.index,
             ends,
@@ -206,9 +210,6 @@ impl<W: Write> Visitor for Writer<'_, '_, W> {
             direction: element.frame.direction,
             visible: self.graph.objects()[element.object].visible,
         });
-        if self.rows.rows.len() == MANY {
-            return self.hand_on();
-        }
         Ok(())
     }
 

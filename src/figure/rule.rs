@@ -21,6 +21,7 @@ use std::num::NonZero;
 
 use crate::document::RuleDocument;
 use crate::geometry::DVec2;
+use crate::parallel::Team;
 use crate::render::{Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing};
 use crate::rule::Rule;
 use crate::style::Colour;
@@ -121,7 +122,7 @@ impl Drawing for Figure {
         ink::PEN
     }
 
-    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
+    fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
         let (scale, corner) = self.fit();
         self.page.draw(surface, &Font::new(), scale, corner)
     }

@@ -6,6 +6,7 @@ use std::io::Write;
 use crate::geometry::DVec2;
 use crate::graph::Graph;
 use crate::grow::Growth;
+use crate::parallel::Team;
 use crate::render::{
     Canvas, Drawing, Options, Pen, RenderError, Scene, Surface, Survey, pen, write_drawing,
 };
@@ -64,6 +65,7 @@ pub fn write(
             &cell.growth,
             style,
             steps.unwrap_or_default(),
+            options.threads,
         )?);
     }
     let canvas = Canvas::of(&surveys, view, options.size)?;
@@ -145,14 +147,14 @@ impl Drawing for Sheet<'_> {
         pen(self.style)
     }
 
-    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
+    fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
         let [width, height] = self.canvas.size();
         let places = (0..).flat_map(|row| (0..self.columns).map(move |column| [column, row]));
         for ((caption, scene), [column, row]) in self.scenes.iter().zip(places) {
             let left = GAP + column * (self.column + GAP);
             let top = GAP + row * (self.row + GAP);
             surface.enter([left + (self.column - width) / 2, top], [width, height])?;
-            scene.draw(surface)?;
+            scene.draw(surface, team)?;
             surface.leave()?;
             let middle = f64::from(left) + f64::from(self.column) / 2.0;
             let at = DVec2::new(middle, f64::from(top + height) + CAPTION + 2.0);

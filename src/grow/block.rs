@@ -1,26 +1,21 @@
 //! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
 //! place by a single map wherever the object stands.
 
-use std::convert::Infallible;
-use std::rc::Rc;
+use std::sync::OnceLock;
 
-use crate::geometry::{DAffine2, DVec2, Direction, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::graph::{CompileError, Graph, Replacement};
+use crate::rule::Piece;
 
-use super::descent::{Descent, Next};
-use super::{Element, Fractal, Visitor};
+use super::descent::{Descent, Next, Stop};
+use super::sizes::Sizes;
+use super::{Element, Enter};
 
 /// A block has this many elements at most: they stay in the fastest memory.
-const MOST_LEAVES: u64 = 512;
+pub(super) const MOST_LEAVES: u64 = 1024;
 
-/// All blocks together have no more elements than this.
-const MOST_MEMORY: usize = 1 << 16;
-
-/// Steps of a block.
-const MOST_LEVELS: usize = 64;
-
-/// Graphs with more objects than this are walked without blocks.
-const MOST_OBJECTS: usize = 4_096;
+/// All blocks that a graph may have together have no more elements than this.
+const MOST_MEMORY: u64 = 1 << 17;
 
 /// An element of a block, as seen from the object whose place it takes.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +36,12 @@ pub(super) struct Block {
     leaves: Vec<Leaf>,
     /// Where the leaves end, in the object's unit frame, if they are one visible line of lines.
     line: Option<Vec<DVec2>>,
+    /// The corners of what is drawn, if it has no curves.
+    corners: Option<Corners>,
+    /// The number of fertile leaves.
+    fertile: u64,
+    /// The lengths of all leaves together.
+    length: f64,
     /// Whether the last leaf reaches the end of the object.
     pub(super) meets_end: bool,
 }
@@ -113,6 +114,33 @@ impl Run<'_> {
         self.block.line.as_deref()
     }
 
+    /// The number of elements that are replaced in the next step.
+    #[must_use]
+    pub fn fertile(&self) -> u64 {
+        self.block.fertile
+    }
+
+    /// The lengths |p1 − p0| of all elements together.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.frame.length() * self.block.length
+    }
+
+    /// Adds what is drawn, without strokes, to a box.
+    pub fn add_to(&self, bounds: &mut Bounds) {
+        if let Some(corners) = &self.block.corners {
+            corners.add_to(bounds, &self.frame.map);
+            return;
+        }
+        for element in self.elements() {
+            let object = &self.graph.objects()[element.object];
+            if object.visible {
+                let base_element = &self.graph.base_elements()[object.base_element];
+                base_element.add_to(bounds, &element.frame.map, 0.0);
+            }
+        }
+    }
+
     /// The map from the block's unit frame to the plane.
     #[must_use]
     pub fn map(&self) -> &DAffine2 {
@@ -129,138 +157,93 @@ fn unit(reversed: bool) -> Direction {
     }
 }
 
-/// The blocks of a graph, made as they are reached.
-#[derive(Default)]
+/// The blocks of a graph, made as they are reached, by whatever thread.
+///
+/// Which ones may be made is known before: what a walk yields, to the last bit, does not depend on
+/// the order in which they are reached.
 pub(super) struct Blocks {
-    /// Of every object, the largest number of steps that makes a block.
-    levels: Vec<usize>,
+    sizes: Sizes,
     /// By object, direction and number of steps.
-    made: Vec<[Vec<Option<Rc<Block>>>; 2]>,
-    /// The number of elements in all of them.
-    memory: usize,
+    made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
 }
 
 impl Blocks {
     /// What there is to know before blocks are made.
     pub(super) fn of(graph: &Graph) -> Self {
-        if graph.counts_index() || graph.objects().len() > MOST_OBJECTS {
-            return Self::default();
+        let mut most = if graph.counts_index() { 0 } else { MOST_LEAVES };
+        let mut sizes = Sizes::fixed(graph, most);
+        // In both directions.
+        while most > 0 && 2 * sizes.sum() > MOST_MEMORY {
+            most /= 2;
+            sizes = Sizes::fixed(graph, most);
         }
-        let levels = levels(graph);
-        let none = |&levels: &usize| [vec![None; levels + 1], vec![None; levels + 1]];
+        let none = |steps: usize| {
+            std::iter::repeat_with(OnceLock::new)
+                .take(steps + 1)
+                .collect()
+        };
         Self {
-            made: levels.iter().map(none).collect(),
-            levels,
-            memory: 0,
+            made: sizes
+                .steps()
+                .map(|steps| [none(steps), none(steps)])
+                .collect(),
+            sizes,
         }
     }
 
     /// What an object becomes in a number of steps, if that makes a block.
     #[inline]
     pub(super) fn get(
-        &mut self,
+        &self,
         graph: &Graph,
         object: usize,
         steps: u32,
         reversed: bool,
-    ) -> Option<Rc<Block>> {
-        let steps = steps as usize;
-        if self.levels.get(object).is_none_or(|most| steps > *most) {
-            return None;
-        }
-        if let Some(block) = &self.made[object][usize::from(reversed)][steps] {
-            return Some(Rc::clone(block));
-        }
-        if self.memory > MOST_MEMORY {
-            return None;
-        }
+    ) -> Option<&Block> {
+        self.sizes.get(object, steps)?;
+        let slot = &self.made[object][usize::from(reversed)][steps as usize];
         // What is not finite is for the walk itself to report.
-        let block = Rc::new(made(graph, object, steps, reversed).ok()?);
-        self.memory += block.leaves.len();
-        self.made[object][usize::from(reversed)][steps] = Some(Rc::clone(&block));
-        Some(block)
+        slot.get_or_init(|| made(graph, object, steps, reversed).ok())
+            .as_ref()
     }
 }
 
-/// Of every object, the largest number of steps in which it becomes no more than [`MOST_LEAVES`],
-/// by fixed instances; 0 for those that are not replaced by any.
-fn levels(graph: &Graph) -> Vec<usize> {
-    let objects = graph.objects();
-    let mut counts = vec![1u64; objects.len()];
-    let mut levels = vec![0; objects.len()];
-    for level in 1..=MOST_LEVELS {
-        let count = |object: &crate::graph::Object| match &object.replacement {
-            Replacement::Kept => 1,
-            Replacement::Fixed(production) => {
-                let instances = production.body.instances.iter();
-                let sum = instances.map(|instance| counts[instance.object]);
-                sum.fold(0, u64::saturating_add)
-            }
-            Replacement::Evaluated(_) | Replacement::Beyond => u64::MAX,
-        };
-        let next: Vec<_> = objects.iter().map(count).collect();
-        let mut grows = false;
-        for (object, &count) in next.iter().enumerate() {
-            let fixed = matches!(objects[object].replacement, Replacement::Fixed(_));
-            if fixed && levels[object] + 1 == level && count <= MOST_LEAVES {
-                levels[object] = level;
-                grows = true;
-            }
-        }
-        if !grows {
-            break;
-        }
-        counts = next;
-    }
-    levels
-}
-
-/// Who wants to see everything.
-struct Everything;
-
-impl Visitor for Everything {
-    type Error = Infallible;
-
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn element(&mut self, _: &Element) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
-
-fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Block, CompileError> {
-    let steps = u32::try_from(steps).unwrap_or(u32::MAX);
+fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Block, CompileError> {
     let start = super::descent::Start::initiator(0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
     let mut ends = Some(Vec::new());
+    let mut corners = Some(Corners::default());
+    let mut fertile = 0;
+    let mut length = 0.0;
     loop {
-        let found = match descent.next(&start, &mut Everything, None)? {
+        let found = match descent.next(&start, |_| Enter::Replace, Stop::Nowhere)? {
             Next::Element(found) => found,
             Next::Pause => {
                 descent.visited = 0;
                 continue;
             }
-            Next::Run(_) => unreachable!("blocks are not made of blocks"),
+            Next::Run(_) | Next::Subtree(_) => unreachable!("blocks are not made of blocks"),
             Next::End => break,
         };
+        let frame = found.standing.frame;
         let object = &graph.objects()[found.object];
+        let base_element = &graph.base_elements()[object.base_element];
         let goes_on = leaves.is_empty() || found.joined;
-        if object.visible && goes_on && graph.base_elements()[object.base_element].is_line() {
-            ends.iter_mut()
-                .for_each(|ends| ends.push(found.standing.frame.ends()[1]));
+        if object.visible && goes_on && base_element.is_line() {
+            ends.iter_mut().for_each(|ends| ends.push(frame.ends()[1]));
         } else {
             ends = None;
         }
+        if object.visible {
+            let (start, pieces) = base_element.outline(frame.direction.is_reversed());
+            corners = corners.and_then(|corners| corners.with(start, pieces, &frame.map));
+        }
+        fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
+        length += frame.length();
         leaves.push(Leaf {
-            map: found.standing.frame.map,
-            direction: found.standing.frame.direction,
+            map: frame.map,
+            direction: frame.direction,
             length: found.standing.length,
             object: found.object,
             born: found.level,
@@ -270,6 +253,78 @@ fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Bl
     Ok(Block {
         leaves,
         line: ends.filter(|ends| !ends.is_empty()),
+        corners,
+        fertile,
+        length,
         meets_end: descent.ends_joined(),
     })
+}
+
+/// The corners of outlines, by coordinate, so that many are moved at once.
+#[derive(Debug, Default)]
+struct Corners {
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+}
+
+/// So many corners are moved at once: with their boxes they fit into the registers.
+const LANES: usize = 4;
+
+impl Corners {
+    /// With those of another outline; `None` if it has curves.
+    fn with(mut self, start: DVec2, pieces: &[Piece], map: &DAffine2) -> Option<Self> {
+        self.add(map.transform_point2(start));
+        for piece in pieces {
+            let Piece::Line(end) = *piece else {
+                return None;
+            };
+            self.add(map.transform_point2(end));
+        }
+        Some(self)
+    }
+
+    fn add(&mut self, corner: DVec2) {
+        // Where a line goes on its corner is there already.
+        if self.xs.last() != Some(&corner.x) || self.ys.last() != Some(&corner.y) {
+            self.xs.push(corner.x);
+            self.ys.push(corner.y);
+        }
+    }
+
+    /// Moves all corners and adds them to a box.
+    fn add_to(&self, bounds: &mut Bounds, map: &DAffine2) {
+        let [x, y] = [map.matrix2.row(0), map.matrix2.row(1)];
+        let mut wide = [[f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]];
+        let mut high = wide;
+        let (xs, ys) = (self.xs.as_chunks(), self.ys.as_chunks());
+        for (xs, ys) in xs.0.iter().zip(ys.0) {
+            stretch(&mut wide, xs, ys, x);
+            stretch(&mut high, xs, ys, y);
+        }
+        let lanes = if xs.0.is_empty() { 0 } else { LANES };
+        for lane in 0..lanes {
+            for [x, y] in [0, 1].map(|end| [wide[end][lane], high[end][lane]]) {
+                bounds.add(map.translation + DVec2::new(x, y));
+            }
+        }
+        for (&x, &y) in xs.1.iter().zip(ys.1) {
+            bounds.add(map.transform_point2(DVec2::new(x, y)));
+        }
+    }
+}
+
+/// Makes room for one coordinate of moved corners.
+#[inline]
+fn stretch(range: &mut [[f64; LANES]; 2], xs: &[f64; LANES], ys: &[f64; LANES], row: DVec2) {
+    let [low, high] = range;
+    for lane in 0..LANES {
+        let value = row.x * xs[lane] + row.y * ys[lane];
+        // In this form it is one instruction.
+        low[lane] = if value < low[lane] { value } else { low[lane] };
+        high[lane] = if value > high[lane] {
+            value
+        } else {
+            high[lane]
+        };
+    }
 }

@@ -1,14 +1,13 @@
 //! One fractal at one step: its elements in order of traversal, depth-first.
 
-use std::rc::Rc;
-
 use crate::geometry::{DAffine2, DVec2, Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Placement};
 
 use super::block::{Block, Blocks};
-use super::{Enter, Subtree, Visitor};
+use super::sizes::Sizes;
+use super::{Enter, Subtree};
 
 /// Where an element stands, and what its descendants need to know of it.
 #[derive(Clone, Copy, Debug)]
@@ -74,8 +73,8 @@ pub(super) struct Found {
 }
 
 /// A block that a descent has come to instead of its elements.
-pub(super) struct FoundRun {
-    pub(super) block: Rc<Block>,
+pub(super) struct FoundRun<'b> {
+    pub(super) block: &'b Block,
     pub(super) frame: Frame,
     pub(super) length: f64,
     /// The step of birth of the object that became the block.
@@ -84,16 +83,40 @@ pub(super) struct FoundRun {
     pub(super) joined: bool,
 }
 
+/// An element that a descent has come to and leaves to another one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FoundSubtree {
+    /// The element; it is joined if the pen stands where it starts.
+    pub(super) root: Found,
+    /// How many elements may come of it at most.
+    pub(super) size: u64,
+    /// Whether what ends it ends what ends with it.
+    pub(super) meets_end: bool,
+}
+
 /// What a descent comes to.
-pub(super) enum Next {
+pub(super) enum Next<'b> {
     /// An element of the approximant.
     Element(Found),
-    /// Elements in a row, where blocks are wanted.
-    Run(FoundRun),
+    /// Elements in a row, where it stops at blocks.
+    Run(FoundRun<'b>),
+    /// An element that is replaced, where it stops at those. Whatever follows is taken to be joined
+    /// to it.
+    Subtree(FoundSubtree),
     /// Elements that have been replaced, many of them: a chance to stop.
     Pause,
     /// The end of the fractal.
     End,
+}
+
+/// Where a descent stops short of the elements.
+#[derive(Clone, Copy)]
+pub(super) enum Stop<'b> {
+    Nowhere,
+    /// Where a block stands for them.
+    AtBlocks(&'b Blocks),
+    /// Where they are few.
+    AtSubtrees(&'b Sizes),
 }
 
 /// Visits between two chances to stop.
@@ -215,19 +238,78 @@ impl<'g> Descent<'g> {
         descent
     }
 
+    /// A walk over what comes of other walks' subtrees, one after another, with nothing to begin
+    /// with.
+    pub(super) fn over_subtrees(graph: &'g Graph, target: u32) -> Self {
+        let mut descent = Self::new(graph, &Start::initiator(0), target);
+        descent.stack.clear();
+        descent
+    }
+
+    /// Goes down into a subtree of a fractal that was born in a step, once the one before is done.
+    /// `joined` tells whether the pen stands where it starts.
+    pub(super) fn enter<'b>(
+        &mut self,
+        subtree: &FoundSubtree,
+        born: u32,
+        joined: bool,
+        blocks: Option<&'b Blocks>,
+    ) -> Result<Option<FoundRun<'b>>, CompileError> {
+        let Found {
+            standing,
+            object,
+            level,
+            rank,
+            ..
+        } = subtree.root;
+        (self.born, self.joined) = (born, joined);
+        let meets_end = subtree.meets_end;
+        if let Some(run) =
+            blocks.and_then(|blocks| self.run(&standing, object, level, meets_end, blocks))
+        {
+            return Ok(Some(run));
+        }
+        self.push(standing, object, level, rank, meets_end)?;
+        Ok(None)
+    }
+
+    /// The block that stands for what comes of an element, if there is one.
+    #[inline]
+    fn run<'b>(
+        &mut self,
+        standing: &Standing,
+        object: usize,
+        level: u32,
+        meets_end: bool,
+        blocks: &'b Blocks,
+    ) -> Option<FoundRun<'b>> {
+        let reversed = standing.frame.direction.is_reversed();
+        let block = blocks.get(self.graph, object, self.target - level, reversed)?;
+        let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
+        self.visited += block.len();
+        Some(FoundRun {
+            block,
+            frame: standing.frame,
+            length: standing.length,
+            level,
+            joined,
+        })
+    }
+
     /// Whether the last element joins the first one of a ring; to be asked at the end.
     pub(super) fn ends_joined(&self) -> bool {
         self.joined
     }
 
-    /// Goes on to the next element of approximant `target`, or to the next block of elements; the
-    /// visitor is asked before an element is replaced.
-    pub(super) fn next<V: Visitor>(
+    /// Goes on to the next element of approximant `target`, or to where it stops; `enter` is asked
+    /// before an element is replaced.
+    #[inline]
+    pub(super) fn next<'b>(
         &mut self,
         start: &Start<'g>,
-        visitor: &mut V,
-        mut blocks: Option<&mut Blocks>,
-    ) -> Result<Next, CompileError> {
+        mut enter: impl FnMut(&Subtree) -> Enter,
+        stop: Stop<'b>,
+    ) -> Result<Next<'b>, CompileError> {
         loop {
             if self.visited >= PATIENCE {
                 return Ok(Next::Pause);
@@ -291,18 +373,18 @@ impl<'g> Descent<'g> {
             } else {
                 0
             };
-            let enter = if kept || level == self.target {
+            let entered = if kept || level == self.target {
                 Enter::Keep
             } else if self.graph.counts_index() {
                 Enter::Replace
             } else {
-                visitor.enter(&Subtree {
+                enter(&Subtree {
                     frame: standing.frame,
                     object,
                     born: level,
                 })
             };
-            if enter == Enter::Keep {
+            if entered == Enter::Keep {
                 let joined = self.joined;
                 let leaf = &self.graph.objects()[object];
                 let is_open = !self.graph.base_elements()[leaf.base_element].is_closed();
@@ -323,25 +405,33 @@ impl<'g> Descent<'g> {
                 // The chain is done: what follows the child's last element follows the chain's.
                 self.pop();
             }
-            if enter == Enter::Skip {
+            if entered == Enter::Skip {
                 self.joined = false;
                 continue;
             }
-            let reversed = standing.frame.direction.is_reversed();
-            let steps = self.target - level;
-            if let Some(blocks) = &mut blocks
-                && let Some(block) = blocks.get(self.graph, object, steps, reversed)
-            {
-                let joined = self.joined;
-                self.joined = block.meets_end && meets_end;
-                self.visited += block.len();
-                return Ok(Next::Run(FoundRun {
-                    block,
-                    frame: standing.frame,
-                    length: standing.length,
-                    level,
-                    joined,
-                }));
+            match stop {
+                Stop::AtBlocks(blocks) => {
+                    if let Some(run) = self.run(&standing, object, level, meets_end, blocks) {
+                        return Ok(Next::Run(run));
+                    }
+                }
+                Stop::AtSubtrees(sizes) => {
+                    if let Some(size) = sizes.get(object, self.target - level) {
+                        let joined = std::mem::replace(&mut self.joined, true);
+                        return Ok(Next::Subtree(FoundSubtree {
+                            root: Found {
+                                standing,
+                                object,
+                                level,
+                                joined,
+                                rank,
+                            },
+                            size,
+                            meets_end,
+                        }));
+                    }
+                }
+                Stop::Nowhere => {}
             }
             self.push(standing, object, level, rank, meets_end)?;
         }

@@ -4,18 +4,27 @@
 //! with the number of steps and not with the number of elements. Where new fractals are seeded, a
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
 //! an object becomes in its last steps is worked out once, as a block, for visitors that take
-//! elements by [`Run`]s.
+//! elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
+//! them comes in order.
 
 mod block;
+mod count;
 mod descent;
 mod extent;
 mod progress;
+mod sizes;
+mod spans;
+mod tally;
 mod walk;
 
 pub use block::Run;
+pub use count::{Counted, count};
 pub use extent::extent;
 pub use progress::Progress;
+pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
+
+pub(crate) use spans::walk_with;
 
 use crate::geometry::Frame;
 use crate::graph::CompileError;
@@ -84,6 +93,9 @@ pub trait Visitor {
     ///
     /// Whatever ends the walk.
     fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
+
+    /// A visitor of a span of a walk begins in the middle of a fractal.
+    fn go_on(&mut self, _: Fractal) {}
 
     /// Says what is done with an element that can be replaced. An element may be asked about more
     /// than once, where fractals are walked again for their seeds: the answer must be the same.

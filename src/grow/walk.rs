@@ -1,9 +1,10 @@
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use crate::graph::{Graph, Replacement};
+use crate::graph::{CompileError, Graph, Replacement};
 
 use super::block::{Blocks, Run};
-use super::descent::{Descent, Found, Next, PATIENCE, Start};
+use super::descent::{Descent, Found, FoundRun, Next, Start, Stop};
+use super::tally::Tally;
 use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
 
 /// How far to grow, and within what limits.
@@ -44,11 +45,6 @@ pub struct Walked {
     pub fractals: u64,
 }
 
-/// A walk may visit so many elements for each that is allowed, those on the way counted, or so many
-/// in all if that is more.
-const VISITS_AN_ELEMENT: u64 = 20;
-const FEW_VISITS: u64 = 1 << 24;
-
 /// A fractal whose seeds are being looked for.
 struct Parent<'g> {
     start: Start<'g>,
@@ -61,17 +57,20 @@ struct Parent<'g> {
     queue: Vec<Start<'g>>,
 }
 
-struct Walk<'g, 'v, V> {
-    graph: &'g Graph,
-    growth: Growth<'v>,
-    visitor: &'v mut V,
-    walked: Walked,
-    /// The elements that progress has been told of.
-    told: u64,
-    visited: u64,
-    next_look: u64,
-    /// Where the visitor takes elements by blocks.
-    blocks: Option<Blocks>,
+/// Who gets what a walk comes to.
+pub(super) trait Sink {
+    type Error: From<CompileError>;
+
+    /// As [`Visitor::enter`].
+    fn enter(&mut self, subtree: &Subtree) -> Enter;
+    /// A fractal begins that was born in a step.
+    fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error>;
+    /// Elements of the fractal, or what stands for them.
+    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
+    /// The fractal ends.
+    fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
+    /// So many elements have been visited on the way.
+    fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
 }
 
 /// Walks over the elements of an approximant, fractal by fractal.
@@ -92,35 +91,54 @@ pub fn walk<V: Visitor>(
     growth: &Growth<'_>,
     visitor: &mut V,
 ) -> Result<Walked, WalkError<V::Error>> {
+    let blocks = visitor.takes_runs().then(|| Blocks::of(graph));
+    let stop = blocks.as_ref().map_or(Stop::Nowhere, Stop::AtBlocks);
+    let mut sink = Direct {
+        visiting: Visiting::new(graph, visitor),
+        tally: Tally::new(growth),
+    };
+    send(graph, growth, stop, &mut sink)?;
+    Ok(sink.tally.finish())
+}
+
+/// Walks and sends what is found to a sink.
+pub(super) fn send<S: Sink>(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    stop: Stop<'_>,
+    sink: &mut S,
+) -> Result<(), S::Error> {
     assert!(
         graph.depth().is_none_or(|depth| depth >= growth.steps),
         "the graph is not resolved for {} steps",
         growth.steps
     );
-    let blocks = visitor.takes_runs().then(|| Blocks::of(graph));
     let mut walk = Walk {
         graph,
-        growth: *growth,
-        visitor,
-        walked: Walked::default(),
-        told: 0,
-        visited: 0,
-        next_look: PATIENCE,
-        blocks,
+        steps: growth.steps,
+        stop,
+        sink,
+        fractals: 0,
     };
-    walk.run(Start::initiator(growth.seed))?;
-    walk.tell_progress();
-    Ok(walk.walked)
+    walk.run(Start::initiator(growth.seed))
 }
 
-impl<'g, V: Visitor> Walk<'g, '_, V> {
-    fn run(&mut self, first: Start<'g>) -> Result<(), WalkError<V::Error>> {
+struct Walk<'g, 'v, S> {
+    graph: &'g Graph,
+    steps: u32,
+    stop: Stop<'v>,
+    sink: &'v mut S,
+    fractals: u64,
+}
+
+impl<'g, S: Sink> Walk<'g, '_, S> {
+    fn run(&mut self, first: Start<'g>) -> Result<(), S::Error> {
         let mut parents = Vec::new();
         let mut next = Some(first);
         loop {
             if let Some(start) = next.take() {
                 self.fractal(&start)?;
-                if self.graph.seeds && start.born < self.growth.steps {
+                if self.graph.seeds && start.born < self.steps {
                     parents.push(Parent {
                         step: start.born,
                         descent: Descent::new(self.graph, &start, start.born),
@@ -137,7 +155,8 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             if next.is_some() {
                 continue;
             }
-            let found = parent.descent.next(&parent.start, self.visitor, None)?;
+            let enter = |subtree: &Subtree| self.sink.enter(subtree);
+            let found = parent.descent.next(&parent.start, enter, Stop::Nowhere)?;
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
                 Next::Element(found) => {
@@ -147,9 +166,9 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
                         parent.queue.reverse();
                     }
                 }
-                Next::Run(_) => unreachable!("seeds are looked for without blocks"),
+                Next::Run(_) | Next::Subtree(_) => unreachable!("seeds are looked for one by one"),
                 Next::Pause => {}
-                Next::End if parent.is_fertile && parent.step + 1 < self.growth.steps => {
+                Next::End if parent.is_fertile && parent.step + 1 < self.steps => {
                     parent.is_fertile = false;
                     parent.step += 1;
                     parent.descent = Descent::new(self.graph, &parent.start, parent.step);
@@ -158,53 +177,30 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
                     parents.pop();
                 }
             }
-            self.visit(visited)?;
+            self.sink.visit(visited)?;
         }
     }
 
     /// The elements of one fractal of the last approximant.
-    fn fractal(&mut self, start: &Start<'g>) -> Result<(), WalkError<V::Error>> {
+    fn fractal(&mut self, start: &Start<'g>) -> Result<(), S::Error> {
         let fractal = Fractal {
-            number: self.walked.fractals,
-            age: self.growth.steps - start.born,
+            number: self.fractals,
+            age: self.steps - start.born,
             is_ring: start.chain(self.graph).is_ring(),
         };
-        self.walked.fractals += 1;
-        self.visitor.begin(fractal).map_err(WalkError::Visitor)?;
-        let mut descent = Descent::new(self.graph, start, self.growth.steps);
-        let mut index = 0;
+        self.fractals += 1;
+        self.sink.begin(fractal, start.born)?;
+        let mut descent = Descent::new(self.graph, start, self.steps);
         loop {
-            let found = descent.next(start, self.visitor, self.blocks.as_mut())?;
-            self.visit(std::mem::take(&mut descent.visited))?;
+            let enter = |subtree: &Subtree| self.sink.enter(subtree);
+            let found = descent.next(start, enter, self.stop)?;
+            self.sink.visit(std::mem::take(&mut descent.visited))?;
             match found {
-                Next::Element(found) => {
-                    index += 1;
-                    self.count(1)?;
-                    self.visitor
-                        .element(&self.element(&found, index))
-                        .map_err(WalkError::Visitor)?;
-                }
-                Next::Run(found) => {
-                    self.count(found.block.len())?;
-                    let run = Run {
-                        block: &found.block,
-                        frame: found.frame,
-                        length: found.length,
-                        born: found.level,
-                        index: index + 1,
-                        joined: found.joined,
-                        graph: self.graph,
-                    };
-                    self.visitor.run(&run).map_err(WalkError::Visitor)?;
-                    index += found.block.len();
-                }
+                Next::End => return self.sink.end(descent.ends_joined()),
                 Next::Pause => {}
-                Next::End => break,
+                found => self.sink.found(found)?,
             }
         }
-        self.visitor
-            .end(descent.ends_joined())
-            .map_err(WalkError::Visitor)
     }
 
     /// Whether an element of an approximant that is not the last is replaced.
@@ -218,54 +214,107 @@ impl<'g, V: Visitor> Walk<'g, '_, V> {
             object: found.object,
             born: found.level,
         };
-        self.graph.counts_index() || self.visitor.enter(&subtree) == Enter::Replace
+        self.graph.counts_index() || self.sink.enter(&subtree) == Enter::Replace
+    }
+}
+
+/// A visitor, and the rank of the element that it has seen last.
+pub(super) struct Visiting<'g, 'v, V> {
+    graph: &'g Graph,
+    pub(super) visitor: &'v mut V,
+    pub(super) index: u64,
+}
+
+impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
+    pub(super) fn new(graph: &'g Graph, visitor: &'v mut V) -> Self {
+        Self {
+            graph,
+            visitor,
+            index: 0,
+        }
     }
 
-    fn element(&self, found: &Found, index: u64) -> Element {
+    pub(super) fn begin(&mut self, fractal: Fractal) -> Result<(), WalkError<V::Error>> {
+        self.index = 0;
+        self.visitor.begin(fractal).map_err(WalkError::Visitor)
+    }
+
+    #[inline]
+    pub(super) fn element(&mut self, found: &Found) -> Result<(), WalkError<V::Error>> {
+        self.index += 1;
         let object = &self.graph.objects()[found.object];
-        Element {
+        let element = Element {
             frame: found.standing.frame,
             length: found.standing.length,
-            index,
+            index: self.index,
             object: found.object,
             born: found.level,
             fertile: !matches!(object.replacement, Replacement::Kept),
             joined: found.joined,
+        };
+        self.visitor.element(&element).map_err(WalkError::Visitor)
+    }
+
+    #[inline]
+    pub(super) fn run(&mut self, found: &FoundRun<'_>) -> Result<(), WalkError<V::Error>> {
+        let run = Run {
+            block: found.block,
+            frame: found.frame,
+            length: found.length,
+            born: found.level,
+            index: self.index + 1,
+            joined: found.joined,
+            graph: self.graph,
+        };
+        self.index += found.block.len();
+        self.visitor.run(&run).map_err(WalkError::Visitor)
+    }
+
+    pub(super) fn end(&mut self, joined: bool) -> Result<(), WalkError<V::Error>> {
+        self.visitor.end(joined).map_err(WalkError::Visitor)
+    }
+}
+
+/// Shows a visitor what is found at once.
+struct Direct<'g, 'v, V> {
+    visiting: Visiting<'g, 'v, V>,
+    tally: Tally<'v>,
+}
+
+impl<V: Visitor> Sink for Direct<'_, '_, V> {
+    type Error = WalkError<V::Error>;
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.visiting.visitor.enter(subtree)
+    }
+
+    fn begin(&mut self, fractal: Fractal, _: u32) -> Result<(), Self::Error> {
+        self.tally.begin(1);
+        self.visiting.begin(fractal)
+    }
+
+    #[inline]
+    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error> {
+        match next {
+            Next::Element(found) => {
+                self.tally.count(1)?;
+                self.visiting.element(&found)
+            }
+            Next::Run(found) => {
+                self.tally.count(found.block.len())?;
+                self.visiting.run(&found)
+            }
+            Next::Subtree(_) | Next::Pause | Next::End => unreachable!("nothing is left out"),
         }
     }
 
-    /// Counts elements that come next.
-    fn count(&mut self, elements: u64) -> Result<(), WalkError<V::Error>> {
-        self.walked.elements += elements;
-        if self.walked.elements > self.growth.most_elements {
-            return Err(WalkError::TooManyElements {
-                limit: self.growth.most_elements,
-            });
-        }
-        Ok(())
+    fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
+        self.visiting.end(joined)
     }
 
-    fn visit(&mut self, count: u64) -> Result<(), WalkError<V::Error>> {
-        self.visited += count;
-        if self.visited < self.next_look {
-            return Ok(());
-        }
-        self.next_look = self.visited + PATIENCE;
-        self.tell_progress();
-        let most = FEW_VISITS.max(self.growth.most_elements.saturating_mul(VISITS_AN_ELEMENT));
-        if self.visited > most {
-            return Err(WalkError::TooLong { limit: most });
-        }
-        match self.growth.cancel {
-            Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
-            _ => Ok(()),
-        }
-    }
-
-    fn tell_progress(&mut self) {
-        if let Some(progress) = self.growth.progress {
-            progress.count(self.walked.elements - self.told);
-            self.told = self.walked.elements;
-        }
+    #[inline]
+    fn visit(&mut self, count: u64) -> Result<(), Self::Error> {
+        self.tally.visit(count)
     }
 }

@@ -145,6 +145,8 @@ impl Standing {
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZero;
+
     use super::Survey;
     use crate::catalogue::{Catalogue, Shelf};
     use crate::diagnostic::Source;
@@ -215,7 +217,8 @@ mod tests {
                 let graph = Graph::compile(&rule, steps).unwrap();
                 let growth = Growth::steps(steps);
                 let style = Style::default();
-                let told = Survey::of(&graph, &growth, &style, steps).unwrap();
+                let told =
+                    Survey::of(&graph, &growth, &style, steps, NonZero::<usize>::MIN).unwrap();
                 let mut walked = Survey::new(&graph, &style, steps);
                 walk(&graph, &growth, &mut walked).unwrap();
                 let off = told.bounds.size() - walked.bounds.size();

@@ -119,12 +119,19 @@ impl<'a> Layout<'a> {
 impl<'a> Surveyor<'a> {
     fn survey(&self, sight: Sight) -> Result<Survey<'a>, RenderError> {
         let Self { growth, .. } = self;
-        let style = &self.options.style;
+        let Options { style, threads, .. } = self.options;
+        let threads = *threads;
         if !sight.cuts() {
-            return Ok(Survey::of(self.graph, growth, style, growth.steps)?);
+            return Ok(Survey::of(
+                self.graph,
+                growth,
+                style,
+                growth.steps,
+                threads,
+            )?);
         }
         let survey = Survey::new(self.graph, style, growth.steps);
-        Ok(survey.of_what_is_in(sight).walked(growth)?)
+        Ok(survey.of_what_is_in(sight).walked(growth, threads)?)
     }
 
     fn canvas(&self, survey: &Survey<'a>) -> Result<Canvas, RenderError> {

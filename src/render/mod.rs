@@ -2,8 +2,9 @@
 //!
 //! A picture begins with a survey of what there is to draw and how large it is, which the graph
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
-//! that no element is held in memory. What is walked over becomes paths in whole hundredths of a pixel, the same for every format. Walks
-//! leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
+//! that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
+//! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
+//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
 
 mod canvas;
 mod classes;
@@ -14,6 +15,7 @@ mod painter;
 mod png;
 mod scene;
 mod sight;
+mod sketch;
 mod surface;
 mod survey;
 mod svg;
@@ -37,7 +39,7 @@ use std::num::NonZero;
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::heading::Heading;
-use crate::parallel::all_cores;
+use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 
 use self::layout::Layout;
@@ -86,8 +88,8 @@ pub struct Options {
     pub detail: Option<Detail>,
     /// What the file says of itself.
     pub labels: Labels,
-    /// The threads that write it, as many as the machine has cores unless said otherwise; a PNG takes
-    /// one. The bytes do not depend on them.
+    /// The threads that grow and write it, as many as the machine has cores unless said otherwise.
+    /// The bytes do not depend on them.
     pub threads: NonZero<usize>,
 }
 
@@ -181,7 +183,7 @@ pub(crate) trait Drawing {
     /// The pen that most strokes are drawn with.
     fn pen(&self) -> Pen;
     /// Draws it.
-    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError>;
+    fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError>;
 }
 
 /// Grows a graph and writes the approximant as a picture.
@@ -227,23 +229,18 @@ pub(crate) fn write_drawing(
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
     let (size, background) = (drawing.size(), drawing.background());
-    match format {
+    with_team(threads, |team| match format {
         Format::Svg => {
-            svg::on_threads(threads, |line| {
-                let pen = drawing.pen();
-                let mut svg = Svg::begin(out, size, background, pen, labels, line)?;
-                drawing.draw(&mut svg)?;
-                svg.finish()?;
-                Ok::<(), RenderError>(())
-            })?;
+            let mut svg = Svg::begin(out, size, background, drawing.pen(), labels, team)?;
+            drawing.draw(&mut svg, team)?;
+            Ok(svg.finish()?)
         }
         Format::Png => {
             let mut png = Png::begin(size, background)?;
-            drawing.draw(&mut png)?;
-            png.write(labels, out)?;
+            drawing.draw(&mut png, team)?;
+            Ok(png.write(labels, out)?)
         }
-    }
-    Ok(())
+    })
 }
 
 /// The pen of a style; where widths are relative, one of a pixel.

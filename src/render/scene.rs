@@ -1,11 +1,14 @@
 use std::convert::Infallible;
+use std::num::NonZero;
 
 use crate::graph::Graph;
-use crate::grow::{Growth, WalkError, walk};
-use crate::style::{Colour, Style, Width};
+use crate::grow::{Growth, WalkError, walk_with};
+use crate::parallel::Team;
+use crate::style::{ColorBy, Colour, Style, Width};
 
 use super::painter::Painter;
 use super::sight::Sight;
+use super::sketch::Sketcher;
 use super::surface::{Pen, Surface};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
 
@@ -74,15 +77,35 @@ impl Drawing for Scene<'_> {
         super::pen(self.style)
     }
 
-    fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
+    fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
+        let tells_index = self.style.color_by == ColorBy::Index;
+        // What is left out, and ranks that are not known before, need one pair of eyes.
+        let is_whole = self.sight.cuts() || tells_index && !self.graph.is_plain();
+        let span = (!is_whole).then_some(if tells_index { LONG_SPAN } else { SPAN });
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
-            walk(self.graph, self.growth, &mut painter)?;
+            let fresh = || Sketcher::new(self, pass);
+            walk_with(
+                team,
+                self.graph,
+                self.growth,
+                span,
+                fresh,
+                |sketcher, seam| {
+                    let painted = painter.paint_span(&sketcher.sketch, seam);
+                    sketcher.clear();
+                    painted
+                },
+            )?;
             painter.finish()?;
         }
         Ok(())
     }
 }
+
+/// Sketches are about so many elements; where colours run along, most of them stay empty.
+const SPAN: u64 = 1 << 14;
+const LONG_SPAN: u64 = 1 << 16;
 
 impl<'a> Survey<'a> {
     /// What the graph tells of an approximant, or a walk over it where it does not. Colours that
@@ -92,17 +115,11 @@ impl<'a> Survey<'a> {
         growth: &Growth<'_>,
         style: &'a Style,
         steps: u32,
+        threads: NonZero<usize>,
     ) -> Result<Self, WalkError<Infallible>> {
         match Self::known(graph, growth, style, steps) {
             Some(known) => Ok(known),
-            None => Self::new(graph, style, steps).walked(growth),
+            None => Self::new(graph, style, steps).walked(growth, threads),
         }
-    }
-
-    /// Walks over what can be seen of an approximant.
-    pub(super) fn walked(mut self, growth: &Growth<'_>) -> Result<Self, WalkError<Infallible>> {
-        self.walked = true;
-        walk(self.graph(), growth, &mut self)?;
-        Ok(self)
     }
 }

@@ -1,12 +1,18 @@
 use std::convert::Infallible;
+use std::num::NonZero;
 
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
-use crate::grow::{Element, Enter, Fractal, Subtree, Visitor};
+use crate::grow::{
+    Element, Enter, Fractal, Growth, Seam, Subtree, Visitor, WalkError, walk_in_spans,
+};
 use crate::style::{Cap, Join, Style, Width};
 
 use super::sight::Sight;
 use super::{Classes, WIDTHS_AN_OCTAVE};
+
+/// Spans of a survey have about so many elements.
+const SPAN: u64 = 1 << 14;
 
 /// What a walk over an approximant learns before anything is drawn.
 #[derive(Clone, Debug)]
@@ -29,6 +35,9 @@ pub struct Survey<'g> {
     pub(super) steps: u32,
     sight: Sight,
     fractal: Fractal,
+    /// The last rank in the fractal that a span goes on with, as far as it goes on.
+    last_index: Option<u64>,
+    goes_on: bool,
     classes: Classes,
     /// The classes that something visible is in.
     used: Vec<bool>,
@@ -51,6 +60,8 @@ impl<'g> Survey<'g> {
             steps: 0,
             sight: Sight::unbounded(),
             fractal: Fractal::default(),
+            last_index: None,
+            goes_on: false,
             used: classes.all().map(|_| false).collect(),
             classes,
         }
@@ -117,6 +128,45 @@ impl<'g> Survey<'g> {
         }
     }
 
+    /// Adds what a survey of the next span has seen.
+    fn add(&mut self, span: &Self, seam: Seam) {
+        self.bounds.add_all(&span.bounds);
+        self.strokes |= span.strokes;
+        self.elements += span.elements;
+        self.fractals += span.fractals;
+        let last_index = span.last_index.map_or(0, |index| seam.before + index);
+        self.largest_index = self.largest_index.max(span.largest_index).max(last_index);
+        self.steps = self.steps.max(span.steps);
+        for (used, also) in self.used.iter_mut().zip(&span.used) {
+            *used |= also;
+        }
+    }
+
+    /// Walks over what can be seen of an approximant, on several threads.
+    pub(super) fn walked(
+        mut self,
+        growth: &Growth<'_>,
+        threads: NonZero<usize>,
+    ) -> Result<Self, WalkError<Infallible>> {
+        let none = Self {
+            walked: true,
+            ..self.clone()
+        };
+        self.walked = true;
+        let span = (!self.sight.cuts()).then_some(SPAN);
+        let fresh = || none.clone();
+        walk_in_spans(self.graph, growth, threads, span, fresh, |seen, seam| {
+            self.add(seen, seam);
+            let fractal = seen.fractal;
+            *seen = Self {
+                fractal,
+                ..none.clone()
+            };
+            Ok(())
+        })?;
+        Ok(self)
+    }
+
     /// The pixels by which strokes of a width in pixels reach beyond their paths.
     #[must_use]
     pub fn overhang(&self) -> f64 {
@@ -151,8 +201,14 @@ impl Visitor for Survey<'_> {
         !self.sight.cuts()
     }
 
+    fn go_on(&mut self, fractal: Fractal) {
+        self.fractal = fractal;
+        self.goes_on = true;
+    }
+
     fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
         self.fractal = fractal;
+        self.goes_on = false;
         self.fractals += 1;
         Ok(())
     }
@@ -169,7 +225,11 @@ impl Visitor for Survey<'_> {
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.elements += 1;
-        self.largest_index = self.largest_index.max(element.index);
+        if self.goes_on {
+            self.last_index = Some(element.index);
+        } else {
+            self.largest_index = self.largest_index.max(element.index);
+        }
         let object = &self.graph.objects()[element.object];
         if object.visible {
             let class = self.classes.of(element, &self.fractal, self.graph);

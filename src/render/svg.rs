@@ -4,9 +4,8 @@ mod chunk;
 mod path;
 
 use std::io::{self, Write};
-use std::num::NonZero;
 
-use crate::parallel::{Line, in_order};
+use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join, Named};
 
 use super::Labels;
@@ -14,10 +13,11 @@ use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
 use chunk::Chunk;
 
 /// An SVG document that is being written.
-pub(super) struct Svg<'l, 'w, W> {
+pub(super) struct Svg<'t, 'w, W> {
     out: W,
     chunk: Chunk,
-    line: &'l mut Line<'w, Chunk>,
+    /// What has the document's text written, chunk by chunk.
+    line: Line<'t, 'w, Chunk>,
     /// Where the pen stands and the subpath starts.
     at: [Position; 2],
     /// The pen that all strokes have that say nothing else.
@@ -27,15 +27,7 @@ pub(super) struct Svg<'l, 'w, W> {
     label: Option<String>,
 }
 
-/// Writes the document's text, chunk by chunk, on so many threads.
-pub(super) fn on_threads<T>(
-    threads: NonZero<usize>,
-    write: impl FnOnce(&mut Line<'_, Chunk>) -> T,
-) -> T {
-    in_order(threads, Chunk::format, write)
-}
-
-impl<'l, 'w, W: Write> Svg<'l, 'w, W> {
+impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
     /// Begins a document whose strokes are mostly drawn with `pen`.
     pub(super) fn begin(
         mut out: W,
@@ -43,7 +35,7 @@ impl<'l, 'w, W: Write> Svg<'l, 'w, W> {
         background: Option<Colour>,
         pen: Pen,
         labels: &Labels,
-        line: &'l mut Line<'w, Chunk>,
+        team: &'t Team<'w>,
     ) -> io::Result<Self> {
         let [wide, high] = fine([width, height]);
         writeln!(
@@ -77,8 +69,8 @@ impl<'l, 'w, W: Write> Svg<'l, 'w, W> {
         out.write_all(b">\n")?;
         Ok(Self {
             out,
-            chunk: line.piece(),
-            line,
+            chunk: Chunk::default(),
+            line: team.line(Chunk::format),
             at: [[0, 0]; 2],
             pen,
             group: None,
@@ -97,7 +89,7 @@ impl<'l, 'w, W: Write> Svg<'l, 'w, W> {
 
     /// Hands the chunk on and begins the next one, within a path or not.
     fn next_chunk(&mut self, within: Option<[Position; 2]>) -> io::Result<()> {
-        let mut next = self.line.piece();
+        let mut next = self.line.spare().unwrap_or_default();
         next.begin(within);
         let chunk = std::mem::replace(&mut self.chunk, next);
         let out = &mut self.out;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io;
+use std::num::NonZero;
 use std::sync::Arc;
 
 use proptest::prelude::*;
@@ -10,6 +11,7 @@ use super::*;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
+use crate::parallel::with_team;
 use crate::render::layout::Layout;
 use crate::render::{
     Canvas, Detail, Drawing, Options, Paint, Position, Scene, Size, Surface, Survey,
@@ -177,11 +179,14 @@ fn compare(
         ..survey.sight().clone()
     };
     let all = Survey::new(&graph, style, steps).of_what_is_in(everything);
-    let all = all.walked(&growth).unwrap();
+    let all = all.walked(&growth, NonZero::<usize>::MIN).unwrap();
     let draw = |survey: &Survey<'_>, canvas: Canvas| {
         let mut recorder = Recorder::default();
         let scene = Scene::new(survey, &growth, canvas);
-        scene.draw(&mut recorder).unwrap();
+        with_team(NonZero::<usize>::MIN, |team| {
+            scene.draw(&mut recorder, team)
+        })
+        .unwrap();
         // Round caps look like a round corner.
         shown(&recorder, style.join != Join::Round)
     };

@@ -1,0 +1,478 @@
+//! The walk on many threads.
+//!
+//! One thread walks down to where few elements come of an element, and leaves those subtrees to
+//! the others, many together as a span. What the others see is the same as what one would see, to
+//! the last bit, but for two things that hang on all that comes before: how many elements that is,
+//! and whether the last of them reaches the end of its subtree. Spans come back in order, and so
+//! the one who takes them knows both.
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use crate::graph::Graph;
+use crate::parallel::{Line, Team, with_team};
+
+use super::block::{Blocks, MOST_LEAVES};
+use super::descent::{Descent, Found, FoundSubtree, Next, Start, Stop};
+use super::sizes::Sizes;
+use super::tally::Tally;
+use super::walk::{Sink, Visiting, send};
+use super::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};
+
+/// A span that only leads to others is handed on after so many visits, so that the walk can stop.
+const LONG: u64 = 1 << 16;
+
+/// The elements after which a visitor that sees everything is taken.
+const WHOLE: u64 = 1 << 12;
+
+/// What a span goes on with that a visitor of it alone cannot know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seam {
+    /// To be added to the ranks of the elements up to where the next fractal begins.
+    pub before: u64,
+    /// Whether the first element of the span joins the one before if it says so. True where a
+    /// fractal begins.
+    pub joined: bool,
+}
+
+impl Seam {
+    /// Where nothing is to be put right.
+    const NONE: Self = Self {
+        before: 0,
+        joined: true,
+    };
+}
+
+/// Walks over the elements of an approximant as [`walk`] does, on several threads.
+///
+/// Every span of the walk is visited by a visitor of its own, made by `fresh` or used before;
+/// `take` gets them one after another, in order, each with what it has to know of those before, and
+/// makes them ready to be used again. What the visitors see does not depend on the number of
+/// threads. Spans have about `span` elements, or more where they come by runs; where they begin and
+/// end is left open: in the middle of a fractal, too.
+///
+/// One visitor sees everything, and is taken from time to time, where a walk counts indices, and
+/// where `span` is `None`: so it must be if [`Visitor::enter`] says anything but [`Enter::Replace`].
+///
+/// # Errors
+///
+/// As [`walk`]; `take` may end it as well.
+///
+/// # Panics
+///
+/// If the graph was compiled for fewer steps, or if a visitor panics.
+pub fn walk_in_spans<V: Visitor + Send>(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    threads: NonZero<usize>,
+    span: Option<u64>,
+    fresh: impl FnMut() -> V,
+    take: impl FnMut(&mut V, Seam) -> Result<(), V::Error>,
+) -> Result<Walked, WalkError<V::Error>>
+where
+    V::Error: Send,
+{
+    with_team(threads, |team| {
+        walk_with(team, graph, growth, span, fresh, take)
+    })
+}
+
+/// The same with a team that has other work, too.
+pub(crate) fn walk_with<'w, V: Visitor + Send + 'w>(
+    team: &Team<'w>,
+    graph: &'w Graph,
+    growth: &Growth<'_>,
+    span: Option<u64>,
+    mut fresh: impl FnMut() -> V,
+    take: impl FnMut(&mut V, Seam) -> Result<(), V::Error>,
+) -> Result<Walked, WalkError<V::Error>>
+where
+    V::Error: Send + 'w,
+{
+    let Some(size) = span.filter(|_| !graph.counts_index()) else {
+        let mut whole = Whole {
+            visitor: fresh(),
+            take,
+            since: 0,
+        };
+        let walked = walk(graph, growth, &mut whole)?;
+        whole.hand_over().map_err(WalkError::Visitor)?;
+        return Ok(walked);
+    };
+    let takes_runs = fresh().takes_runs();
+    // Blocks are the same as in a walk that is not divided.
+    let size = if takes_runs {
+        size.max(MOST_LEAVES)
+    } else {
+        size
+    };
+    let sizes = Sizes::most(graph, size);
+    let mut spans = Spans {
+        graph,
+        steps: growth.steps,
+        size,
+        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph))),
+        sizes_are_exact: graph.is_plain(),
+        span: Span::default(),
+        is_open: false,
+        line: team.line(Job::run),
+        order: Order {
+            tally: Tally::new(growth),
+            index: 0,
+            joined: true,
+            take,
+        },
+        fresh,
+        has_failed: false,
+    };
+    let sent = send(graph, growth, Stop::AtSubtrees(&sizes), &mut spans);
+    if !spans.has_failed {
+        // Even if the walk to the spans has failed: what comes before may have failed as well.
+        spans.finish()?;
+    }
+    sent?;
+    Ok(spans.order.tally.finish())
+}
+
+/// What a span is made of.
+enum Item {
+    /// A fractal that was born in a step.
+    Begin(Fractal, u32),
+    Element(Found),
+    Subtree(FoundSubtree),
+    /// The end of the fractal, and whether it is joined if what comes before is.
+    End(bool),
+}
+
+/// Where a span begins.
+#[derive(Clone, Copy, Default)]
+struct Position {
+    fractal: Fractal,
+    /// The step in which the fractal was born.
+    born: u32,
+    /// The number of its elements before, if sizes are exact.
+    before: u64,
+}
+
+/// A stretch of a walk.
+#[derive(Default)]
+struct Span {
+    from: Position,
+    /// Where it ends.
+    to: Position,
+    items: Vec<Item>,
+    /// How many elements it may have at most, and what it takes to tell.
+    size: u64,
+    /// The visits on the way to it.
+    visited: u64,
+}
+
+impl Span {
+    /// Goes on where another one ends.
+    fn follow(&mut self, other: &Self) {
+        self.items.clear();
+        (self.from, self.to) = (other.to, other.to);
+        (self.size, self.visited) = (0, 0);
+    }
+
+    fn push(&mut self, item: Item, size: u64) {
+        self.items.push(item);
+        self.size += size;
+    }
+
+    /// Whether it begins in the middle of a fractal.
+    fn goes_on(&self) -> bool {
+        !matches!(self.items.first(), Some(Item::Begin(..)))
+    }
+}
+
+/// A span, and the visitor that sees it.
+struct Job<'w, V: Visitor> {
+    graph: &'w Graph,
+    blocks: Option<Arc<Blocks>>,
+    descent: Descent<'w>,
+    span: Span,
+    visitor: V,
+    outcome: Result<Outcome, WalkError<V::Error>>,
+}
+
+/// What a span comes to.
+#[derive(Clone, Copy, Default)]
+struct Outcome {
+    elements: u64,
+    fractals: u64,
+    visited: u64,
+    /// The rank of the last element in its fractal, as far as the visitor knows.
+    index: u64,
+    /// Whether the next element may join the last one, if that is known.
+    joined: Option<bool>,
+}
+
+impl<V: Visitor> Job<'_, V> {
+    fn run(&mut self) {
+        self.outcome = self.walk();
+    }
+
+    fn walk(&mut self) -> Result<Outcome, WalkError<V::Error>> {
+        let start = Start::initiator(0);
+        let blocks = self.blocks.as_deref();
+        let stop = blocks.map_or(Stop::Nowhere, Stop::AtBlocks);
+        let mut outcome = Outcome::default();
+        let from = self.span.from;
+        let (mut born, mut first, mut joined) = (from.born, from.before, true);
+        if self.span.goes_on() {
+            self.visitor.go_on(from.fractal);
+        }
+        let mut visiting = Visiting::new(self.graph, &mut self.visitor);
+        visiting.index = first;
+        for item in &self.span.items {
+            match item {
+                Item::Begin(fractal, step) => {
+                    outcome.elements += visiting.index - first;
+                    outcome.fractals += 1;
+                    (first, born) = (0, *step);
+                    visiting.begin(*fractal)?;
+                }
+                Item::Element(found) => {
+                    let joined = joined && found.joined;
+                    visiting.element(&Found { joined, ..*found })?;
+                }
+                Item::Subtree(subtree) => {
+                    let joined = joined && subtree.root.joined;
+                    let run = self.descent.enter(subtree, born, joined, blocks)?;
+                    run.iter().try_for_each(|run| visiting.run(run))?;
+                    loop {
+                        let enter = |_: &Subtree| Enter::Replace;
+                        match self.descent.next(&start, enter, stop)? {
+                            Next::Element(found) => visiting.element(&found)?,
+                            Next::Run(found) => visiting.run(&found)?,
+                            Next::Subtree(_) => unreachable!("a subtree is walked to its end"),
+                            Next::Pause => {}
+                            Next::End => break,
+                        }
+                        outcome.visited += std::mem::take(&mut self.descent.visited);
+                    }
+                }
+                Item::End(meets_end) => visiting.end(joined && *meets_end)?,
+            }
+            joined = match item {
+                Item::Subtree(_) => self.descent.ends_joined(),
+                // What follows says itself whether it may join.
+                _ => true,
+            };
+            outcome.joined = Some(joined);
+        }
+        outcome.visited += std::mem::take(&mut self.descent.visited);
+        outcome.elements += visiting.index - first;
+        outcome.index = visiting.index;
+        Ok(outcome)
+    }
+}
+
+/// Takes spans in order.
+struct Order<'v, T> {
+    tally: Tally<'v>,
+    /// The number of elements of the fractal so far.
+    index: u64,
+    joined: bool,
+    take: T,
+}
+
+impl<T> Order<'_, T> {
+    fn take<V: Visitor>(&mut self, job: &mut Job<'_, V>) -> Result<(), WalkError<V::Error>>
+    where
+        T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
+    {
+        let span = &job.span;
+        self.tally.visit(span.visited)?;
+        let outcome = std::mem::replace(&mut job.outcome, Ok(Outcome::default()))?;
+        self.tally.visit(outcome.visited)?;
+        self.tally.count(outcome.elements)?;
+        self.tally.begin(outcome.fractals);
+        let mut seam = Seam::NONE;
+        if span.goes_on() {
+            seam.before = self.index - span.from.before;
+            seam.joined = self.joined;
+        }
+        self.index = outcome.index;
+        if outcome.fractals == 0 {
+            self.index += seam.before;
+        }
+        self.joined = outcome.joined.unwrap_or(self.joined);
+        (self.take)(&mut job.visitor, seam).map_err(WalkError::Visitor)
+    }
+}
+
+/// Makes spans of what a walk comes to, and hands them out.
+struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
+    graph: &'w Graph,
+    steps: u32,
+    /// The elements of a span.
+    size: u64,
+    blocks: Option<Arc<Blocks>>,
+    /// Whether it is known how many elements come of a subtree.
+    sizes_are_exact: bool,
+    span: Span,
+    /// Whether a fractal has begun and not ended.
+    is_open: bool,
+    line: Line<'t, 'w, Job<'w, V>>,
+    order: Order<'v, T>,
+    fresh: F,
+    /// Whether taking spans has failed.
+    has_failed: bool,
+}
+
+impl<'w, V, F, T> Spans<'_, 'w, '_, V, F, T>
+where
+    V: Visitor + Send + 'w,
+    V::Error: Send + 'w,
+    F: FnMut() -> V,
+    T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
+{
+    fn hand_on(&mut self) -> Result<(), WalkError<V::Error>> {
+        let mut job = self.line.spare().unwrap_or_else(|| Job {
+            graph: self.graph,
+            blocks: self.blocks.clone(),
+            descent: Descent::over_subtrees(self.graph, self.steps),
+            span: Span::default(),
+            visitor: (self.fresh)(),
+            outcome: Ok(Outcome::default()),
+        });
+        std::mem::swap(&mut job.span, &mut self.span);
+        self.span.follow(&job.span);
+        let order = &mut self.order;
+        let handed = self.line.hand_on(job, &mut |job| order.take(job));
+        self.has_failed = handed.is_err();
+        handed
+    }
+
+    /// Makes room for what does not end something.
+    fn make_room(&mut self) -> Result<(), WalkError<V::Error>> {
+        if self.span.size < self.size {
+            return Ok(());
+        }
+        self.hand_on()
+    }
+
+    fn finish(&mut self) -> Result<(), WalkError<V::Error>> {
+        self.hand_on()?;
+        let order = &mut self.order;
+        self.line.finish(&mut |job| order.take(job))
+    }
+}
+
+impl<'w, V, F, T> Sink for Spans<'_, 'w, '_, V, F, T>
+where
+    V: Visitor + Send + 'w,
+    V::Error: Send + 'w,
+    F: FnMut() -> V,
+    T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
+{
+    type Error = WalkError<V::Error>;
+
+    fn enter(&mut self, _: &Subtree) -> Enter {
+        Enter::Replace
+    }
+
+    fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error> {
+        self.make_room()?;
+        self.is_open = true;
+        self.span.to = Position {
+            fractal,
+            born,
+            before: 0,
+        };
+        self.span.push(Item::Begin(fractal, born), 1);
+        Ok(())
+    }
+
+    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error> {
+        self.make_room()?;
+        let size = match next {
+            Next::Element(found) => {
+                self.span.push(Item::Element(found), 1);
+                1
+            }
+            Next::Subtree(subtree) => {
+                self.span.push(Item::Subtree(subtree), 1 + subtree.size);
+                subtree.size
+            }
+            Next::Run(_) | Next::Pause | Next::End => unreachable!("blocks are left to spans"),
+        };
+        if self.sizes_are_exact {
+            self.span.to.before += size;
+        }
+        Ok(())
+    }
+
+    /// Always in the span of what it ends.
+    fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
+        self.is_open = false;
+        self.span.push(Item::End(joined), 0);
+        Ok(())
+    }
+
+    fn visit(&mut self, count: u64) -> Result<(), Self::Error> {
+        self.span.visited += count;
+        if self.span.visited >= LONG && !self.is_open {
+            return self.hand_on();
+        }
+        Ok(())
+    }
+}
+
+/// A visitor that sees everything, and hands it over from time to time.
+struct Whole<V, T> {
+    visitor: V,
+    take: T,
+    since: u64,
+}
+
+impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Whole<V, T> {
+    fn hand_over(&mut self) -> Result<(), V::Error> {
+        self.since = 0;
+        (self.take)(&mut self.visitor, Seam::NONE)
+    }
+
+    #[inline]
+    fn count(&mut self, elements: u64) -> Result<(), V::Error> {
+        self.since += elements;
+        if self.since < WHOLE {
+            return Ok(());
+        }
+        self.hand_over()
+    }
+}
+
+impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Whole<V, T> {
+    type Error = V::Error;
+
+    fn takes_runs(&self) -> bool {
+        self.visitor.takes_runs()
+    }
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), V::Error> {
+        self.visitor.begin(fractal)?;
+        self.count(1)
+    }
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.visitor.enter(subtree)
+    }
+
+    #[inline]
+    fn element(&mut self, element: &Element) -> Result<(), V::Error> {
+        self.visitor.element(element)?;
+        self.count(1)
+    }
+
+    fn run(&mut self, run: &Run<'_>) -> Result<(), V::Error> {
+        self.visitor.run(run)?;
+        self.count(run.count())
+    }
+
+    fn end(&mut self, joined: bool) -> Result<(), V::Error> {
+        self.visitor.end(joined)
+    }
+}

@@ -1,0 +1,361 @@
+//! Sketches: what a span of a walk draws, in positions on the picture.
+//!
+//! A sketch is made by any thread, without knowing what was drawn before; the painter puts the
+//! sketches of all spans together, in order.
+
+use std::io;
+
+use crate::geometry::DVec2;
+use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
+use crate::rule::{BaseElement, Piece};
+use crate::style::Width;
+
+use super::WIDTHS_AN_OCTAVE;
+use super::classes::Share;
+use super::scene::{Pass, Scene};
+use super::surface::{FINE, Position, position};
+
+/// What tells paths apart: a new one is begun where this changes.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    pub(super) kind: Kind,
+    /// The width of a relative stroke, in steps of an eighth of an octave.
+    pub(super) width: i32,
+}
+
+impl Look {
+    /// Of the areas of fractals.
+    pub(super) const AREA: Self = Self {
+        kind: Kind::Area,
+        width: 0,
+    };
+}
+
+/// What a path holds.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    /// Open lines.
+    Line,
+    /// Closed paths of lines, stroked and filled.
+    Ring,
+    /// Fractals that are closed chains, filled without a stroke.
+    Area,
+    /// Closed base elements.
+    Polygon,
+}
+
+/// Elements in a row, each joined to the one before, that look alike.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    pub(super) look: Look,
+    /// Whether the first one joins what comes before.
+    pub(super) joined: bool,
+    /// Whether the first one starts, and the last one ends, where its frame does.
+    pub(super) meets_frame: [bool; 2],
+}
+
+/// What is to be drawn through the next points of a sketch.
+#[derive(Clone, Copy)]
+pub(super) enum Mark {
+    /// A fractal begins.
+    Begin,
+    /// A line begins at a point.
+    Line(Line),
+    /// A polygon begins at a point.
+    Polygon(Look),
+    /// The outline of a fractal begins or goes on at a point.
+    Area,
+    /// Straight lines to so many points.
+    Lines(usize),
+    /// A curve, by three points.
+    Curve,
+    /// The polygon is closed; whether it has returned to its start.
+    Close { returned: bool },
+    /// An open element that is not drawn, by its end, and whether its frame ends there.
+    Skip { meets_frame: bool },
+    /// An element that nothing can be joined to, not drawn.
+    Break,
+    /// The fractal ends; as [`Visitor::end`].
+    End(bool),
+}
+
+/// Marks, and the points that they are about.
+#[derive(Default)]
+pub(super) struct Sketch {
+    pub(super) marks: Vec<Mark>,
+    pub(super) points: Vec<Position>,
+}
+
+/// Whether an outline starts and ends where its frame does, in the order of traversal.
+fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
+    let [start, end] = base_element.ends_meet_frame();
+    if reversed { [end, start] } else { [start, end] }
+}
+
+/// Sketches what one walk over an approximant is for.
+pub(super) struct Sketcher<'a> {
+    scene: &'a Scene<'a>,
+    pass: Pass,
+    fractal: Fractal,
+    pub(super) sketch: Sketch,
+    /// The mark of the line or area that the next element may go on with.
+    open: Option<usize>,
+}
+
+impl<'a> Sketcher<'a> {
+    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass) -> Self {
+        Self {
+            scene,
+            pass,
+            fractal: Fractal::default(),
+            sketch: Sketch::default(),
+            open: None,
+        }
+    }
+
+    /// Begins the next sketch.
+    pub(super) fn clear(&mut self) {
+        self.sketch.marks.clear();
+        self.sketch.points.clear();
+        self.open = None;
+    }
+
+    #[inline]
+    fn position(&self, point: DVec2) -> Position {
+        position(self.scene.canvas.pixel(point) * FINE)
+    }
+
+    /// Makes a mark that begins something new.
+    fn mark(&mut self, mark: Mark) {
+        self.open = None;
+        self.sketch.marks.push(mark);
+    }
+
+    /// Makes a mark of an element that is not drawn. Only the last one in a row matters.
+    fn pass_by(&mut self, mark: Mark) {
+        if let Some(Mark::Skip { .. }) = self.sketch.marks.last() {
+            self.sketch.points.pop();
+        }
+        if let Some(last @ (Mark::Skip { .. } | Mark::Break)) = self.sketch.marks.last_mut() {
+            *last = mark;
+        } else {
+            self.mark(mark);
+        }
+    }
+
+    fn start_at(&mut self, start: DVec2) {
+        let start = self.position(start);
+        self.sketch.points.push(start);
+    }
+
+    #[inline]
+    fn line_to(&mut self, end: DVec2) {
+        self.start_at(end);
+        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
+            *count += 1;
+        } else {
+            self.sketch.marks.push(Mark::Lines(1));
+        }
+    }
+
+    #[inline]
+    fn piece(&mut self, piece: &Piece) {
+        match *piece {
+            Piece::Line(end) => self.line_to(end),
+            Piece::Cubic(a, b, end) => {
+                self.sketch.marks.push(Mark::Curve);
+                [a, b, end]
+                    .into_iter()
+                    .for_each(|point| self.start_at(point));
+            }
+        }
+    }
+
+    fn polygon(&mut self, element: &Element, base_element: &BaseElement) {
+        let outlined = self.scene.style.outlines_polygons();
+        let width = if outlined {
+            self.width_class(element)
+        } else {
+            0
+        };
+        self.mark(Mark::Polygon(Look {
+            kind: Kind::Polygon,
+            width,
+        }));
+        let map = element.frame.map;
+        // One orientation for all, so that what overlaps stays filled under the nonzero rule.
+        let mirrored = element.frame.direction.is_mirrored();
+        let backwards = (base_element.signed_area() < 0.0) != mirrored;
+        let (start, pieces) = base_element.outline(backwards);
+        self.start_at(map.transform_point2(start));
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+        let returned = matches!(pieces.last(), Some(Piece::Line(_)));
+        self.mark(Mark::Close { returned });
+    }
+
+    /// Goes on along the outline of a fractal that is filled, whether it is drawn there or not.
+    fn area(&mut self, element: &Element, base_element: &BaseElement) {
+        let map = element.frame.map;
+        let (start, pieces) = base_element.outline(element.frame.direction.is_reversed());
+        let start = map.transform_point2(start);
+        if self.open.is_some() {
+            self.line_to(start);
+        } else {
+            self.mark(Mark::Area);
+            self.start_at(start);
+            self.open = Some(self.sketch.marks.len() - 1);
+        }
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+    }
+
+    fn line(&mut self, element: &Element, base_element: &BaseElement) {
+        let reversed = element.frame.direction.is_reversed();
+        let map = element.frame.map;
+        let look = Look {
+            kind: if self.scene.fills_strokes {
+                Kind::Ring
+            } else {
+                Kind::Line
+            },
+            width: self.width_class(element),
+        };
+        let [meets_start, meets_end] = meets_frame(base_element, reversed);
+        let (start, pieces) = base_element.outline(reversed);
+        let start = map.transform_point2(start);
+        let open = self.open.map(|open| &mut self.sketch.marks[open]);
+        match open {
+            Some(Mark::Line(line)) if element.joined && line.look == look => {
+                let shares = line.meets_frame[1] && meets_start;
+                line.meets_frame[1] = meets_end;
+                if !shares {
+                    self.line_to(start);
+                }
+            }
+            _ => {
+                self.mark(Mark::Line(Line {
+                    look,
+                    joined: element.joined,
+                    meets_frame: [meets_start, meets_end],
+                }));
+                self.open = Some(self.sketch.marks.len() - 1);
+                self.start_at(start);
+            }
+        }
+        for piece in pieces {
+            self.piece(&piece.transformed(&map));
+        }
+    }
+
+    /// Lines of one class that end in these points, one after another.
+    fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) {
+        self.see(first);
+        let map = self.scene.canvas.map(run.map());
+        let rest = ends[1..].iter();
+        let rest = rest.map(|&end| position(map.transform_point2(end) * FINE));
+        self.sketch.points.extend(rest);
+        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
+            *count += ends.len() - 1;
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    fn width_class(&self, element: &Element) -> i32 {
+        match self.scene.style.width {
+            Width::Pixels(_) => 0,
+            Width::Relative(width) => {
+                let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
+                (WIDTHS_AN_OCTAVE * libm::log2(fine.max(1.0))).round() as i32
+            }
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, element: &Element) {
+        let Scene { graph, classes, .. } = self.scene;
+        let object = &graph.objects()[element.object];
+        let base_element = &graph.base_elements()[object.base_element];
+        let is_closed = base_element.is_closed();
+        let Pass::Class(class) = self.pass else {
+            if self.fractal.is_ring && !is_closed {
+                self.area(element, base_element);
+            } else {
+                self.pass_by(Mark::Break);
+            }
+            return;
+        };
+        let is_drawn = object.visible && classes.of(element, &self.fractal, graph) == class;
+        match (is_drawn, is_closed) {
+            (true, true) => self.polygon(element, base_element),
+            (true, false) => self.line(element, base_element),
+            (false, false) if object.visible => {
+                let reversed = element.frame.direction.is_reversed();
+                let [_, meets_frame] = meets_frame(base_element, reversed);
+                self.pass_by(Mark::Skip { meets_frame });
+                let (start, pieces) = base_element.outline(reversed);
+                let end = pieces.last().map_or(start, Piece::end);
+                self.start_at(element.frame.map.transform_point2(end));
+            }
+            _ => self.pass_by(Mark::Break),
+        }
+    }
+}
+
+impl Visitor for Sketcher<'_> {
+    type Error = io::Error;
+
+    fn takes_runs(&self) -> bool {
+        !self.scene.sight.cuts()
+    }
+
+    fn go_on(&mut self, fractal: Fractal) {
+        self.fractal = fractal;
+    }
+
+    fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
+        self.fractal = fractal;
+        self.mark(Mark::Begin);
+        Ok(())
+    }
+
+    #[inline]
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.scene.sight.enter(subtree)
+    }
+
+    #[inline]
+    fn element(&mut self, element: &Element) -> io::Result<()> {
+        self.see(element);
+        Ok(())
+    }
+
+    fn run(&mut self, run: &Run<'_>) -> io::Result<()> {
+        let Scene { graph, classes, .. } = self.scene;
+        let share = match self.pass {
+            Pass::Areas => Share::Some,
+            Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
+        };
+        match (share, run.line(), run.first(), run.last()) {
+            // Of what is not painted only the end matters, where the next line may begin.
+            (Share::None, _, _, Some(last)) => self.see(&last),
+            (Share::All, Some(ends), Some(first), _)
+                if matches!(self.scene.style.width, Width::Pixels(_)) =>
+            {
+                self.lines(run, ends, &first);
+            }
+            _ => run.elements().for_each(|element| self.see(&element)),
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, joined: bool) -> io::Result<()> {
+        self.mark(Mark::End(joined));
+        Ok(())
+    }
+}

@@ -1,0 +1,356 @@
+//! Many threads make what one makes, to the last bit.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+#[path = "laws/rules.rs"]
+mod rules;
+
+use std::convert::Infallible;
+use std::num::NonZero;
+use std::sync::Arc;
+
+use common::{document, document_of};
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::export;
+use kfrac::geometry::DVec2;
+use kfrac::graph::Graph;
+use kfrac::grow::{
+    Element, Fractal, Growth, Seam, Visitor, WalkError, count, extent, walk, walk_in_spans,
+};
+use kfrac::render::{self, Options, Size};
+use kfrac::rule::Rule;
+use kfrac::style::ColorBy;
+use proptest::prelude::*;
+use rules::Features;
+
+const THREADS: [usize; 4] = [1, 2, 3, 5];
+
+fn threads(number: usize) -> NonZero<usize> {
+    NonZero::new(number).unwrap()
+}
+
+/// Everything that a walk tells, to the last bit.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Seen {
+    takes_runs: bool,
+    /// Whether the first fractal had begun before.
+    goes_on: bool,
+    fractals: Vec<(Fractal, Vec<Place>, bool)>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Place {
+    map: [f64; 6],
+    direction: u8,
+    length: f64,
+    index: u64,
+    object: usize,
+    born: u32,
+    fertile: bool,
+    joined: bool,
+}
+
+impl Visitor for Seen {
+    type Error = Infallible;
+
+    fn takes_runs(&self) -> bool {
+        self.takes_runs
+    }
+
+    fn go_on(&mut self, fractal: Fractal) {
+        self.goes_on = true;
+        self.fractals.push((fractal, Vec::new(), false));
+    }
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        self.fractals.push((fractal, Vec::new(), false));
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.fractals.last_mut().unwrap().1.push(Place {
+            map: element.frame.map.to_cols_array(),
+            direction: element.frame.direction.number(),
+            length: element.length,
+            index: element.index,
+            object: element.object,
+            born: element.born,
+            fertile: element.fertile,
+            joined: element.joined,
+        });
+        Ok(())
+    }
+
+    fn end(&mut self, joined: bool) -> Result<(), Infallible> {
+        self.fractals.last_mut().unwrap().2 = joined;
+        Ok(())
+    }
+}
+
+impl Seen {
+    /// Adds what has been seen of the next span.
+    fn add(&mut self, span: Self, seam: Seam) {
+        let mut fractals = span.fractals.into_iter();
+        if span.goes_on {
+            let (fractal, mut elements, end) = fractals.next().unwrap();
+            let last = self.fractals.last_mut().unwrap();
+            assert_eq!(last.0, fractal);
+            for element in &mut elements {
+                element.index += seam.before;
+            }
+            if let Some(first) = elements.first_mut() {
+                first.joined &= seam.joined;
+            }
+            last.1.extend(elements);
+            last.2 = end;
+        }
+        self.fractals.extend(fractals);
+    }
+}
+
+fn in_spans(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    number: usize,
+    span: Option<u64>,
+    takes_runs: bool,
+) -> Seen {
+    let none = Seen {
+        takes_runs,
+        ..Seen::default()
+    };
+    let mut all = none.clone();
+    // A visitor that sees everything goes on where it has been.
+    let mut whole = false;
+    let walked = walk_in_spans(
+        graph,
+        growth,
+        threads(number),
+        span,
+        || none.clone(),
+        |seen, seam| {
+            if span.is_some() && !graph.counts_index() {
+                all.add(std::mem::replace(seen, none.clone()), seam);
+            } else {
+                whole = true;
+                all = seen.clone();
+            }
+            Ok(())
+        },
+    )
+    .unwrap();
+    assert_eq!(whole, span.is_none() || graph.counts_index());
+    let elements = all
+        .fractals
+        .iter()
+        .map(|(_, elements, _)| elements.len() as u64);
+    assert_eq!(walked.elements, elements.sum::<u64>());
+    assert_eq!(walked.fractals, all.fractals.len() as u64);
+    all
+}
+
+/// Holds walks in spans of all sizes against one that is not divided.
+fn spans_agree(graph: &Graph, growth: &Growth<'_>, sizes: &[Option<u64>]) {
+    for takes_runs in [false, true] {
+        let mut sequential = Seen {
+            takes_runs,
+            ..Seen::default()
+        };
+        walk(graph, growth, &mut sequential).unwrap();
+        for &span in sizes {
+            for number in THREADS {
+                let divided = in_spans(graph, growth, number, span, takes_runs);
+                assert!(divided == sequential, "{span:?} on {number}, {takes_runs}");
+            }
+        }
+    }
+}
+
+/// Holds what is counted against what is seen element by element.
+fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
+    let counted = count(graph, growth, threads(1)).unwrap();
+    assert_eq!(count(graph, growth, threads(3)).unwrap(), counted);
+    let mut seen = Seen::default();
+    assert_eq!(walk(graph, growth, &mut seen).unwrap(), counted.walked);
+    let elements = || seen.fractals.iter().flat_map(|(_, elements, _)| elements);
+    let fertile = elements().filter(|element| element.fertile).count();
+    assert_eq!(counted.fertile, fertile as u64);
+    let length = |place: &Place| DVec2::new(place.map[0], place.map[1]).length();
+    let length: f64 = elements().map(length).sum();
+    assert!((counted.length - length).abs() <= 1e-9 * (1.0 + length));
+    let bounds = extent(graph, growth).unwrap();
+    assert_eq!(counted.bounds.is_empty(), bounds.is_empty());
+    if !bounds.is_empty() {
+        let far = |a: DVec2, b: DVec2| a.distance(b) / (1.0 + b.length());
+        assert!(far(counted.bounds.min(), bounds.min()) < 1e-12);
+        assert!(far(counted.bounds.max(), bounds.max()) < 1e-12);
+    }
+}
+
+/// Every rule of the library, and a step of not many elements that are more than one span has.
+fn library() -> impl Iterator<Item = (String, Arc<Rule>, u32)> {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries().into_iter();
+    let names = entries.filter(|entry| entry.shelf == Shelf::Rules);
+    names.map(|entry| entry.name).map(|name| {
+        let rule = document(&name).resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, 14).unwrap();
+        let most = match graph.check_size(14, 12_000) {
+            Ok(None) => rule.steps().unwrap_or(4),
+            Ok(Some(_)) => 14,
+            Err(error) => error.deepest.unwrap(),
+        };
+        (name, rule, most)
+    })
+}
+
+#[test]
+fn spans_of_the_library_are_the_whole_walk() {
+    for (_, rule, steps) in library() {
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let growth = Growth {
+            seed: 3,
+            ..Growth::steps(steps)
+        };
+        spans_agree(&graph, &growth, &[None, Some(100), Some(4096)]);
+        counts_agree(&graph, &growth);
+    }
+}
+
+#[test]
+fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
+    for (name, rule, steps) in library() {
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let growth = Growth::steps(steps);
+        let one_and_others = |write: &dyn Fn(NonZero<usize>) -> Vec<u8>, what: &str| {
+            let one = write(threads(1));
+            for number in &THREADS[1..] {
+                let many = write(threads(*number));
+                assert!(many == one, "{name} as {what} on {number} threads");
+            }
+        };
+        for format in [export::Format::Csv, export::Format::JsonLines] {
+            let write = |threads| {
+                let mut bytes = Vec::new();
+                export::write(&graph, &growth, format, threads, &mut bytes).unwrap();
+                bytes
+            };
+            one_and_others(&write, &format!("{format:?}"));
+        }
+        let own = Options::of(rule.heading());
+        let mut by_index = own.clone();
+        by_index.style.color_by = ColorBy::Index;
+        for (format, options) in [
+            (render::Format::Svg, &own),
+            (render::Format::Svg, &by_index),
+            (render::Format::Png, &own),
+        ] {
+            let write = |threads| {
+                let options = Options {
+                    format,
+                    threads,
+                    size: Size::Long(200),
+                    ..options.clone()
+                };
+                let mut bytes = Vec::new();
+                render::write(&graph, &growth, &options, &mut bytes).unwrap();
+                bytes
+            };
+            let what = format!("{format:?} by {:?}", options.style.color_by);
+            one_and_others(&write, &what);
+        }
+    }
+}
+
+#[test]
+fn limits_and_failures_are_met_on_any_number_of_threads() {
+    let rule = document("koch")
+        .resolve(&[])
+        .unwrap()
+        .0
+        .into_rule()
+        .unwrap();
+    let graph = Graph::compile(&rule, 8).unwrap();
+    let growth = Growth {
+        most_elements: 40_000,
+        ..Growth::steps(8)
+    };
+    let cancel = std::sync::atomic::AtomicBool::new(true);
+    let cancelled = Growth {
+        cancel: Some(&cancel),
+        ..Growth::steps(8)
+    };
+    for number in THREADS {
+        let met = count(&graph, &growth, threads(number));
+        assert_eq!(met, Err(WalkError::TooManyElements { limit: 40_000 }));
+        let met = count(&graph, &cancelled, threads(number));
+        assert_eq!(met, Err(WalkError::Cancelled));
+        let mut taken = 0;
+        let fails = Growth::steps(8);
+        let failed = walk_in_spans(
+            &graph,
+            &fails,
+            threads(number),
+            Some(1000),
+            || Fails { seen: 0 },
+            |_, _| {
+                taken += 1;
+                Ok(())
+            },
+        );
+        assert_eq!(failed, Err(WalkError::Visitor("here")));
+        // In order: what comes before is taken, what comes after is not.
+        assert_eq!(taken, 0);
+    }
+}
+
+/// Fails in every span.
+struct Fails {
+    seen: u64,
+}
+
+impl Visitor for Fails {
+    type Error = &'static str;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn element(&mut self, _: &Element) -> Result<(), Self::Error> {
+        self.seen += 1;
+        if self.seen > 100 { Err("here") } else { Ok(()) }
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn spans_are_the_whole_walk(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {
+        let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let growth = Growth { seed, ..Growth::steps(steps) };
+        spans_agree(&graph, &growth, &[None, Some(1), Some(7), Some(60)]);
+        counts_agree(&graph, &growth);
+    }
+
+    /// Seams in the middle of paths, of rules of all kinds.
+    #[test]
+    fn files_do_not_depend_on_the_number_of_threads(text in rules::rule(Features::ALL), seed in 0..3u64) {
+        let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, 6).unwrap();
+        let growth = Growth { seed, most_elements: 30_000, ..Growth::steps(6) };
+        let write = |number| {
+            let options = Options { size: Size::Long(300), threads: threads(number), ..Options::of(rule.heading()) };
+            let mut bytes = Vec::new();
+            let drawn = render::write(&graph, &growth, &options, &mut bytes);
+            (drawn.map_err(|error| error.to_string()), bytes)
+        };
+        prop_assert!(write(1) == write(3));
+    }
+}
