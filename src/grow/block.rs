@@ -35,11 +35,24 @@ struct Leaf {
     joined: bool,
 }
 
+/// An element that is a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Stick {
+    /// Where it starts and ends, in the order of traversal.
+    pub ends: [DVec2; 2],
+    /// The logarithm to base 2 of its length.
+    pub octave: f64,
+    /// Whether it joins the element before.
+    pub joined: bool,
+}
+
 /// What an object becomes in a number of steps.
 #[derive(Debug)]
 pub(super) struct Block {
     leaves: Vec<Leaf>,
-    /// Where the leaves end, in the object's unit frame, if they are one visible line of lines.
+    /// The leaves as lines in the object's unit frame, if all of them are visible lines.
+    sticks: Option<Vec<Stick>>,
+    /// Where they end, if each joins the one before.
     line: Option<Vec<DVec2>>,
     /// Whether the last leaf reaches the end of the object.
     pub(super) meets_end: bool,
@@ -111,6 +124,13 @@ impl Run<'_> {
     #[must_use]
     pub fn line(&self) -> Option<&[DVec2]> {
         self.block.line.as_deref()
+    }
+
+    /// The elements as lines, in the unit frame of [`Run::map`], if all are visible lines. Whether
+    /// the first one joins what was drawn before is told by [`Run::first`].
+    #[must_use]
+    pub fn sticks(&self) -> Option<&[Stick]> {
+        self.block.sticks.as_deref()
     }
 
     /// The map from the block's unit frame to the plane.
@@ -239,7 +259,7 @@ fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Bl
     let start = super::descent::Start::initiator(0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
-    let mut ends = Some(Vec::new());
+    let mut sticks = Some(Vec::new());
     loop {
         let found = match descent.next(&start, &mut Everything, None)? {
             Next::Element(found) => found,
@@ -251,12 +271,17 @@ fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Bl
             Next::End => break,
         };
         let object = &graph.objects()[found.object];
-        let goes_on = leaves.is_empty() || found.joined;
-        if object.visible && goes_on && graph.base_elements()[object.base_element].is_line() {
-            ends.iter_mut()
-                .for_each(|ends| ends.push(found.standing.frame.ends()[1]));
+        if object.visible && graph.base_elements()[object.base_element].is_line() {
+            let frame = found.standing.frame;
+            sticks.iter_mut().for_each(|sticks| {
+                sticks.push(Stick {
+                    ends: frame.ends(),
+                    octave: libm::log2(frame.length()),
+                    joined: found.joined,
+                });
+            });
         } else {
-            ends = None;
+            sticks = None;
         }
         leaves.push(Leaf {
             map: found.standing.frame.map,
@@ -267,9 +292,15 @@ fn made(graph: &Graph, object: usize, steps: usize, reversed: bool) -> Result<Bl
             joined: found.joined,
         });
     }
+    let sticks = sticks.filter(|sticks| !sticks.is_empty());
+    let line = sticks.as_ref().filter(|sticks| {
+        let mut later = sticks[1..].iter();
+        later.all(|stick| stick.joined)
+    });
     Ok(Block {
+        line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
+        sticks,
         leaves,
-        line: ends.filter(|ends| !ends.is_empty()),
         meets_end: descent.ends_joined(),
     })
 }

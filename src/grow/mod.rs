@@ -12,7 +12,7 @@ mod extent;
 mod progress;
 mod walk;
 
-pub use block::Run;
+pub use block::{Run, Stick};
 pub use extent::extent;
 pub use progress::Progress;
 pub use walk::{Growth, Walked, walk};

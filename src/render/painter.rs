@@ -1,7 +1,7 @@
 use std::io;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
+use crate::grow::{Element, Enter, Fractal, Run, Stick, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Width};
 
@@ -75,6 +75,8 @@ pub(super) struct Painter<'a, 's, S> {
     /// For a ring that has not been broken: whether its first element starts where its frame does.
     ring: Option<bool>,
     is_first: bool,
+    /// Where lines end that come together.
+    vertices: Vec<Position>,
 }
 
 impl<'a, 's, S: Surface> Painter<'a, 's, S> {
@@ -92,6 +94,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             previous: None,
             ring: None,
             is_first: true,
+            vertices: Vec::new(),
         }
     }
 
@@ -122,7 +125,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let colour = self.colour.or(style.stroke).unwrap_or(Colour::BLACK);
         let mut pen = pen(style);
         if let Width::Relative(_) = style.width {
-            pen.width = libm::exp2(f64::from(look.width) / WIDTHS_AN_OCTAVE) / FINE;
+            pen.width = class_width(look.width) / FINE;
         }
         let stroke = |colour| Some(Stroke { colour, pen });
         let (fill, stroke) = match look.kind {
@@ -200,11 +203,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let reversed = element.frame.direction.is_reversed();
         let map = element.frame.map;
         self.begin_path(Look {
-            kind: if self.scene.fills_strokes {
-                Kind::Ring
-            } else {
-                Kind::Line
-            },
+            kind: self.kind(),
             width: self.width_class(element),
         })?;
         let [meets_start, meets_end] = meets_frame(base_element, reversed);
@@ -244,16 +243,50 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) -> io::Result<()> {
         self.element(first)?;
         let map = self.scene.canvas.map(run.map());
-        for &end in &ends[1..] {
-            self.tracer
-                .line_to(position(map.transform_point2(end) * FINE));
-        }
+        let later = ends[1..].iter();
+        let later = later.map(|&end| position(map.transform_point2(end) * FINE));
+        self.vertices.clear();
+        self.vertices.extend(later);
+        self.tracer.lines_to(&mut self.vertices);
         self.previous = ends.last().map(|&end| Previous {
             end: run.map().transform_point2(end),
             meets_frame: true,
             drawn: true,
         });
         self.tracer.hand_on()
+    }
+
+    /// Lines of one class that need not join.
+    fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) -> io::Result<()> {
+        self.element(first)?;
+        let map = self.scene.canvas.map(run.map());
+        let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
+        let whole = self.octave(run.map().matrix2.x_axis.length());
+        let kind = self.kind();
+        for stick in &sticks[1..] {
+            let [start, end] = stick.ends;
+            self.begin_path(Look {
+                kind,
+                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+            })?;
+            let goes_on = self.previous.is_some_and(|previous| previous.drawn) && stick.joined;
+            if !goes_on {
+                self.tracer.move_to(fine(start));
+                self.ring = None;
+            }
+            self.tracer.line_to(fine(end));
+            // Where it ends does not matter, as it meets its frame.
+            self.previous = Some(Previous {
+                end,
+                meets_frame: true,
+                drawn: true,
+            });
+            self.tracer.hand_on()?;
+        }
+        if let (Some(previous), Some(last)) = (&mut self.previous, sticks.last()) {
+            previous.end = run.map().transform_point2(last.ends[1]);
+        }
+        Ok(())
     }
 
     #[inline]
@@ -267,19 +300,55 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         }
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "casts from floats saturate"
-    )]
     fn width_class(&self, element: &Element) -> i32 {
+        self.octave(element.frame.length()).map_or(0, width_class)
+    }
+
+    /// The logarithm to base 2 of the width that the stroke of an element of a length has, in
+    /// hundredths of a pixel, if widths are relative.
+    fn octave(&self, length: f64) -> Option<f64> {
         match self.scene.style.width {
-            Width::Pixels(_) => 0,
-            Width::Relative(width) => {
-                let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
-                (WIDTHS_AN_OCTAVE * libm::log2(fine.max(1.0))).round() as i32
-            }
+            Width::Pixels(_) => None,
+            Width::Relative(width) => Some(libm::log2(
+                width * length * self.scene.canvas.scale() * FINE,
+            )),
         }
     }
+
+    fn kind(&self) -> Kind {
+        if self.scene.fills_strokes {
+            Kind::Ring
+        } else {
+            Kind::Line
+        }
+    }
+}
+
+/// The width of a relative stroke in steps, from the logarithm of its width; not less than one
+/// hundredth of a pixel.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn width_class(octave: f64) -> i32 {
+    // Rounded, as it is not negative.
+    (WIDTHS_AN_OCTAVE * octave.max(0.0) + 0.5) as i32
+}
+
+/// The width of a class in hundredths of a pixel: there are eight to an octave.
+fn class_width(class: i32) -> f64 {
+    // exp2 of eighths, for there may be a path for every element.
+    const EIGHTHS: [f64; 8] = [
+        1.0,
+        1.090_507_732_665_257_7,
+        1.189_207_115_002_721,
+        1.296_839_554_651_009_6,
+        std::f64::consts::SQRT_2,
+        1.542_210_825_407_940_7,
+        1.681_792_830_507_429,
+        1.834_008_086_409_342_4,
+    ];
+    libm::ldexp(EIGHTHS[class.rem_euclid(8) as usize], class.div_euclid(8))
 }
 
 impl<S: Surface> Visitor for Painter<'_, '_, S> {
@@ -332,14 +401,13 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
             Pass::Areas => Share::Some,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
         };
-        match (share, run.line(), run.first(), run.last()) {
+        let one_width = matches!(self.scene.style.width, Width::Pixels(_));
+        let line = run.line().filter(|_| one_width);
+        match (share, line, run.sticks(), run.first(), run.last()) {
             // Of what is not painted only the end matters, where the next line may begin.
-            (Share::None, _, _, Some(last)) => self.element(&last),
-            (Share::All, Some(ends), Some(first), _)
-                if matches!(self.scene.style.width, Width::Pixels(_)) =>
-            {
-                self.lines(run, ends, &first)
-            }
+            (Share::None, _, _, _, Some(last)) => self.element(&last),
+            (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
+            (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
             _ => run
                 .elements()
                 .try_for_each(|element| self.element(&element)),
@@ -359,5 +427,22 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
             self.end_path()?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WIDTHS_AN_OCTAVE, class_width, width_class};
+
+    #[test]
+    fn classes_of_widths_are_steps_of_octaves() {
+        for class in 0..100 {
+            let octave = f64::from(class) / WIDTHS_AN_OCTAVE;
+            assert!((class_width(class) / libm::exp2(octave) - 1.0).abs() < 1e-15);
+            for off in [-0.06, 0.06] {
+                assert_eq!(width_class(octave + off), class);
+            }
+        }
+        assert_eq!(width_class(-5.0), 0);
     }
 }
