@@ -6,6 +6,8 @@ mod encode;
 mod nib;
 mod part;
 mod skia;
+#[cfg(test)]
+mod tests;
 
 use std::io::{self, Write};
 
@@ -86,6 +88,23 @@ impl Png {
             outline,
             is_outlined: false,
         }
+    }
+
+    /// A surface for some of the paths that come next, to be drawn on by another thread and then
+    /// [joined](Self::join). All of them must be of one opaque colour; what is not drawn as coverage
+    /// is held in memory.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
+    pub(super) fn fork(&self) -> Option<Self> {
+        Some(Self::of(self.part.fork()?, Outline::put_aside()))
+    }
+
+    /// Draws what has been drawn on a fork in a colour, between two paths. The picture is the same
+    /// as if all had been drawn here, if forks are joined in the order of their paths; where all is
+    /// coverage, the order does not matter either.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
+    pub(super) fn join(&mut self, fork: Self, ink: Colour) {
+        self.part.join(&fork.part, ink);
+        fork.outline.draw_aside(&mut self.part.pixmap);
     }
 
     /// Encodes the picture.

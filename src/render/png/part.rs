@@ -32,6 +32,25 @@ impl Part {
         })
     }
 
+    /// A part of the same size where something is covered, but nothing is coloured.
+    pub(super) fn fork(&self) -> Option<Self> {
+        Some(Self {
+            size: self.size,
+            ..Self::new([0, 0], [1, 1])?
+        })
+    }
+
+    /// Covers what a fork does in a colour.
+    pub(super) fn join(&mut self, fork: &Self, ink: Colour) {
+        if self.ink != Some(ink) {
+            self.settle();
+        }
+        let Some(forked) = &fork.plane else { return };
+        self.ink = Some(ink);
+        let plane = self.plane.get_or_insert_with(|| Plane::new(self.size));
+        plane.add(forked);
+    }
+
     /// Whether the part is small enough to have a plane.
     pub(super) fn may_cover(&self) -> bool {
         let [width, height] = self.size.map(u64::from);

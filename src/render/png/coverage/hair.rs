@@ -69,6 +69,16 @@ impl Hairs {
         let taken = taken as f32;
         -libm::expm1f(-taken / UNIT)
     }
+
+    /// Adds what others take.
+    pub(super) fn add(&mut self, others: &Self) {
+        if self.cells.is_empty() {
+            self.cells = others.cells.iter().map(|_| AtomicU32::new(0)).collect();
+        }
+        for (cell, other) in self.cells.iter().zip(&others.cells) {
+            add(cell, other.load(Relaxed));
+        }
+    }
 }
 
 #[inline]

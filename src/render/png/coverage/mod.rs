@@ -12,7 +12,7 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 pub(crate) use curve::flattened;
 pub(crate) use hair::HairPen;
@@ -101,6 +101,15 @@ impl Plane {
             hairs: Hairs::default(),
             touched: Touched::NOTHING,
         }
+    }
+
+    /// Covers what another plane of the same size does. In which order planes come does not show.
+    pub(crate) fn add(&mut self, other: &Self) {
+        for (cell, other) in self.cells.iter_mut().zip(&other.cells) {
+            *cell.get_mut() |= other.load(Relaxed);
+        }
+        self.hairs.add(&other.hairs);
+        self.touched.add(other.touched.columns, other.touched.rows);
     }
 
     /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.

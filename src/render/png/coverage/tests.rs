@@ -150,6 +150,13 @@ proptest! {
         let whole = covered(|plane| lines.iter().for_each(|line| draw(plane, line)));
         let backwards = covered(|plane| lines.iter().rev().for_each(|line| draw(plane, line)));
         prop_assert!(whole == backwards);
+        let mut halves = [Plane::new([SIZE; 2]), Plane::new([SIZE; 2])];
+        for (line, number) in lines.iter().zip(0..) {
+            draw(&mut halves[number % 2], line);
+        }
+        let [mut one, other] = halves;
+        one.add(&other);
+        prop_assert!(whole == drained(&mut one));
     }
 
     #[test]
