@@ -1,4 +1,4 @@
-//! How fast coverage is drawn: lines of a round pen, and small polygons.
+//! How fast coverage is drawn: lines of a round pen and of a hair, and small polygons.
 //!
 //! The rates are items a second, drawn all over a picture of 1024 x 1024 pixels.
 
@@ -16,7 +16,7 @@
 )]
 mod coverage;
 
-use coverage::{Plane, RoundPen};
+use coverage::{HairPen, Plane, RoundPen};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 
@@ -59,6 +59,22 @@ fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
             // The walk comes in again on the other side.
             if !far {
                 plane.line(&pen, pair[0], pair[1]);
+            }
+        }
+    });
+}
+
+/// Each with its ends, as branches of a tree are.
+#[divan::bench(args = [0.03, 0.1, 0.3, 1.0, 3.0])]
+fn hairs(bencher: Bencher, length: f64) {
+    let positions = walk(length * 100.0);
+    let pen = HairPen::new(0.05, 0.5);
+    let mut plane = Plane::new([SIZE; 2]);
+    bencher.counter(ItemsCount::new(ITEMS)).bench_local(|| {
+        for pair in positions.windows(2) {
+            let far = (0..2).any(|axis| pair[0][axis].abs_diff(pair[1][axis]) > 5000);
+            if !far {
+                plane.hair(&pen, pair[0], pair[1], true);
             }
         }
     });

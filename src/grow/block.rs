@@ -30,11 +30,24 @@ struct Leaf {
     joined: bool,
 }
 
+/// An element that is a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Stick {
+    /// Where it starts and ends, in the order of traversal.
+    pub ends: [DVec2; 2],
+    /// The logarithm to base 2 of its length.
+    pub octave: f64,
+    /// Whether it joins the element before.
+    pub joined: bool,
+}
+
 /// What an object becomes in a number of steps.
 #[derive(Debug)]
 pub(super) struct Block {
     leaves: Vec<Leaf>,
-    /// Where the leaves end, in the object's unit frame, if they are one visible line of lines.
+    /// The leaves as lines in the object's unit frame, if all of them are visible lines.
+    sticks: Option<Vec<Stick>>,
+    /// Where they end, if each joins the one before.
     line: Option<Vec<DVec2>>,
     /// The corners of what is drawn, if it has no curves.
     corners: Option<Corners>,
@@ -112,6 +125,13 @@ impl Run<'_> {
     #[must_use]
     pub fn line(&self) -> Option<&[DVec2]> {
         self.block.line.as_deref()
+    }
+
+    /// The elements as lines, in the unit frame of [`Run::map`], if all are visible lines. Whether
+    /// the first one joins what was drawn before is told by [`Run::first`].
+    #[must_use]
+    pub fn sticks(&self) -> Option<&[Stick]> {
+        self.block.sticks.as_deref()
     }
 
     /// The number of elements that are replaced in the next step.
@@ -212,7 +232,7 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
     let start = super::descent::Start::initiator(0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
-    let mut ends = Some(Vec::new());
+    let mut sticks = Some(Vec::new());
     let mut corners = Some(Corners::default());
     let mut fertile = 0;
     let mut length = 0.0;
@@ -229,11 +249,16 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
         let frame = found.standing.frame;
         let object = &graph.objects()[found.object];
         let base_element = &graph.base_elements()[object.base_element];
-        let goes_on = leaves.is_empty() || found.joined;
-        if object.visible && goes_on && base_element.is_line() {
-            ends.iter_mut().for_each(|ends| ends.push(frame.ends()[1]));
+        if object.visible && base_element.is_line() {
+            sticks.iter_mut().for_each(|sticks| {
+                sticks.push(Stick {
+                    ends: frame.ends(),
+                    octave: libm::log2(frame.length()),
+                    joined: found.joined,
+                });
+            });
         } else {
-            ends = None;
+            sticks = None;
         }
         if object.visible {
             let (start, pieces) = base_element.outline(frame.direction.is_reversed());
@@ -250,9 +275,15 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
             joined: found.joined,
         });
     }
+    let sticks = sticks.filter(|sticks| !sticks.is_empty());
+    let line = sticks.as_ref().filter(|sticks| {
+        let mut later = sticks[1..].iter();
+        later.all(|stick| stick.joined)
+    });
     Ok(Block {
+        line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
+        sticks,
         leaves,
-        line: ends.filter(|ends| !ends.is_empty()),
         corners,
         fertile,
         length,

@@ -17,7 +17,7 @@ mod spans;
 mod tally;
 mod walk;
 
-pub use block::Run;
+pub use block::{Run, Stick};
 pub use count::{Counted, count};
 pub use extent::extent;
 pub use progress::Progress;

@@ -54,7 +54,7 @@ const WIDTHS_AN_OCTAVE: f64 = 8.0;
 pub enum Format {
     /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
     Svg,
-    /// Portable network graphics, antialiased, of four to twelve bytes a pixel in memory.
+    /// Portable network graphics, antialiased, of four to sixteen bytes a pixel in memory.
     Png,
 }
 

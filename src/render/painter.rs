@@ -3,11 +3,11 @@ use std::io;
 use crate::grow::Seam;
 use crate::style::{Colour, Width};
 
+use super::pen;
 use super::scene::{Pass, Scene};
-use super::sketch::{Kind, Line, Look, Mark, Sketch};
+use super::sketch::{Kind, Line, Look, Mark, Sketch, class_width};
 use super::surface::{FINE, Paint, Position, Stroke, Surface};
 use super::tracer::Tracer;
-use super::{WIDTHS_AN_OCTAVE, pen};
 
 /// Vertices between two chances of the surface to hand on what it has.
 const MANY: usize = 256;
@@ -33,6 +33,8 @@ pub(super) struct Painter<'a, 's, S> {
     /// For a ring that has not been broken: whether its first element starts where its frame does.
     ring: Option<bool>,
     is_first: bool,
+    /// Where lines end that come together.
+    vertices: Vec<Position>,
 }
 
 impl<'a, 's, S: Surface> Painter<'a, 's, S> {
@@ -48,6 +50,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             previous: None,
             ring: None,
             is_first: true,
+            vertices: Vec::new(),
         }
     }
 
@@ -147,7 +150,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let colour = self.colour.or(style.stroke).unwrap_or(Colour::BLACK);
         let mut pen = pen(style);
         if let Width::Relative(_) = style.width {
-            pen.width = libm::exp2(f64::from(look.width) / WIDTHS_AN_OCTAVE) / FINE;
+            pen.width = class_width(look.width) / FINE;
         }
         let stroke = |colour| Some(Stroke { colour, pen });
         let (fill, stroke) = match look.kind {
@@ -205,7 +208,9 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     fn lines(&mut self, ends: &[Position]) -> io::Result<()> {
         for ends in ends.chunks(MANY) {
-            ends.iter().for_each(|&end| self.tracer.line_to(end));
+            self.vertices.clear();
+            self.vertices.extend_from_slice(ends);
+            self.tracer.lines_to(&mut self.vertices);
             self.hand_on()?;
         }
         if let Some(&end) = ends.last() {

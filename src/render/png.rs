@@ -3,20 +3,24 @@
 
 mod coverage;
 mod encode;
+mod nib;
 mod part;
 mod skia;
+#[cfg(test)]
+mod tests;
 
 pub(super) use encode::encode as write_pixels;
 
 use std::io::{self, Write};
 
-use crate::style::{Cap, Colour, Join};
+use crate::style::Colour;
 
-use self::coverage::{MOST_VERTICES, Plane, RoundPen};
+use self::coverage::{MOST_VERTICES, flattened};
+use self::nib::{Nib, Nibs};
 use self::part::Part;
 use self::skia::Outline;
 use super::Labels;
-use super::surface::{Paint, Pen, Position, Surface};
+use super::surface::{Paint, Position, Surface};
 
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
@@ -42,10 +46,9 @@ pub(super) struct Png {
     /// The part of the picture that is drawn on, and those that it was entered from.
     part: Part,
     outer: Vec<Part>,
-    /// The pens that have been used, by width.
-    pens: Vec<(f64, RoundPen)>,
-    /// The place of the pen that draws the path as coverage, if one does.
-    pen: Option<usize>,
+    nibs: Nibs,
+    /// The nib that draws the path as coverage, if one does.
+    nib: Option<Nib>,
     /// Where it is, and where the subpath starts.
     at: Position,
     start: Position,
@@ -71,18 +74,39 @@ impl Png {
             part.pixmap
                 .fill(tiny_skia::Color::from_rgba8(red, green, blue, opacity));
         }
-        Ok(Self {
+        Ok(Self::of(part, Outline::default()))
+    }
+
+    fn of(part: Part, outline: Outline) -> Self {
+        Self {
             part,
             outer: Vec::new(),
-            pens: Vec::new(),
-            pen: None,
+            nibs: Nibs::default(),
+            nib: None,
             at: [0; 2],
             start: [0; 2],
             covers: false,
             ring: Vec::with_capacity(MOST_VERTICES),
-            outline: Outline::default(),
+            outline,
             is_outlined: false,
-        })
+        }
+    }
+
+    /// A surface for some of the paths that come next, to be drawn on by another thread and then
+    /// [joined](Self::join). All of them must be of one opaque colour; what is not drawn as coverage
+    /// is held in memory.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
+    pub(super) fn fork(&self) -> Option<Self> {
+        Some(Self::of(self.part.fork()?, Outline::put_aside()))
+    }
+
+    /// Draws what has been drawn on a fork in a colour, between two paths. The picture is the same
+    /// as if all had been drawn here, if forks are joined in the order of their paths; where all is
+    /// coverage, the order does not matter either.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
+    pub(super) fn join(&mut self, fork: Self, ink: Colour) {
+        self.part.join(&fork.part, ink);
+        fork.outline.draw_aside(&mut self.part.pixmap);
     }
 
     /// Encodes the picture.
@@ -94,25 +118,12 @@ impl Png {
         out.write_all(&bytes)
     }
 
-    /// The place of the pen that a stroke is drawn with as coverage, if there is one.
-    fn pen(&mut self, pen: Pen) -> Option<usize> {
-        let is_round = pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0;
-        let width = pen.width;
-        if !is_round || !RoundPen::WIDTHS.contains(&width) {
-            return None;
-        }
-        let known = self.pens.iter().position(|(known, _)| *known == width);
-        known.or_else(|| {
-            self.pens.push((width, RoundPen::new(width)));
-            Some(self.pens.len() - 1)
-        })
-    }
-
-    /// The plane, and the pen that draws the path on it.
+    /// Draws lines of the path as coverage, one after another.
     #[inline]
-    fn stroke(&mut self) -> Option<(&mut Plane, &RoundPen)> {
-        let (_, pen) = self.pens.get(self.pen?)?;
-        Some((self.part.plane()?, pen))
+    fn stroke(&mut self, to: impl IntoIterator<Item = Position>) {
+        if let (Some(nib), Some(plane)) = (&mut self.nib, self.part.plane()) {
+            nib.lines(plane, &self.nibs, self.at, to);
+        }
     }
 
     /// Ends a subpath that may be a small polygon.
@@ -140,16 +151,26 @@ impl Png {
 }
 
 impl Surface for Png {
+    #[inline]
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        // There may be a path for every stroke, each of another width.
+        if let (Some(stroke), None) = (paint.stroke, paint.fill)
+            && self.part.goes_on_in(stroke.colour)
+            && let Some(nib) = self.nibs.nib(stroke.pen)
+        {
+            self.nib = Some(nib);
+            (self.covers, self.is_outlined) = (false, false);
+            return Ok(());
+        }
         let may_cover = self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
-        self.pen = stroke.and_then(|stroke| self.pen(stroke.pen));
+        self.nib = stroke.and_then(|stroke| self.nibs.nib(stroke.pen));
         self.covers = may_cover
             && paint.stroke.is_none()
             && paint.fill.is_some_and(|fill| fill == fill.opaque());
-        self.part.begin(paint, self.covers || self.pen.is_some());
+        self.part.begin(paint, self.covers || self.nib.is_some());
         let rest = Paint {
-            stroke: paint.stroke.filter(|_| self.pen.is_none()),
+            stroke: paint.stroke.filter(|_| self.nib.is_none()),
             ..*paint
         };
         self.is_outlined = rest != Paint::default();
@@ -160,8 +181,8 @@ impl Surface for Png {
     #[inline]
     fn move_to(&mut self, to: Position) {
         (self.start, self.at) = (to, to);
-        if let Some((plane, pen)) = self.stroke() {
-            plane.dot(pen, to);
+        if let (Some(nib), Some(plane)) = (&mut self.nib, self.part.plane()) {
+            nib.start(plane, &self.nibs, to);
         }
         if self.covers {
             self.end_ring();
@@ -173,10 +194,8 @@ impl Surface for Png {
 
     #[inline]
     fn line_to(&mut self, to: Position) {
-        let from = std::mem::replace(&mut self.at, to);
-        if let Some((plane, pen)) = self.stroke() {
-            plane.line(pen, from, to);
-        }
+        self.stroke([to]);
+        self.at = to;
         if !self.is_outlined {
             return;
         }
@@ -191,11 +210,18 @@ impl Surface for Png {
     }
 
     #[inline]
-    fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        let from = std::mem::replace(&mut self.at, to);
-        if let Some((plane, pen)) = self.stroke() {
-            plane.curve(pen, [from, a, b, to]);
+    fn lines_to(&mut self, to: &[Position]) {
+        if self.is_outlined {
+            return to.iter().for_each(|&to| self.line_to(to));
         }
+        self.stroke(to.iter().copied());
+        self.at = to.last().copied().unwrap_or(self.at);
+    }
+
+    #[inline]
+    fn curve_to(&mut self, a: Position, b: Position, to: Position) {
+        self.stroke(flattened([self.at, a, b, to]));
+        self.at = to;
         if self.is_outlined {
             self.hand_over_ring();
             self.outline.curve_to(a, b, to);
@@ -203,11 +229,8 @@ impl Surface for Png {
     }
 
     fn close(&mut self) {
-        let (from, to) = (self.at, self.start);
-        self.at = to;
-        if let Some((plane, pen)) = self.stroke() {
-            plane.line(pen, from, to);
-        }
+        self.stroke([self.start]);
+        self.at = self.start;
         if !self.ring.is_empty() {
             self.end_ring();
         } else if self.is_outlined {
@@ -223,9 +246,12 @@ impl Surface for Png {
         Ok(())
     }
 
+    #[inline]
     fn end(&mut self) -> io::Result<()> {
-        self.end_ring();
-        self.outline.end(&mut self.part.pixmap);
+        if self.is_outlined {
+            self.end_ring();
+            self.outline.end(&mut self.part.pixmap);
+        }
         self.part.end();
         Ok(())
     }

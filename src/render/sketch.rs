@@ -6,7 +6,7 @@
 use std::io;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
+use crate::grow::{Element, Enter, Fractal, Run, Stick, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::Width;
 
@@ -150,7 +150,13 @@ impl<'a> Sketcher<'a> {
 
     #[inline]
     fn line_to(&mut self, end: DVec2) {
-        self.start_at(end);
+        let end = self.position(end);
+        self.go_to(end);
+    }
+
+    #[inline]
+    fn go_to(&mut self, end: Position) {
+        self.sketch.points.push(end);
         if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
             *count += 1;
         } else {
@@ -216,11 +222,7 @@ impl<'a> Sketcher<'a> {
         let reversed = element.frame.direction.is_reversed();
         let map = element.frame.map;
         let look = Look {
-            kind: if self.scene.fills_strokes {
-                Kind::Ring
-            } else {
-                Kind::Line
-            },
+            kind: self.kind(),
             width: self.width_class(element),
         };
         let [meets_start, meets_end] = meets_frame(base_element, reversed);
@@ -262,17 +264,55 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "casts from floats saturate"
-    )]
-    fn width_class(&self, element: &Element) -> i32 {
-        match self.scene.style.width {
-            Width::Pixels(_) => 0,
-            Width::Relative(width) => {
-                let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
-                (WIDTHS_AN_OCTAVE * libm::log2(fine.max(1.0))).round() as i32
+    /// Lines of one class that need not join.
+    fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
+        self.see(first);
+        let map = self.scene.canvas.map(run.map());
+        let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
+        let whole = self.octave(run.map().matrix2.x_axis.length());
+        let kind = self.kind();
+        for stick in &sticks[1..] {
+            let look = Look {
+                kind,
+                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+            };
+            let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
+                Some(Mark::Line(line)) => stick.joined && line.look == look,
+                _ => false,
+            };
+            if !goes_on {
+                self.mark(Mark::Line(Line {
+                    look,
+                    joined: stick.joined,
+                    meets_frame: [true; 2],
+                }));
+                self.open = Some(self.sketch.marks.len() - 1);
+                self.sketch.points.push(fine(stick.ends[0]));
             }
+            self.go_to(fine(stick.ends[1]));
+        }
+    }
+
+    fn width_class(&self, element: &Element) -> i32 {
+        self.octave(element.frame.length()).map_or(0, width_class)
+    }
+
+    /// The logarithm to base 2 of the width that the stroke of an element of a length has, in
+    /// hundredths of a pixel, if widths are relative.
+    fn octave(&self, length: f64) -> Option<f64> {
+        match self.scene.style.width {
+            Width::Pixels(_) => None,
+            Width::Relative(width) => Some(libm::log2(
+                width * length * self.scene.canvas.scale() * FINE,
+            )),
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        if self.scene.fills_strokes {
+            Kind::Ring
+        } else {
+            Kind::Line
         }
     }
 
@@ -305,6 +345,33 @@ impl<'a> Sketcher<'a> {
             _ => self.pass_by(Mark::Break),
         }
     }
+}
+
+/// The width of a relative stroke in steps, from the logarithm of its width; not less than one
+/// hundredth of a pixel.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn width_class(octave: f64) -> i32 {
+    // Rounded, as it is not negative.
+    (WIDTHS_AN_OCTAVE * octave.max(0.0) + 0.5) as i32
+}
+
+/// The width of a class in hundredths of a pixel: there are eight to an octave.
+pub(super) fn class_width(class: i32) -> f64 {
+    // exp2 of eighths, for there may be a path for every element.
+    const EIGHTHS: [f64; 8] = [
+        1.0,
+        1.090_507_732_665_257_7,
+        1.189_207_115_002_721,
+        1.296_839_554_651_009_6,
+        std::f64::consts::SQRT_2,
+        1.542_210_825_407_940_7,
+        1.681_792_830_507_429,
+        1.834_008_086_409_342_4,
+    ];
+    libm::ldexp(EIGHTHS[class.rem_euclid(8) as usize], class.div_euclid(8))
 }
 
 impl Visitor for Sketcher<'_> {
@@ -341,14 +408,13 @@ impl Visitor for Sketcher<'_> {
             Pass::Areas => Share::Some,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
         };
-        match (share, run.line(), run.first(), run.last()) {
+        let one_width = matches!(self.scene.style.width, Width::Pixels(_));
+        let line = run.line().filter(|_| one_width);
+        match (share, line, run.sticks(), run.first(), run.last()) {
             // Of what is not painted only the end matters, where the next line may begin.
-            (Share::None, _, _, Some(last)) => self.see(&last),
-            (Share::All, Some(ends), Some(first), _)
-                if matches!(self.scene.style.width, Width::Pixels(_)) =>
-            {
-                self.lines(run, ends, &first);
-            }
+            (Share::None, _, _, _, Some(last)) => self.see(&last),
+            (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
+            (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
             _ => run.elements().for_each(|element| self.see(&element)),
         }
         Ok(())
@@ -357,5 +423,22 @@ impl Visitor for Sketcher<'_> {
     fn end(&mut self, joined: bool) -> io::Result<()> {
         self.mark(Mark::End(joined));
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WIDTHS_AN_OCTAVE, class_width, width_class};
+
+    #[test]
+    fn classes_of_widths_are_steps_of_octaves() {
+        for class in 0..100 {
+            let octave = f64::from(class) / WIDTHS_AN_OCTAVE;
+            assert!((class_width(class) / libm::exp2(octave) - 1.0).abs() < 1e-15);
+            for off in [-0.06, 0.06] {
+                assert_eq!(width_class(octave + off), class);
+            }
+        }
+        assert_eq!(width_class(-5.0), 0);
     }
 }

@@ -73,6 +73,13 @@ pub(crate) trait Surface {
     fn move_to(&mut self, to: Position);
     /// A straight line.
     fn line_to(&mut self, to: Position);
+    /// Straight lines, one after another.
+    #[inline]
+    fn lines_to(&mut self, to: &[Position]) {
+        for &to in to {
+            self.line_to(to);
+        }
+    }
     /// A cubic Bézier curve.
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.

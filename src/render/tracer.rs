@@ -47,6 +47,20 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         }
     }
 
+    /// Straight lines to vertices, one after another; those that add nothing are taken out.
+    pub(crate) fn lines_to(&mut self, vertices: &mut Vec<Position>) {
+        self.draw_held();
+        vertices.dedup();
+        let stays = usize::from(vertices.first() == Some(&self.pen));
+        self.held = vertices.pop();
+        let drawn = vertices.get(stays..).unwrap_or_default();
+        if let Some(&last) = drawn.last() {
+            self.surface.lines_to(drawn);
+            self.pen = last;
+            self.has_length = true;
+        }
+    }
+
     pub(crate) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
         self.draw_held();
         if [a, b, to] == [self.pen; 3] {

@@ -1,4 +1,4 @@
-use super::{Plane, Position, RoundPen};
+use super::Position;
 
 /// The most hundredths of a pixel that a curve is away from the lines which it is drawn as,
 const TOLERANCE: f64 = 1.0;
@@ -6,28 +6,27 @@ const TOLERANCE: f64 = 1.0;
 /// and the most lines.
 const MOST_LINES: f64 = 1e4;
 
-impl Plane {
-    /// A cubic Bézier curve on from where the pen has drawn already.
-    pub(crate) fn curve(&mut self, pen: &RoundPen, [from, a, b, to]: [Position; 4]) {
-        let bend = |p: Position, q: Position, r: Position| {
-            let [x, y] = [0, 1].map(|axis| (p[axis] - 2 * q[axis] + r[axis]) as f64);
-            x * x + y * y
-        };
-        // Wang's bound of the distance between a curve and its chords (1984).
-        let bend = bend(from, a, b).max(bend(a, b, to)).sqrt();
-        let lines = (0.75 * bend / TOLERANCE)
-            .sqrt()
-            .ceil()
-            .clamp(1.0, MOST_LINES);
-        let mut last = from;
-        let mut line = 1.0;
-        while line < lines {
-            let next = point([from, a, b, to], line / lines);
-            self.line(pen, last, next);
-            (last, line) = (next, line + 1.0);
+/// Where the lines end which a cubic Bézier curve is drawn as.
+pub(crate) fn flattened([from, a, b, to]: [Position; 4]) -> impl Iterator<Item = Position> {
+    let bend = |p: Position, q: Position, r: Position| {
+        let [x, y] = [0, 1].map(|axis| (p[axis] - 2 * q[axis] + r[axis]) as f64);
+        x * x + y * y
+    };
+    // Wang's bound of the distance between a curve and its chords (1984).
+    let bend = bend(from, a, b).max(bend(a, b, to)).sqrt();
+    let lines = (0.75 * bend / TOLERANCE)
+        .sqrt()
+        .ceil()
+        .clamp(1.0, MOST_LINES);
+    let mut line = 0.0;
+    std::iter::from_fn(move || {
+        line += 1.0;
+        match line {
+            line if line < lines => Some(point([from, a, b, to], line / lines)),
+            line if line > lines => None,
+            _ => Some(to),
         }
-        self.line(pen, last, to);
-    }
+    })
 }
 
 /// A point of a curve.

@@ -2,16 +2,21 @@
 //!
 //! What is drawn sets the bits of the samples that it covers. What covers a sample twice leaves
 //! it covered once, so overlaps of any number add no ink, and neither order nor division of the
-//! work shows. The mask method is Carpenter's (The A-buffer, 1984).
+//! work shows. The mask method is Carpenter's (The A-buffer, 1984). Lines so thin that they would
+//! fall between the samples are summed beside them, in a way that has no order either.
 
 mod curve;
+mod hair;
 mod pen;
 mod polygon;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+pub(crate) use curve::flattened;
+pub(crate) use hair::HairPen;
+use hair::Hairs;
 pub(crate) use pen::RoundPen;
 pub(crate) use polygon::MOST_VERTICES;
 
@@ -22,7 +27,10 @@ type Position = [i64; 2];
 const FINE: i64 = 100;
 
 /// The samples of a pixel: as many as a cell has bits.
-pub(crate) const SAMPLES: u32 = u64::BITS;
+const SAMPLES: u32 = u64::BITS;
+
+/// Coverage of a whole pixel.
+pub(crate) const WHOLE: u32 = SAMPLES << 8;
 
 /// Pixels around the picture that are drawn on and never seen, so that nothing that touches the
 /// picture needs to be cut.
@@ -51,6 +59,8 @@ pub(crate) struct Plane {
     /// By rows. Atomic so that the compiler does not join neighbours into wider stores: prints
     /// overlap, and to load what was stored in other portions takes a processor long.
     cells: Vec<AtomicU64>,
+    /// What is thinner than that.
+    hairs: Hairs,
     touched: Touched,
 }
 
@@ -78,7 +88,7 @@ impl Touched {
 
 impl Plane {
     /// Bytes that a pixel takes.
-    pub(crate) const BYTES: u64 = 8;
+    pub(crate) const BYTES: u64 = 12;
 
     /// A plane where nothing is covered.
     pub(crate) fn new([width, height]: [u32; 2]) -> Self {
@@ -88,12 +98,22 @@ impl Plane {
             size,
             stride,
             cells: (0..stride * rows).map(|_| AtomicU64::new(0)).collect(),
+            hairs: Hairs::default(),
             touched: Touched::NOTHING,
         }
     }
 
-    /// Gives every pixel that is covered with the number of its samples that are, in any order,
-    /// and uncovers all. Pixels are numbered by rows.
+    /// Covers what another plane of the same size does. In which order planes come does not show.
+    pub(crate) fn add(&mut self, other: &Self) {
+        for (cell, other) in self.cells.iter_mut().zip(&other.cells) {
+            *cell.get_mut() |= other.load(Relaxed);
+        }
+        self.hairs.add(&other.hairs);
+        self.touched.add(other.touched.columns, other.touched.rows);
+    }
+
+    /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
+    /// Pixels are numbered by rows.
     pub(crate) fn drain(&mut self, mut paint: impl FnMut(usize, u32)) {
         let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
         if rows[0] > rows[1] {
@@ -108,18 +128,29 @@ impl Plane {
             let start = index(row + MARGIN) * self.stride;
             let shown = (0..height).contains(&row);
             for (column, cell) in (left..right).zip(&mut self.cells[start + left..start + right]) {
-                let samples = cell.get_mut();
-                if *samples == 0 {
-                    continue;
-                }
-                if shown && seen.contains(&column) {
+                let samples = std::mem::take(cell.get_mut()).count_ones();
+                let hairs = self.hairs.take(start + column);
+                let covered = covered(samples, hairs);
+                if covered > 0 && shown && seen.contains(&column) {
                     let pixel = index(row * width) + column - seen.start;
-                    paint(pixel, samples.count_ones());
+                    paint(pixel, covered);
                 }
-                *samples = 0;
             }
         }
     }
+}
+
+/// How much of a pixel is covered by samples and, of the rest, by a part.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "no more than `WHOLE`, and exact"
+)]
+fn covered(samples: u32, part: f32) -> u32 {
+    let free = WHOLE - samples * (WHOLE / SAMPLES);
+    WHOLE - free + (free as f32 * part + 0.5) as u32
 }
 
 /// A number that is known not to be negative.

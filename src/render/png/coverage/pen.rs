@@ -97,25 +97,33 @@ impl Plane {
     /// A dot.
     #[inline]
     pub(crate) fn dot(&mut self, pen: &RoundPen, at: Position) {
-        if let Some([at, _]) = self.reachable(at, at) {
+        if self.is_near(at) {
             match &pen.prints {
                 Prints::Two(prints) => self.print(prints, corner(pen, at)),
                 Prints::Three(prints) => self.print(prints, corner(pen, at)),
                 Prints::Four(prints) => self.print(prints, corner(pen, at)),
             }
-            self.touch(pen, at, at);
+            self.touch(corner(pen, at));
         }
     }
 
     /// A line on from where the pen has drawn already.
     #[inline]
     pub(crate) fn line(&mut self, pen: &RoundPen, from: Position, to: Position) {
-        if let Some([from, to]) = self.reachable(from, to) {
-            match &pen.prints {
-                Prints::Two(prints) => self.line_of(prints, pen, from, to),
-                Prints::Three(prints) => self.line_of(prints, pen, from, to),
-                Prints::Four(prints) => self.line_of(prints, pen, from, to),
-            }
+        if self.is_near(from) && self.is_near(to) {
+            self.near_line(pen, from, to);
+        } else if let Some([from, to]) = self.clipped(from, to) {
+            self.touch(corner(pen, from));
+            self.near_line(pen, from, to);
+        }
+    }
+
+    #[inline]
+    fn near_line(&mut self, pen: &RoundPen, from: Position, to: Position) {
+        match &pen.prints {
+            Prints::Two(prints) => self.line_of(prints, pen, from, to),
+            Prints::Three(prints) => self.line_of(prints, pen, from, to),
+            Prints::Four(prints) => self.line_of(prints, pen, from, to),
         }
     }
 
@@ -141,7 +149,8 @@ impl Plane {
             }
         }
         self.print(prints, end);
-        self.touch(pen, from, to);
+        // Where the line starts has been touched before.
+        self.touch(end);
     }
 
     /// Covers what the pen covers with the upper left corner of its box in a place.
@@ -166,33 +175,28 @@ impl Plane {
     }
 
     #[inline]
-    fn touch(&mut self, pen: &RoundPen, from: Position, to: Position) {
-        // The least pen reaches into the next pixel, the widest into the third after it.
-        let pixel = |corner: i64| place(corner) >> STEP_BITS;
-        let (from, to) = (corner(pen, from).map(pixel), corner(pen, to).map(pixel));
-        let span = |axis: usize| [from[axis].min(to[axis]), from[axis].max(to[axis]) + 3];
-        self.touched.add(span(0), span(1));
+    fn touch(&mut self, corner: [i64; 2]) {
+        let [column, row] = corner.map(|corner| place(corner) >> STEP_BITS);
+        // The widest pen reaches into the third pixel after the first.
+        self.touched.add([column, column + 3], [row, row + 3]);
     }
 
-    /// The part of a line that lies near enough to be seen, which is most often all of it.
+    /// Whether a position lies near enough to be seen, which most often it does.
     #[inline]
-    fn reachable(&self, from: Position, to: Position) -> Option<[Position; 2]> {
-        let [right, bottom] = self.size.map(|side| (side + MARGIN) * FINE);
+    pub(super) fn is_near(&self, [x, y]: Position) -> bool {
         // What lies too far left or above is larger than any side.
-        let is_near = |[x, y]: Position| {
-            index(x + MARGIN * FINE) <= index(right + MARGIN * FINE)
-                && index(y + MARGIN * FINE) <= index(bottom + MARGIN * FINE)
-        };
-        if is_near(from) && is_near(to) {
-            Some([from, to])
-        } else {
-            clipped(from, to, [right, bottom])
-        }
+        let most = self.size.map(|side| index((side + 2 * MARGIN) * FINE));
+        index(x + MARGIN * FINE) <= most[0] && index(y + MARGIN * FINE) <= most[1]
+    }
+
+    /// The part of a line that lies near enough to be seen.
+    #[cold]
+    pub(super) fn clipped(&self, from: Position, to: Position) -> Option<[Position; 2]> {
+        clipped(from, to, self.size.map(|side| (side + MARGIN) * FINE))
     }
 }
 
 /// The part of a line in a box, after Liang and Barsky (1984).
-#[cold]
 #[expect(
     clippy::cast_possible_truncation,
     reason = "what is clipped lies in the box"

@@ -2,18 +2,31 @@
 
 use proptest::prelude::*;
 
-use super::{Plane, Position, RoundPen, SAMPLES};
+use super::{HairPen, Plane, Position, RoundPen, SAMPLES, WHOLE};
 
 const SIZE: u32 = 64;
 
-/// The samples of every pixel that are covered by what is drawn.
-fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
+/// How much of every pixel is covered by what is drawn.
+fn covered(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
     let mut plane = Plane::new([SIZE; 2]);
     draw(&mut plane);
-    let mut samples = vec![0; (SIZE * SIZE) as usize];
-    plane.drain(|pixel, covered| samples[pixel] = covered);
+    drained(&mut plane)
+}
+
+fn drained(plane: &mut Plane) -> Vec<u32> {
+    let mut covered = vec![0; (SIZE * SIZE) as usize];
+    plane.drain(|pixel, part| covered[pixel] = part);
     plane.drain(|pixel, _| panic!("pixel {pixel} is still covered"));
-    samples
+    covered
+}
+
+/// The samples of every pixel that are covered by what is drawn.
+fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
+    let covered = covered(draw);
+    covered
+        .iter()
+        .map(|part| part / (WHOLE / SAMPLES))
+        .collect()
 }
 
 /// The area that is covered, in pixels.
@@ -32,6 +45,13 @@ fn stroke(width: f64, from: Position, to: Position) -> Vec<u32> {
         plane.dot(&pen, from);
         plane.line(&pen, from, to);
     })
+}
+
+/// The area that a line of a hair covers, in pixels.
+fn hair_area(width: f64, from: Position, to: Position) -> f64 {
+    let pen = HairPen::new(width, 0.5);
+    let covered = covered(|plane| plane.hair(&pen, from, to, true));
+    covered.into_iter().map(f64::from).sum::<f64>() / f64::from(WHOLE)
 }
 
 /// A position so far inside that pens do not reach the border.
@@ -111,6 +131,42 @@ proptest! {
     }
 
     #[test]
+    fn a_hair_covers_its_area(width in 0.01..0.25, from in inside(), to in inside()) {
+        let expected = width * (length(from, to) + width);
+        let covered = hair_area(width, from, to);
+        // What lies across the corner of a pixel has less than its share there.
+        prop_assert!((covered - expected).abs() <= 0.05 * expected + 1e-3, "{covered} instead of {expected}");
+    }
+
+    #[test]
+    fn hairs_have_no_order(
+        lines in proptest::collection::vec((0.001..0.25, inside(), inside()), 2..40),
+    ) {
+        let triangle = |[x, y]: Position| [[x, y], [x + 150, y + 40], [x + 60, y + 170]];
+        let draw = |plane: &mut Plane, (width, from, to): &(f64, Position, Position)| {
+            plane.hair(&HairPen::new(*width, 0.0), *from, *to, false);
+            plane.polygon(&triangle(*to));
+        };
+        let whole = covered(|plane| lines.iter().for_each(|line| draw(plane, line)));
+        let backwards = covered(|plane| lines.iter().rev().for_each(|line| draw(plane, line)));
+        prop_assert!(whole == backwards);
+        let mut halves = [Plane::new([SIZE; 2]), Plane::new([SIZE; 2])];
+        for (line, number) in lines.iter().zip(0..) {
+            draw(&mut halves[number % 2], line);
+        }
+        let [mut one, other] = halves;
+        one.add(&other);
+        prop_assert!(whole == drained(&mut one));
+    }
+
+    #[test]
+    fn hairs_from_anywhere_are_cut_at_the_border(from in anywhere(), to in anywhere()) {
+        let diagonal = f64::from(SIZE) * std::f64::consts::SQRT_2;
+        let covered = hair_area(0.1, from, to);
+        prop_assert!(covered <= 0.11 * (diagonal.min(length(from, to)) + 1.0));
+    }
+
+    #[test]
     fn polygons_cover_their_area(centre in inside(), turn in 0.0..6.3f64, radius in 10.0..350.0f64, count in 3..8u32) {
         let corner = |number| {
             let (sine, cosine) = (turn + f64::from(number) * std::f64::consts::TAU / f64::from(count)).sin_cos();
@@ -174,6 +230,36 @@ fn lines_have_their_ink_on_average() {
         let excess = covered / expected - 1.0;
         assert!(excess.abs() <= 0.02, "{excess:.4} too much at {width}");
     }
+}
+
+/// Lines in one place let through what lines in random places do, and no number of them takes
+/// more than all.
+#[test]
+fn hairs_that_lie_together_fill_a_pixel() {
+    let pen = HairPen::new(0.1, 0.0);
+    for (count, expected) in [(1, 0.1), (2, 0.19), (7, 0.5217), (1000, 1.0)] {
+        let covered = covered(|plane| {
+            for _ in 0..count {
+                plane.hair(&pen, [0, 3250], [6400, 3250], false);
+            }
+        });
+        let part = f64::from(covered[32 * SIZE as usize + 20]) / f64::from(WHOLE);
+        assert!((part - expected).abs() <= 2e-3, "{part} of {count}");
+    }
+}
+
+/// A hair that moves is seen to move, and not to jump from pixel to pixel.
+#[test]
+fn hairs_cross_the_border_of_a_pixel_bit_by_bit() {
+    let pen = HairPen::new(0.2, 0.0);
+    let mut last = 0;
+    for x in 3180..=3220 {
+        let covered = covered(|plane| plane.hair(&pen, [x, 0], [x, 6400], false));
+        let right = covered[20 * SIZE as usize + 32];
+        assert!(right >= last && right - last <= WHOLE / 80, "at {x}");
+        last = right;
+    }
+    assert!(last.abs_diff(WHOLE / 5) <= WHOLE / 500);
 }
 
 #[test]
