@@ -4,17 +4,21 @@
 //! with the number of steps and not with the number of elements. Where new fractals are seeded, a
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
 //! an object becomes in its last steps is worked out once, as a block, for visitors that take
-//! elements by [`Run`]s.
+//! elements by [`Run`]s. Who only wants to know the box of it all has no need of a walk where the graph
+//! tells how far things reach: a search replaces only what may reach farther than what it has found.
 
 mod block;
 mod descent;
+mod evaluator;
 mod extent;
 mod progress;
+mod search;
 mod walk;
 
 pub use block::Run;
 pub use extent::extent;
 pub use progress::Progress;
+pub(crate) use search::{Reaches, search};
 pub use walk::{Growth, Walked, walk};
 
 use crate::geometry::Frame;

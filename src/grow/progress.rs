@@ -31,7 +31,8 @@ impl Progress {
         (expected > 0).then_some(expected)
     }
 
-    pub(super) fn count(&self, elements: u64) {
+    /// Counts elements that have been met.
+    pub(crate) fn count(&self, elements: u64) {
         self.walked.fetch_add(elements, Ordering::Relaxed);
     }
 }
