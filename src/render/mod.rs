@@ -2,8 +2,9 @@
 //!
 //! A picture begins with a survey of what there is to draw and how large it is, which the graph
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
-//! that no element is held in memory. What is walked over becomes paths in whole hundredths of a pixel, the same for every format. Walks
-//! leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
+//! that no element is held in memory. What is walked over becomes paths in whole hundredths of a
+//! pixel, the same for every format. Walks leave out what cannot be seen: what lies outside a window,
+//! what is smaller than a detail; and where colours tell steps, what is born later than they tell.
 
 mod canvas;
 mod classes;

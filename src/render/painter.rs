@@ -62,6 +62,21 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     if reversed { [end, start] } else { [start, end] }
 }
 
+/// The step after which nothing is born that a pass needs, if there is one: where lines do not lead
+/// to the ends of elements that it does not paint.
+fn last_step(scene: &Scene<'_>, pass: Pass) -> Option<u32> {
+    let Pass::Class(class) = pass else {
+        return None;
+    };
+    let graph = scene.graph;
+    let mut drawn = graph.objects().iter().filter(|object| object.visible);
+    let stands_alone = drawn.all(|object| {
+        let base_element = &graph.base_elements()[object.base_element];
+        base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
+    });
+    scene.classes.last_step(class).filter(|_| stands_alone)
+}
+
 /// Paints what one walk over an approximant is for.
 pub(super) struct Painter<'a, 's, S> {
     scene: &'a Scene<'a>,
@@ -75,6 +90,8 @@ pub(super) struct Painter<'a, 's, S> {
     /// For a ring that has not been broken: whether its first element starts where its frame does.
     ring: Option<bool>,
     is_first: bool,
+    /// What is born in later steps is not painted, nor is it needed for what is.
+    last_step: u32,
 }
 
 impl<'a, 's, S: Surface> Painter<'a, 's, S> {
@@ -92,6 +109,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             previous: None,
             ring: None,
             is_first: true,
+            last_step: last_step(scene, pass).unwrap_or(u32::MAX),
         }
     }
 
@@ -299,7 +317,10 @@ impl<S: Surface> Visitor for Painter<'_, '_, S> {
 
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        self.scene.sight.enter(subtree)
+        match self.scene.sight.enter(subtree) {
+            Enter::Replace if subtree.born >= self.last_step => Enter::Skip,
+            enter => enter,
+        }
     }
 
     #[inline]

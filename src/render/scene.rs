@@ -18,6 +18,8 @@ pub(crate) struct Scene<'a> {
     pub(super) sight: Sight,
     pub(super) classes: Classes,
     passes: Vec<Pass>,
+    /// The number of elements.
+    elements: u64,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
 }
@@ -56,6 +58,7 @@ impl<'a> Scene<'a> {
             sight: survey.sight().clone(),
             classes,
             passes,
+            elements: survey.elements,
             fills_strokes: together && style.fill.is_some(),
         }
     }
@@ -77,8 +80,12 @@ impl Drawing for Scene<'_> {
     fn draw(&self, surface: &mut impl Surface) -> Result<(), RenderError> {
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
-            walk(self.graph, self.growth, &mut painter)?;
+            let walked = walk(self.graph, self.growth, &mut painter)?;
             painter.finish()?;
+            if let Some(progress) = self.growth.progress {
+                // What a pass leaves out is done with it.
+                progress.count(self.elements.saturating_sub(walked.elements));
+            }
         }
         Ok(())
     }
