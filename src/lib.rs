@@ -60,6 +60,11 @@ pub mod rule;
 pub mod style;
 mod wording;
 
+/// Random rules for the tests of several modules.
+#[cfg(test)]
+#[path = "../tests/laws/rules.rs"]
+mod random_rules;
+
 /// The programs of the README are tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -214,7 +214,7 @@ fn what_lies_outside_a_window_is_not_visited() {
     assert!(elements("self-seeding-square", 4, [0.5, 0.5, 0.02, 0.02]) < 1000);
     let vegetation = library("vegetation");
     let [small, large] = [[0.0, 0.0, 0.01, 0.01], [-9.0, -9.0, 18.0, 18.0]]
-        .map(|place| elements("vegetation", 3, place));
+        .map(|place| elements("vegetation", 4, place));
     assert_eq!(small, large, "{:?}", vegetation.description().title);
     // Elements that are numbered are counted everywhere.
     let mut options = window(&library("koch"), [0.49, 0.28, 0.02, 0.02], 100);

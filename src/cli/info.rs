@@ -157,14 +157,12 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     let graph = loaded.compile(steps)?;
     let info = info(&loaded, &graph, steps);
-    let text = if arguments.json {
-        let mut text = serde_json::to_string_pretty(&info).map_err(anyhow::Error::from)?;
-        text.push('\n');
-        text
+    if arguments.json {
+        output::print_json(&info)?;
     } else {
-        described(&loaded, &info)
-    };
-    Ok(output::print(&text)?)
+        output::print(&described(&loaded, &info))?;
+    }
+    Ok(())
 }
 
 fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {

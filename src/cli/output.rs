@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use serde::Serialize;
 use tempfile::TempPath;
 
 use crate::grow::Progress;
@@ -204,6 +205,16 @@ pub(super) fn called(path: &Path) -> String {
 pub(super) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context(NO_STANDARD_OUTPUT)
+}
+
+/// Prints something as JSON, as it is written: it may be long.
+pub(super) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    let written = serde_json::to_writer_pretty(&mut out, value).map_err(io::Error::from);
+    written
+        .and_then(|()| out.write_all(b"\n"))
         .and_then(|()| out.flush())
         .context(NO_STANDARD_OUTPUT)
 }

@@ -17,6 +17,7 @@
 mod compile;
 pub(crate) mod degrees;
 mod functions;
+mod interval;
 mod lex;
 mod operator;
 mod parse;
@@ -30,6 +31,7 @@ mod tests;
 
 use std::ops::Range;
 
+pub use interval::Interval;
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 

@@ -115,6 +115,11 @@ impl Program {
             })
     }
 
+    /// The steps, in postfix order.
+    pub(super) fn ops(&self) -> &[Op] {
+        &self.ops
+    }
+
     fn run<const N: usize>(&self, slots: &[f64]) -> f64 {
         let mut stack = [0.0; N];
         let mut below = 0;

@@ -1,6 +1,9 @@
 //! How far what becomes of an object reaches, from the graph alone, so that it need not be grown
 //! where it cannot be seen.
 
+use std::collections::BTreeMap;
+
+use crate::expression::Interval;
 use crate::geometry::DVec2;
 use crate::rule::Placement;
 
@@ -15,28 +18,39 @@ const TOLERANCE: f64 = 1e-3;
 /// So many times, at most, all radii are made smaller.
 const MOST_SWEEPS: usize = 64;
 
+/// An object that may come of another one.
+struct Edge {
+    object: usize,
+    /// The most that its middle lies from that of the other one's frame,
+    away: f64,
+    /// and that it is long, as multiples of the other one's length.
+    length: f64,
+}
+
 impl Graph {
     /// For every object, the radius of a disc about the middle of its unit frame that holds it and
-    /// all that becomes of it, seeds included, at every step; infinite where the graph does not
-    /// tell: where numbers are drawn, where seeds are placed as the initiator, and where what
-    /// becomes of the object does not shrink.
+    /// all that becomes of it, seeds included, at every step, whatever is drawn; infinite where the
+    /// graph does not tell: where seeds are placed as the initiator, and where what becomes of the
+    /// object does not surely shrink.
     ///
     /// `own` is the radius of an object that is drawn itself, about the same point. The result may
     /// be larger than the smallest disc, never smaller but by rounding.
     ///
     /// The smallest radii solve r(o) = max(own(o), |m − m(c)| + ratio(c) · r(c)) over the instances
     /// c in the object's place, with m the middles. They are approached from above, from the sum of
-    /// a geometric series or from infinity.
+    /// a geometric series or from infinity. Of instances that are drawn, what is farthest and what
+    /// is longest counts.
     #[must_use]
     pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
-        let away = |instance: &Instance| instance.frame.map.transform_point2(MIDDLE) - MIDDLE;
-        let ratio = self.longest_ratio();
-        let spread = self.instances().map(|(_, instance)| {
-            let far = away(instance).length();
-            match self.objects[instance.object].replacement {
-                Replacement::Kept => far + instance.length * own[instance.object],
-                _ => far,
+        let edges = self.edges();
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let ratio = self.longest_edge(&edges);
+        let spread = edges.iter().flatten().map(|edge| {
+            if kept(edge.object) {
+                edge.away + edge.length * own[edge.object]
+            } else {
+                edge.away
             }
         });
         let spread = spread.chain(own.iter().copied()).fold(0.0, f64::max);
@@ -45,13 +59,11 @@ impl Graph {
         } else {
             f64::INFINITY
         };
-        let drawn = |object: &Object| matches!(object.replacement, Replacement::Evaluated(_));
-        let unknown = self
-            .leading_to(|number| drawn(&self.objects[number]) || self.places_as_initiator(number));
+        let unknown = self.resets();
         let mut radii: Vec<f64> = (0..own.len())
             .map(|object| match &self.objects[object].replacement {
                 _ if unknown[object] => f64::INFINITY,
-                Replacement::Fixed(_) => most,
+                Replacement::Fixed(_) | Replacement::Evaluated(_) => most,
                 _ => own[object],
             })
             .collect();
@@ -62,10 +74,16 @@ impl Graph {
                 if unknown[object] {
                     continue;
                 }
-                let children = self.children(object).map(|(_, instance)| {
-                    away(instance).length() + instance.length * radii[instance.object]
+                let reached = edges[object].iter().map(|edge| {
+                    // What has no length draws nothing, however far it would reach.
+                    let own = if edge.length > 0.0 {
+                        edge.length * radii[edge.object]
+                    } else {
+                        0.0
+                    };
+                    edge.away + own
                 });
-                let radius = children.fold(own[object], f64::max);
+                let radius = reached.fold(own[object], f64::max);
                 if radius < radii[object] {
                     change = f64::min(change, radius / radii[object]);
                     radii[object] = radius;
@@ -76,6 +94,55 @@ impl Graph {
             }
         }
         radii
+    }
+
+    /// The radius of a disc that holds the outline of an object, where it is drawn, and its unit
+    /// frame, about the middle of the latter.
+    pub(crate) fn outline_radius(&self, object: &Object) -> f64 {
+        if object.visible {
+            self.base_elements()[object.base_element].radius()
+        } else {
+            // Elements that are not drawn have a place nevertheless.
+            MIDDLE.x
+        }
+    }
+
+    /// What may come of every object.
+    fn edges(&self) -> Vec<Vec<Edge>> {
+        let mut extents = BTreeMap::new();
+        let edges = |object: usize| {
+            let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
+                let edge = |(_, instance): (_, &Instance)| Edge {
+                    object: instance.object,
+                    away: instance.frame.map.transform_point2(MIDDLE).distance(MIDDLE),
+                    length: instance.length,
+                };
+                return self.children(object).map(edge).collect();
+            };
+            let mut edges = Vec::new();
+            for alternative in alternatives.iter() {
+                let generator = alternative.generator;
+                let extents = extents.entry(generator).or_insert_with(|| {
+                    self.evaluated().generators()[generator].extents(&self.moments())
+                });
+                let drawn = alternative.objects.iter().zip(extents);
+                edges.extend(drawn.map(|(&object, extent)| Edge {
+                    object,
+                    away: extent.away,
+                    length: extent.length,
+                }));
+            }
+            edges
+        };
+        (0..self.objects.len()).map(edges).collect()
+    }
+
+    /// All that expressions may see of an element.
+    fn moments(&self) -> [Interval; 4] {
+        let time = Interval::new(0.0, self.depth.map_or(f64::INFINITY, f64::from));
+        let index = Interval::new(1.0, f64::INFINITY);
+        let length = Interval::new(0.0, f64::INFINITY);
+        [index, time, time, length]
     }
 
     /// Whether an object leads to seeds that are placed as the initiator, by object. However small
@@ -105,12 +172,20 @@ impl Graph {
     /// the graph does not tell.
     #[must_use]
     pub fn longest_after(&self, steps: u32) -> f64 {
-        if !self.is_plain() || self.resets().contains(&true) {
+        if self.resets().contains(&true) {
             return f64::INFINITY;
         }
         let start = self.initiator.instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
-        longest * libm::pow(self.longest_ratio(), f64::from(steps))
+        let edges = self.edges();
+        longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
+    }
+
+    /// The largest ratio of what may be fertile.
+    fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let fertile = edges.iter().flatten().filter(|edge| !kept(edge.object));
+        fertile.map(|edge| edge.length).fold(0.0, f64::max)
     }
 
     /// The length that all fertile elements of the initiator have, and the ratio of all fertile

@@ -1,11 +1,12 @@
 //! One fractal at one step: its elements in order of traversal, depth-first.
 
-use crate::geometry::{DAffine2, DVec2, Direction, Frame};
-use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
+use crate::geometry::{DAffine2, Direction, Frame};
+use crate::graph::{Chain, CompileError, Graph, Instance, Production, Replacement, Seed};
+use crate::rule::Placement;
 use crate::rule::draw::Path;
-use crate::rule::{Moment, Placement};
 
 use super::block::{Block, Blocks};
+use super::evaluator::{Evaluator, Moment};
 use super::sizes::Sizes;
 use super::{Enter, Subtree};
 
@@ -18,6 +19,43 @@ pub(super) struct Standing {
     /// That initiator element, by position.
     pub(super) root: u32,
     pub(super) path: Path,
+}
+
+impl Standing {
+    /// Where the initiator stands.
+    pub(super) fn whole(seed: u64) -> Self {
+        Self {
+            frame: Frame::UNIT,
+            length: 1.0,
+            root: 0,
+            path: Path::of_seed(seed),
+        }
+    }
+
+    /// Where an instance in the initiator stands.
+    #[inline]
+    pub(super) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
+        Self {
+            length: 1.0,
+            root: instance.position,
+            ..self.child(graph, instance)
+        }
+    }
+
+    /// Where an instance in what replaces an element stands.
+    #[inline]
+    pub(super) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
+        Self {
+            frame: self.frame.compose(&instance.frame),
+            length: self.length * instance.length,
+            root: self.root,
+            path: if graph.draws() {
+                self.path.child(instance.position)
+            } else {
+                self.path
+            },
+        }
+    }
 }
 
 /// The elements that start a fractal, and where.
@@ -41,12 +79,7 @@ impl<'g> Start<'g> {
     pub(super) fn initiator(seed: u64) -> Self {
         Self {
             chain: StartChain::Initiator,
-            standing: Standing {
-                frame: Frame::UNIT,
-                length: 1.0,
-                root: 0,
-                path: Path::of_seed(seed),
-            },
+            standing: Standing::whole(seed),
             born: 0,
         }
     }
@@ -154,8 +187,7 @@ pub(super) struct Descent<'g> {
     ranks: Ranks,
     pool: Vec<Production>,
     free: Vec<usize>,
-    slots: Vec<f64>,
-    points: Vec<DVec2>,
+    evaluator: Evaluator,
     /// The number of visits since the caller has last taken it.
     pub(super) visited: u64,
 }
@@ -217,8 +249,7 @@ impl<'g> Descent<'g> {
             },
             pool: Vec::new(),
             free: Vec::new(),
-            slots: Vec::new(),
-            points: Vec::new(),
+            evaluator: Evaluator::default(),
             visited: 0,
         }
     }
@@ -342,23 +373,10 @@ impl<'g> Descent<'g> {
             entry.next += 1;
             let is_root = matches!(entry.source, Source::Start)
                 && matches!(start.chain, StartChain::Initiator);
-            let standing = Standing {
-                frame: entry.standing.frame.compose(&instance.frame),
-                length: if is_root {
-                    1.0
-                } else {
-                    entry.standing.length * instance.length
-                },
-                root: if is_root {
-                    instance.position
-                } else {
-                    entry.standing.root
-                },
-                path: if self.graph.draws() {
-                    entry.standing.path.child(instance.position)
-                } else {
-                    entry.standing.path
-                },
+            let standing = if is_root {
+                entry.standing.root(self.graph, instance)
+            } else {
+                entry.standing.child(self.graph, instance)
             };
             let level = entry.level;
             let object = instance.object;
@@ -493,36 +511,18 @@ impl<'g> Descent<'g> {
         level: u32,
         rank: u64,
     ) -> Result<usize, CompileError> {
-        let Replacement::Evaluated(alternatives) = &self.graph.objects()[object].replacement else {
-            unreachable!("a graph is walked no deeper than it is resolved");
-        };
-        let rule = self.graph.evaluated();
-        #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
-        let moment = Moment {
-            index: rank.max(1) as f64,
-            age: f64::from(level - self.born),
-            step: f64::from(level),
-            length: standing.length,
-        };
-        let alternative = if let [only] = &alternatives[..] {
-            only
-        } else {
-            let generator = rule.selection().select(&moment, standing.path);
-            alternatives
-                .iter()
-                .find(|alternative| alternative.generator == generator)
-                .unwrap_or_else(|| unreachable!("every candidate has its alternative"))
-        };
-        let generator = &rule.generators()[alternative.generator];
-        generator.evaluate(&moment, standing.path, &mut self.slots, &mut self.points);
-        if !self.points.iter().all(|point| point.is_finite()) {
-            return Err(CompileError::not_finite(generator.name(), &moment));
-        }
         let number = self.free.pop().unwrap_or_else(|| {
             self.pool.push(Production::default());
             self.pool.len() - 1
         });
-        self.pool[number].set(generator.parts(), &self.points, &alternative.objects);
+        let moment = Moment {
+            born: self.born,
+            level,
+            rank,
+        };
+        let production = &mut self.pool[number];
+        self.evaluator
+            .evaluate(self.graph, standing, object, moment, production)?;
         Ok(number)
     }
 
@@ -557,7 +557,7 @@ impl<'g> Descent<'g> {
 }
 
 /// The standing of a part that an element seeds.
-fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
+pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
     if placement != Placement::SeedsAsInitiator {
         return *standing;
     }

@@ -3,16 +3,27 @@ use std::convert::Infallible;
 use crate::geometry::Bounds;
 use crate::graph::Graph;
 
-use super::{Element, Fractal, Growth, Visitor, WalkError, walk};
+use super::{Element, Enter, Fractal, Growth, Reaches, Visitor, WalkError, search, walk};
 
-/// The box of what an approximant draws, without stroke width, by walking over all of it.
+#[cfg(test)]
+mod tests;
+
+/// The box of what an approximant draws, without stroke width: by a search for what reaches
+/// farthest, where the graph tells how far things reach, or by walking over all of it.
 ///
-/// [`Graph::bounds`] tells it without a walk where it can.
+/// [`Graph::bounds`] tells it without either where it can.
 ///
 /// # Errors
 ///
 /// If the walk ends early.
 pub fn extent(graph: &Graph, growth: &Growth<'_>) -> Result<Bounds, WalkError<Infallible>> {
+    let reaches = Reaches {
+        all: &graph.reaches(|object| graph.outline_radius(object)),
+        pads: &vec![0.0; graph.objects().len()],
+    };
+    if let Some(bounds) = search(graph, growth, &reaches, |_| Enter::Replace) {
+        return Ok(bounds);
+    }
     let mut extent = Extent {
         graph,
         bounds: Bounds::EMPTY,

@@ -5,13 +5,16 @@
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
 //! an object becomes in its last steps is worked out once, as a block, for visitors that take
 //! elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
-//! them comes in order.
+//! them comes in order. Who only wants to know the box of it all has no need of a walk where the graph
+//! tells how far things reach: a search replaces only what may reach farther than what it has found.
 
 mod block;
 mod count;
 mod descent;
+mod evaluator;
 mod extent;
 mod progress;
+mod search;
 mod sizes;
 mod spans;
 mod tally;
@@ -21,6 +24,7 @@ pub use block::{Run, Stick};
 pub use count::{Counted, count};
 pub use extent::extent;
 pub use progress::Progress;
+pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 

@@ -31,6 +31,7 @@ impl Progress {
         (expected > 0).then_some(expected)
     }
 
+    /// Counts elements that have been met.
     pub(crate) fn count(&self, elements: u64) {
         self.walked.fetch_add(elements, Ordering::Relaxed);
     }

@@ -37,11 +37,6 @@ impl Classes {
         !matches!(self.by, ColorBy::Fractal | ColorBy::Index)
     }
 
-    /// Whether colours depend on the number of steps.
-    pub(super) fn depend_on_steps(by: ColorBy) -> bool {
-        matches!(by, ColorBy::Step | ColorBy::Age)
-    }
-
     /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let largest = match by {
@@ -67,8 +62,14 @@ impl Classes {
     #[inline]
     #[must_use]
     pub fn of(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
-        let value = match self.by {
-            ColorBy::None => return 0,
+        self.of_value(self.value(element, fractal, graph))
+    }
+
+    /// The value of what the colours tell.
+    #[inline]
+    pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
+        match self.by {
+            ColorBy::None => 0,
             ColorBy::Step => u64::from(element.born),
             ColorBy::Age => u64::from(fractal.age),
             ColorBy::Fractal => fractal.number,
@@ -77,8 +78,16 @@ impl Classes {
                 .origin
                 .map_or(0, |generator| generator as u64 + 1),
             ColorBy::Direction => u64::from(element.frame.direction.number()) - 1,
-        };
-        self.of_value(value)
+        }
+    }
+
+    /// The step after which no element of a class is born any more; `None` if there may be any.
+    pub(super) fn last_step(&self, class: u64) -> Option<u32> {
+        let mut steps = (0..=self.largest).rev();
+        let last = steps.find(|&step| self.of_value(step) <= class)?;
+        u32::try_from(last)
+            .ok()
+            .filter(|_| self.by == ColorBy::Step)
     }
 
     /// How many elements of a run are in a class.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::geometry::Direction;
-use crate::graph::{Chain, Graph, Object, Replacement};
+use crate::geometry::{Bounds, Direction};
+use crate::graph::{Graph, Object, Replacement};
 use crate::grow::Growth;
 use crate::style::{ColorBy, Style};
 
@@ -26,15 +26,8 @@ impl<'g> Survey<'g> {
     ) -> Option<Self> {
         let level = level(graph, growth)?;
         let mut survey = Self::new(graph, style, steps);
-        let stands = Standing::at(graph, growth.steps);
-        let pad = |object: &Object| survey.pad(object);
-        survey.bounds = graph.padded_bounds(growth.steps, pad)?;
-        // The graph is exact beside the whole of the rule, of which this may be a speck.
-        let corners = [survey.bounds.min(), survey.bounds.max()];
-        let far = corners.map(|corner| corner.abs().max_element());
-        if survey.bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1])) {
-            return None;
-        }
+        let stands = Standing::at(graph, growth.steps)?;
+        survey.bounds = survey.known_bounds(growth)?;
         survey.elements = level.elements;
         survey.fractals = level.fractals;
         survey.largest_index = level.elements;
@@ -52,13 +45,27 @@ impl<'g> Survey<'g> {
             ColorBy::Direction => stands.values(|stands| u64::from(stands.direction.number()) - 1),
         };
         for value in used {
-            survey.use_class(survey.class_of(value));
+            survey.use_value(value);
         }
         survey.strokes = stands
             .0
             .iter()
             .any(|stands| survey.is_stroked(&graph.objects()[stands.object]));
         Some(survey)
+    }
+
+    /// The box from the graph alone, or by a search for what reaches farthest.
+    fn known_bounds(&self, growth: &Growth<'_>) -> Option<Bounds> {
+        let pad = |object: &Object| self.pad(object);
+        if let Some(bounds) = self.graph().padded_bounds(growth.steps, pad) {
+            // The graph is exact beside the whole of the rule, of which this may be a speck.
+            let corners = [bounds.min(), bounds.max()];
+            let far = corners.map(|corner| corner.abs().max_element());
+            let is_speck = bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1]));
+            return (!is_speck).then_some(bounds);
+        }
+        let glimpsed = self.clone().glimpsed(growth, &self.reaches())?;
+        Some(glimpsed.bounds)
     }
 }
 
@@ -69,7 +76,7 @@ struct Numbers {
 }
 
 fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
-    if !graph.is_plain() || graph.counts_index() || growth.steps > MOST_STEPS {
+    if graph.counts_index() || growth.steps > MOST_STEPS {
         return None;
     }
     let mut forecast = graph.forecast()?;
@@ -104,15 +111,13 @@ impl Kind {
 struct Standing(BTreeSet<Kind>);
 
 impl Standing {
-    fn at(graph: &Graph, steps: u32) -> Self {
+    /// `None` where it depends on draws what stands.
+    fn at(graph: &Graph, steps: u32) -> Option<Self> {
         let mut stand = BTreeSet::new();
-        let mut born = BTreeSet::new();
-        let add = |chain: &Chain, direction: Direction, to: &mut BTreeSet<_>| {
-            for instance in &chain.instances {
-                to.insert((instance.object, direction * instance.frame.direction));
-            }
-        };
-        add(graph.initiator(), Direction::Normal, &mut born);
+        let initiator = graph.initiator().instances.iter();
+        let mut born: BTreeSet<(usize, Direction)> = initiator
+            .map(|instance| (instance.object, instance.frame.direction))
+            .collect();
         for level in 0..=steps {
             let mut next = BTreeSet::new();
             for &(object, direction) in &born {
@@ -125,17 +130,29 @@ impl Standing {
                             born: level,
                         });
                     }
-                } else if let Replacement::Fixed(production) = replacement {
-                    add(&production.body, direction, &mut next);
-                    for seed in &production.seeds {
-                        // A part that is placed as the initiator has its own direction.
-                        add(&seed.chain, direction, &mut next);
+                    continue;
+                }
+                // A part that is placed as the initiator has its own direction, but no known box.
+                match replacement {
+                    Replacement::Fixed(production) => next.extend(
+                        production
+                            .placed_instances()
+                            .map(|(_, child)| (child.object, direction * child.frame.direction)),
+                    ),
+                    Replacement::Evaluated(alternatives) => {
+                        let [only] = &alternatives[..] else {
+                            return None;
+                        };
+                        let elements = graph.evaluated().generators()[only.generator].elements();
+                        let directions = elements.map(|element| direction * element.direction);
+                        next.extend(only.objects.iter().copied().zip(directions));
                     }
+                    Replacement::Kept | Replacement::Beyond => {}
                 }
             }
             born = next;
         }
-        Self(stand)
+        Some(Self(stand))
     }
 
     fn values(&self, value: impl Fn(&Kind) -> u64) -> Vec<u64> {

@@ -7,7 +7,7 @@ use crate::style::Width;
 
 use super::sight::Sight;
 use super::survey::overhang;
-use super::{Canvas, Classes, Options, RenderError, Survey};
+use super::{Canvas, Options, RenderError, Survey};
 
 /// Down to what size elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,8 @@ struct Surveyor<'a> {
     limit: u32,
     /// The elements of the surveys that have been thrown away.
     elements: u64,
+    /// How far what becomes of objects reaches, once it has been asked for.
+    reaches: Option<Vec<f64>>,
 }
 
 impl<'a> Layout<'a> {
@@ -91,6 +93,7 @@ impl<'a> Layout<'a> {
             options,
             limit: growth.steps,
             elements: 0,
+            reaches: None,
         };
         let mut survey = match (options.view.window, options.detail) {
             (Some(window), _) => surveyor.survey_window(window)?,
@@ -98,12 +101,9 @@ impl<'a> Layout<'a> {
             (None, None) => surveyor.survey(Sight::unbounded())?,
         };
         if options.detail.is_some_and(|detail| detail.decides_steps) {
-            surveyor.growth.steps = survey.steps;
-            if Classes::depend_on_steps(options.style.color_by) {
-                let sight = survey.sight().clone();
-                surveyor.elements += survey.elements;
-                survey = surveyor.survey(sight)?;
-            }
+            let fewer = surveyor.growth.steps - survey.steps;
+            survey = survey.sooner(&surveyor.growth, fewer);
+            surveyor.growth.steps -= fewer;
         }
         if let Some(progress) = growth.progress {
             progress.expect(surveyor.elements);
@@ -179,10 +179,19 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
-    /// Surveys everything down to elements of a length.
-    fn survey_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
+    /// Looks at everything down to elements of a length: a survey, or as much of one as it takes to
+    /// know how large a pixel is.
+    fn look_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
         let Some([mut length, ratio]) = self.graph.even_lengths() else {
-            return self.survey(Sight::to_length(self.graph, shortest));
+            let sight = Sight::to_length(self.graph, shortest);
+            let style = &self.options.style;
+            let survey = Survey::new(self.graph, style, self.growth.steps);
+            let reaches = self.reaches.get_or_insert_with(|| survey.reaches());
+            let survey = survey.of_what_is_in(sight.clone());
+            return match survey.glimpsed(&self.growth, reaches) {
+                Some(glimpse) => Ok(glimpse),
+                None => self.survey(sight),
+            };
         };
         // All elements of a step are equally long: a number of steps says the same.
         let mut steps = 0;
@@ -196,12 +205,23 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
+    /// Learns the rest of what has been looked at.
+    fn completed(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
+        let survey = if survey.is_bounded {
+            survey.walked(&self.growth, self.options.threads)?
+        } else {
+            survey
+        };
+        self.check(&survey)?;
+        Ok(survey)
+    }
+
     /// Surveys everything down to elements of a number of pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
         let start = self.graph.initiator().instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
         let mut shortest = longest * FIRST_LOOK;
-        let mut survey = self.survey_down_to(shortest)?;
+        let mut survey = self.look_down_to(shortest)?;
         for _ in 0..MOST_LOOKS {
             self.check(&survey)?;
             if !survey.bounds.is_empty() {
@@ -209,7 +229,7 @@ impl<'a> Surveyor<'a> {
             }
             shortest *= FIRST_LOOK;
             self.elements += survey.elements;
-            survey = self.survey_down_to(shortest)?;
+            survey = self.look_down_to(shortest)?;
         }
         for round in 1.. {
             self.check(&survey)?;
@@ -219,15 +239,16 @@ impl<'a> Surveyor<'a> {
                 break;
             }
             if round == MOST_ROUNDS {
+                survey = self.completed(survey)?;
                 if next < shortest / 2.0 && survey.steps < self.limit {
                     return Err(NoDetail::Vanishes.into());
                 }
-                break;
+                return Ok(survey);
             }
             shortest = next;
             self.elements += survey.elements;
-            survey = self.survey_down_to(shortest)?;
+            survey = self.look_down_to(shortest)?;
         }
-        Ok(survey)
+        self.completed(survey)
     }
 }

@@ -4,7 +4,8 @@
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
 //! that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
 //! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
-//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail.
+//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail;
+//! and where colours tell steps, what is born later than they tell.
 
 mod canvas;
 mod classes;

@@ -21,6 +21,8 @@ pub(crate) struct Scene<'a> {
     pub(super) sight: Sight,
     pub(super) classes: Classes,
     passes: Vec<Pass>,
+    /// The number of elements.
+    elements: u64,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
 }
@@ -59,6 +61,7 @@ impl<'a> Scene<'a> {
             sight: survey.sight().clone(),
             classes,
             passes,
+            elements: survey.elements,
             fills_strokes: together && style.fill.is_some(),
         }
     }
@@ -85,7 +88,7 @@ impl Drawing for Scene<'_> {
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
             let fresh = || Sketcher::new(self, pass);
-            walk_with(
+            let walked = walk_with(
                 team,
                 self.graph,
                 self.growth,
@@ -98,6 +101,10 @@ impl Drawing for Scene<'_> {
                 },
             )?;
             painter.finish()?;
+            if let Some(progress) = self.growth.progress {
+                // What a pass leaves out is done with it.
+                progress.count(self.elements.saturating_sub(walked.elements));
+            }
         }
         Ok(())
     }

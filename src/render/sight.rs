@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Enter, Growth, Subtree};
+use crate::rule::Part;
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
 use super::Classes;
@@ -152,20 +153,11 @@ fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
 
 /// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
 fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
-    // Elements that are not drawn have a place nevertheless.
-    let mut far = DVec2::new(0.5, 0.0);
-    if object.visible {
-        let base_element = &graph.base_elements()[object.base_element];
-        for axis in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
-            let beyond = base_element.support(axis) - axis.x / 2.0;
-            far = far.max(axis.abs() * beyond);
-        }
-    }
     let stroke = match style.width {
         Width::Relative(width) => width * relative_overhang(style),
         Width::Pixels(_) => 0.0,
     };
-    far.length() + stroke
+    graph.outline_radius(object) + stroke
 }
 
 /// Whether a fractal may be a closed chain.
@@ -178,7 +170,12 @@ fn starts_rings(graph: &Graph) -> bool {
                 Replacement::Fixed(production) => {
                     production.seeds.iter().any(|seed| seed.chain.is_ring())
                 }
-                Replacement::Evaluated(_) => true,
+                Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
+                    let parts = graph.evaluated().generators()[alternative.generator].parts();
+                    let mut seeds = parts.iter().filter(|part| part.placement.seeds());
+                    let is_ring = |part: &Part| part.elements.first().is_some_and(|e| e.joined);
+                    seeds.any(is_ring)
+                }),
                 Replacement::Kept | Replacement::Beyond => false,
             })
 }
@@ -199,8 +196,8 @@ fn links(graph: &Graph, longest: f64) -> f64 {
         // An element that is kept may be as long as any.
         let length = match object.replacement {
             _ if link == 0.0 => continue,
-            Replacement::Fixed(_) | Replacement::Beyond => longest,
-            _ => f64::INFINITY,
+            Replacement::Kept => f64::INFINITY,
+            _ => longest,
         };
         farthest = f64::max(farthest, link * length);
     }

@@ -92,6 +92,21 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     if reversed { [end, start] } else { [start, end] }
 }
 
+/// The step after which nothing is born that a pass needs, if there is one: where lines do not lead
+/// to the ends of elements that it does not paint.
+fn last_step(scene: &Scene<'_>, pass: Pass) -> Option<u32> {
+    let Pass::Class(class) = pass else {
+        return None;
+    };
+    let graph = scene.graph;
+    let mut drawn = graph.objects().iter().filter(|object| object.visible);
+    let stands_alone = drawn.all(|object| {
+        let base_element = &graph.base_elements()[object.base_element];
+        base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
+    });
+    scene.classes.last_step(class).filter(|_| stands_alone)
+}
+
 /// Sketches what one walk over an approximant is for.
 pub(super) struct Sketcher<'a> {
     scene: &'a Scene<'a>,
@@ -100,6 +115,8 @@ pub(super) struct Sketcher<'a> {
     pub(super) sketch: Sketch,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
+    /// What is born in later steps is not painted, nor is it needed for what is.
+    last_step: u32,
 }
 
 impl<'a> Sketcher<'a> {
@@ -110,6 +127,7 @@ impl<'a> Sketcher<'a> {
             fractal: Fractal::default(),
             sketch: Sketch::default(),
             open: None,
+            last_step: last_step(scene, pass).unwrap_or(u32::MAX),
         }
     }
 
@@ -393,7 +411,10 @@ impl Visitor for Sketcher<'_> {
 
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        self.scene.sight.enter(subtree)
+        match self.scene.sight.enter(subtree) {
+            Enter::Replace if subtree.born >= self.last_step => Enter::Skip,
+            enter => enter,
+        }
     }
 
     #[inline]

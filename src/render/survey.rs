@@ -1,12 +1,14 @@
+use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::num::NonZero;
 
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
-    Element, Enter, Fractal, Growth, Seam, Subtree, Visitor, WalkError, walk_in_spans,
+    Element, Enter, Fractal, Growth, Reaches, Seam, Subtree, Visitor, WalkError, search,
+    walk_in_spans,
 };
-use crate::style::{Cap, Join, Style, Width};
+use crate::style::{Cap, ColorBy, Join, Style, Width};
 
 use super::sight::Sight;
 use super::{Classes, WIDTHS_AN_OCTAVE};
@@ -31,6 +33,8 @@ pub struct Survey<'g> {
     pub largest_index: u64,
     /// Whether there was a walk to learn it.
     pub(super) walked: bool,
+    /// Whether a walk need not learn the bounds.
+    pub(super) is_bounded: bool,
     /// The number of steps that are needed: more would change nothing.
     pub(super) steps: u32,
     sight: Sight,
@@ -39,7 +43,7 @@ pub struct Survey<'g> {
     last_index: Option<u64>,
     goes_on: bool,
     classes: Classes,
-    /// The classes that something visible is in.
+    /// The values that something visible has, of what the colours tell.
     used: Vec<bool>,
 }
 
@@ -47,7 +51,6 @@ impl<'g> Survey<'g> {
     /// A survey that has seen nothing yet.
     #[must_use]
     pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
-        let classes = Classes::before_survey(style.color_by, graph, steps);
         Self {
             graph,
             style,
@@ -57,13 +60,14 @@ impl<'g> Survey<'g> {
             fractals: 0,
             largest_index: 0,
             walked: false,
+            is_bounded: false,
             steps: 0,
             sight: Sight::unbounded(),
             fractal: Fractal::default(),
             last_index: None,
             goes_on: false,
-            used: classes.all().map(|_| false).collect(),
-            classes,
+            used: Vec::new(),
+            classes: Classes::before_survey(style.color_by, graph, steps),
         }
     }
 
@@ -93,8 +97,9 @@ impl<'g> Survey<'g> {
     pub fn classes(&self) -> (Classes, Vec<u64>) {
         let classes = self.classes.after_survey(self.fractals, self.largest_index);
         if classes.need_no_survey() {
-            let used = classes.all().zip(&self.used).filter(|(_, used)| **used);
-            return (classes, used.map(|(class, _)| class).collect());
+            let used = (0..).zip(&self.used).filter(|(_, used)| **used);
+            let used: BTreeSet<u64> = used.map(|(value, _)| classes.of_value(value)).collect();
+            return (classes, used.into_iter().collect());
         }
         (classes, classes.all().collect())
     }
@@ -115,17 +120,51 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// The class of a value, where that is known without a survey.
-    pub(super) fn class_of(&self, value: u64) -> u64 {
-        self.classes.of_value(value)
+    /// Something visible has a value.
+    pub(super) fn use_value(&mut self, value: u64) {
+        if let (true, Ok(value)) = (self.classes.need_no_survey(), usize::try_from(value)) {
+            if value >= self.used.len() {
+                self.used.resize(value + 1, false);
+            }
+            self.used[value] = true;
+        }
     }
 
-    /// Something visible is in a class.
-    pub(super) fn use_class(&mut self, class: u64) {
-        let used = usize::try_from(class).ok();
-        if let Some(used) = used.and_then(|class| self.used.get_mut(class)) {
-            *used = true;
+    /// The same survey of an approximant of so many steps fewer, in which all that it has met stands
+    /// already.
+    pub(super) fn sooner(mut self, growth: &Growth<'_>, fewer: u32) -> Self {
+        let Style { color_by, .. } = self.style;
+        if *color_by == ColorBy::Age {
+            self.used.drain(..(fewer as usize).min(self.used.len()));
         }
+        self.classes = Classes::before_survey(*color_by, self.graph, growth.steps - fewer);
+        self
+    }
+
+    /// Learns what is needed to know how large a pixel is, without a walk: the bounds, and whether
+    /// any outline is stroked. `None` if the graph does not tell.
+    pub(super) fn glimpsed(mut self, growth: &Growth<'_>, reaches: &[f64]) -> Option<Self> {
+        let objects = || self.graph.objects().iter();
+        let mut drawn = objects().filter(|object| object.visible);
+        self.strokes = drawn.clone().any(|object| self.is_stroked(object));
+        if self.strokes && !drawn.all(|object| self.is_stroked(object)) {
+            return None;
+        }
+        let reaches = Reaches {
+            all: reaches,
+            pads: &objects().map(|object| self.pad(object)).collect::<Vec<_>>(),
+        };
+        self.bounds = search(self.graph, growth, &reaches, |subtree| {
+            self.sight.enter(subtree)
+        })?;
+        self.is_bounded = true;
+        Some(self)
+    }
+
+    /// How far what becomes of an object reaches, by object: see [`Graph::reaches`].
+    pub(super) fn reaches(&self) -> Vec<f64> {
+        let own = |object: &Object| self.graph.outline_radius(object) + self.pad(object);
+        self.graph.reaches(own)
     }
 
     /// Adds what a survey of the next span has seen.
@@ -137,8 +176,8 @@ impl<'g> Survey<'g> {
         let last_index = span.last_index.map_or(0, |index| seam.before + index);
         self.largest_index = self.largest_index.max(span.largest_index).max(last_index);
         self.steps = self.steps.max(span.steps);
-        for (used, also) in self.used.iter_mut().zip(&span.used) {
-            *used |= also;
+        for (value, _) in (0..).zip(&span.used).filter(|(_, used)| **used) {
+            self.use_value(value);
         }
     }
 
@@ -232,12 +271,14 @@ impl Visitor for Survey<'_> {
         }
         let object = &self.graph.objects()[element.object];
         if object.visible {
-            let class = self.classes.of(element, &self.fractal, self.graph);
-            self.use_class(class);
-            let base_element = &self.graph.base_elements()[object.base_element];
+            let value = self.classes.value(element, &self.fractal, self.graph);
+            self.use_value(value);
             self.strokes |= self.is_stroked(object);
-            let pad = self.pad(object) * element.frame.length();
-            base_element.add_to(&mut self.bounds, &element.frame.map, pad);
+            if !self.is_bounded {
+                let base_element = &self.graph.base_elements()[object.base_element];
+                let pad = self.pad(object) * element.frame.length();
+                base_element.add_to(&mut self.bounds, &element.frame.map, pad);
+            }
         }
         Ok(())
     }

@@ -157,6 +157,18 @@ impl BaseElement {
         largest
     }
 
+    /// The radius of a disc that holds the outline and its unit frame, about the middle of the latter:
+    /// no less than the smallest, and no more than √2 times that.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        let mut far = DVec2::new(0.5, 0.0);
+        for axis in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+            let beyond = self.support(axis) - axis.x / 2.0;
+            far = far.max(axis.abs() * beyond);
+        }
+        far.length()
+    }
+
     /// Adds the outline's image under a map to a box, with `pad` more on every side.
     pub fn add_to(&self, bounds: &mut Bounds, map: &DAffine2, pad: f64) {
         let mut from = map.transform_point2(self.start);

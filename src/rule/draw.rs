@@ -7,7 +7,7 @@
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
-use crate::expression::Program;
+use crate::expression::{Interval, Program};
 
 /// The hash of a seed and of an element's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +54,10 @@ fn hash_of_name(name: &str) -> u64 {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
+
+/// The farthest that a normal draw lies from its mean, in standard deviations: √(−2 ln 2⁻⁵³), for
+/// the numbers that it is made of have 53 bits.
+const MOST_DEVIATIONS: f64 = 8.572;
 
 /// A number from [0, 1) with 53 random bits.
 #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
@@ -111,6 +115,42 @@ impl Variable {
             Distribution::Normal(mean, _) => mean.eval(slots),
             Distribution::Choice(values) => values[0].eval(slots),
         }
+    }
+
+    /// The expressions of its distribution.
+    pub(super) fn programs(&self) -> Vec<&Program> {
+        match &self.distribution {
+            Distribution::Uniform(a, b) | Distribution::Normal(a, b) => vec![a, b],
+            Distribution::Choice(values) => values.iter().collect(),
+        }
+    }
+
+    /// The number of values that it chooses from, if it does.
+    pub(super) fn choices(&self) -> Option<usize> {
+        match &self.distribution {
+            Distribution::Choice(values) => Some(values.len()),
+            _ => None,
+        }
+    }
+
+    /// All that may be drawn where the slots lie within these, give or take rounding: in so many
+    /// parts, or as one.
+    pub(super) fn parts(&self, slots: &[Interval], count: usize) -> Vec<Interval> {
+        let whole = match &self.distribution {
+            Distribution::Uniform(low, high) => low.range(slots).or(high.range(slots)),
+            Distribution::Normal(mean, deviation) => {
+                let far = deviation.range(slots).magnitude() * MOST_DEVIATIONS;
+                mean.range(slots) + Interval::new(-far, far)
+            }
+            Distribution::Choice(values) => {
+                let ranges = values.iter().map(|value| value.range(slots));
+                if count == values.len() {
+                    return ranges.collect();
+                }
+                return vec![ranges.reduce(Interval::or).unwrap_or(Interval::ALL)];
+            }
+        };
+        (0..count).map(|number| whole.part(number, count)).collect()
     }
 
     /// The value that belongs to a path.

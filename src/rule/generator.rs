@@ -53,6 +53,12 @@ pub struct Move {
 }
 
 impl Move {
+    /// Its expressions.
+    pub(super) fn programs(&self) -> impl Iterator<Item = &Program> {
+        let pairs = [&self.scale, &self.shift, &self.about].into_iter();
+        std::iter::once(&self.rotate).chain(pairs.flatten())
+    }
+
     fn map(&self, slots: &[f64]) -> DAffine2 {
         let vector = |[x, y]: &[Program; 2]| DVec2::new(x.eval(slots), y.eval(slots));
         let angle = self.rotate.eval(slots);
@@ -194,21 +200,10 @@ impl Generator {
         !self.variables.is_empty()
     }
 
-    /// All expressions of the generator except those of the distributions.
+    /// All expressions of the generator.
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
-        let moves = self.moves.iter().flat_map(|m| {
-            std::iter::once(&m.rotate)
-                .chain(&m.scale)
-                .chain(&m.shift)
-                .chain(&m.about)
-        });
-        let drawn = self.variables.iter().flat_map(|variable| {
-            use super::draw::Distribution::{Choice, Normal, Uniform};
-            match variable.distribution() {
-                Uniform(a, b) | Normal(a, b) => vec![a, b],
-                Choice(values) => values.iter().collect(),
-            }
-        });
+        let moves = self.moves.iter().flat_map(Move::programs);
+        let drawn = self.variables.iter().flat_map(Variable::programs);
         self.points.iter().flatten().chain(moves).chain(drawn)
     }
 

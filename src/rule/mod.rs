@@ -7,6 +7,7 @@
 
 mod base_element;
 pub mod draw;
+mod extent;
 mod generator;
 mod selection;
 

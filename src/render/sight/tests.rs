@@ -12,17 +12,13 @@ use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::parallel::with_team;
+use crate::random_rules::{self as rules, Features};
 use crate::render::layout::Layout;
 use crate::render::{
     Canvas, Detail, Drawing, Options, Paint, Position, Scene, Size, Surface, Survey,
 };
 use crate::rule::Rule;
 use crate::style::{Colour, View};
-
-#[path = "../../../tests/laws/rules.rs"]
-mod rules;
-
-use rules::Features;
 
 /// The side of the pictures, in pixels.
 const SIDE: u32 = 100;
@@ -251,6 +247,8 @@ fn windows_of_the_library_show_their_part() {
         ("vegetation", 2, 1.0),
         ("archipelago", 2, 1.0),
         ("sea-fan", 6, 1.0),
+        ("random-tree", 8, 0.6),
+        ("fern", 6, 0.9),
     ] {
         let source = catalogue.component(Shelf::Rules, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
@@ -279,6 +277,49 @@ fn windows_of_the_library_show_their_part() {
         #[expect(clippy::cast_precision_loss, reason = "the numbers are small")]
         let visited = visited[0] as f64 / visited[1] as f64;
         assert!(visited <= part, "{name}: {visited}");
+    }
+}
+
+/// What is born after what a pass paints is left out of its walk.
+#[test]
+fn colours_by_step_leave_out_nothing() {
+    let catalogue = Catalogue::embedded();
+    for name in [
+        "random-tree",
+        "hilbert",
+        "mandala",
+        "koch-snowflake",
+        "t-square",
+        "archipelago",
+    ] {
+        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, 4).unwrap();
+        let growth = Growth::steps(4);
+        let drawn = |color_by: ColorBy| {
+            let options = Options {
+                style: Style {
+                    color_by,
+                    fill: None,
+                    ..rule.style().clone()
+                },
+                ..Options::default()
+            };
+            let Layout { survey, canvas, .. } = Layout::find(&graph, &growth, &options).unwrap();
+            let mut recorder = Recorder::default();
+            let scene = Scene::new(&survey, &growth, canvas);
+            with_team(NonZero::<usize>::MIN, |team| {
+                scene.draw(&mut recorder, team)
+            })
+            .unwrap();
+            let paths = recorder.paths.iter().map(|(_, vertices, _)| vertices);
+            let pairs = paths.flat_map(|vertices| vertices.windows(2).map(<[_]>::to_vec));
+            let mut pairs: Vec<_> = pairs.collect();
+            pairs.sort();
+            pairs
+        };
+        assert_eq!(drawn(ColorBy::Step), drawn(ColorBy::None), "{name}");
     }
 }
 

@@ -1,0 +1,196 @@
+//! The box of an approximant by branch and bound (Land & Doig 1960): only where elements may reach
+//! beyond what has been found are they replaced.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
+
+use crate::geometry::{Bounds, DVec2};
+use crate::graph::{Graph, Production, Replacement};
+
+use super::descent::{Standing, planted};
+use super::evaluator::{Evaluator, Moment};
+use super::{Enter, Growth, Subtree};
+
+/// More replacements than this are left to a walk.
+const MOST_WORK: usize = 1 << 18;
+
+/// How far things reach, by object.
+pub(crate) struct Reaches<'a> {
+    /// What becomes of an object, about the middle of its frame: see [`Graph::reaches`].
+    pub(crate) all: &'a [f64],
+    /// What lies around the outline of an object, as a multiple of its length.
+    pub(crate) pads: &'a [f64],
+}
+
+/// An element that is to be replaced.
+struct Node {
+    standing: Standing,
+    object: usize,
+    /// The steps of birth of its fractal and of itself.
+    born: u32,
+    level: u32,
+    /// The farthest that what becomes of it may reach in the direction that is searched.
+    farthest: f64,
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Node {}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Node {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.farthest.total_cmp(&other.farthest)
+    }
+}
+
+struct Search<'a, E> {
+    graph: &'a Graph,
+    steps: u32,
+    reaches: &'a Reaches<'a>,
+    enter: E,
+    /// What has been found.
+    bounds: Bounds,
+    /// The direction that is searched.
+    direction: DVec2,
+    heap: BinaryHeap<Node>,
+}
+
+/// The box of what a walk would come to with a visitor that enters so, to the bit the same.
+///
+/// `None` where indices are counted, where not all reaches are known, where a generator yields
+/// points that are not finite, and where the work is as much as a walk's or is cancelled. The box is empty if nothing
+/// is drawn.
+pub(crate) fn search(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    reaches: &Reaches<'_>,
+    enter: impl Fn(&Subtree) -> Enter,
+) -> Option<Bounds> {
+    if graph.counts_index() || !reaches.all.iter().all(|reach| reach.is_finite()) {
+        return None;
+    }
+    let mut search = Search {
+        graph,
+        steps: growth.steps,
+        reaches,
+        enter,
+        bounds: Bounds::EMPTY,
+        direction: DVec2::X,
+        heap: BinaryHeap::new(),
+    };
+    let mut evaluator = Evaluator::default();
+    let mut drawn = Production::default();
+    let mut work = 0;
+    for direction in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+        search.direction = direction;
+        search.heap.clear();
+        let whole = Standing::whole(growth.seed);
+        for instance in &graph.initiator().instances {
+            search.add(whole.root(graph, instance), instance.object, 0, 0);
+        }
+        while let Some(node) = search.heap.pop() {
+            if node.farthest <= search.found() {
+                break;
+            }
+            work += 1;
+            let is_cancelled = |cancel: &AtomicBool| cancel.load(AtomicOrdering::Relaxed);
+            if work > MOST_WORK || growth.cancel.is_some_and(is_cancelled) {
+                return None;
+            }
+            let moment = Moment {
+                born: node.born,
+                level: node.level,
+                rank: 0,
+            };
+            let production = match &graph.objects()[node.object].replacement {
+                Replacement::Fixed(production) => production,
+                _ => {
+                    let evaluated =
+                        evaluator.evaluate(graph, &node.standing, node.object, moment, &mut drawn);
+                    evaluated.ok()?;
+                    &drawn
+                }
+            };
+            search.replace(&node, production);
+        }
+    }
+    Some(search.bounds)
+}
+
+impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
+    /// How far what has been found reaches.
+    fn found(&self) -> f64 {
+        if self.bounds.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        let [min, max] = [self.bounds.min(), self.bounds.max()];
+        min.dot(self.direction).max(max.dot(self.direction))
+    }
+
+    fn replace(&mut self, node: &Node, production: &Production) {
+        let level = node.level + 1;
+        for instance in &production.body.instances {
+            let standing = node.standing.child(self.graph, instance);
+            self.add(standing, instance.object, node.born, level);
+        }
+        for seed in &production.seeds {
+            let start = planted(self.graph, &node.standing, seed.placement);
+            for instance in &seed.chain.instances {
+                let standing = start.child(self.graph, instance);
+                self.add(standing, instance.object, level, level);
+            }
+        }
+    }
+
+    /// Adds an element: what it draws, or what may become of it.
+    fn add(&mut self, standing: Standing, object: usize, born: u32, level: u32) {
+        // Rounding must not hide what reaches just as far.
+        const SLACK: f64 = 1.0 + 1e-9;
+        let subtree = Subtree {
+            frame: standing.frame,
+            object,
+            born: level,
+        };
+        let own = &self.graph.objects()[object];
+        let ends = matches!(own.replacement, Replacement::Kept) || level == self.steps;
+        let enter = if ends {
+            Enter::Keep
+        } else {
+            (self.enter)(&subtree)
+        };
+        let length = standing.frame.length();
+        match enter {
+            Enter::Keep if own.visible => {
+                let base_element = &self.graph.base_elements()[own.base_element];
+                let pad = self.reaches.pads[object] * length;
+                base_element.add_to(&mut self.bounds, &standing.frame.map, pad);
+            }
+            Enter::Keep | Enter::Skip => {}
+            Enter::Replace => {
+                let middle = standing.frame.map.transform_point2(DVec2::new(0.5, 0.0));
+                let farthest =
+                    middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;
+                if farthest > self.found() {
+                    self.heap.push(Node {
+                        standing,
+                        object,
+                        born,
+                        level,
+                        farthest,
+                    });
+                }
+            }
+        }
+    }
+}

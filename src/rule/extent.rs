@@ -1,0 +1,213 @@
+//! How far draws may move the elements of a generator.
+
+use crate::expression::{Dependence, Interval, Program};
+use crate::geometry::DVec2;
+
+use super::generator::{Generator, ListedElement, Moment, Move};
+
+/// The ranges of the drawn variables are cut into no more parts than this in all.
+const MOST_PARTS: usize = 1024;
+
+/// So many parts, at most, of one of them.
+const MOST_PARTS_OF_ONE: usize = 32;
+
+/// What holds of an element wherever it is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Extent {
+    /// The most that its middle lies away from the middle of the unit frame.
+    pub(crate) away: f64,
+    /// The most that it is long.
+    pub(crate) length: f64,
+}
+
+/// A box in which a point lies.
+type Place = [Interval; 2];
+
+impl Generator {
+    /// What holds of its elements, by position, for all draws and all moments within these limits;
+    /// give or take rounding.
+    ///
+    /// Interval arithmetic, on parts of the draws' ranges: the parts are what keeps in mind that
+    /// coordinates are drawn together.
+    pub(crate) fn extents(&self, moment: &[Interval; 4]) -> Vec<Extent> {
+        let extent = |element| {
+            let mut cover = Cover {
+                generator: self,
+                element,
+                parts: self.parts_for(element),
+                extent: Extent::default(),
+            };
+            cover.go_on(&mut moment.to_vec());
+            cover.extent
+        };
+        self.elements().map(extent).collect()
+    }
+
+    /// Into how many parts the ranges of the variables are cut, one after another: of those that the
+    /// element depends on.
+    fn parts_for(&self, element: &ListedElement) -> Vec<usize> {
+        let ends = [element.from, element.to];
+        let moves = self.moves.iter();
+        let moves = moves.filter(|moving| ends.iter().any(|end| moving.points.contains(end)));
+        let own = ends.iter().flat_map(|&end| &self.points[end]);
+        let mut programs: Vec<&Program> = own.chain(moves.flat_map(Move::programs)).collect();
+        let mut parts = vec![1; self.variables.len()];
+        let mut free = 0;
+        let mut left = MOST_PARTS;
+        for (number, variable) in self.variables.iter().enumerate().rev() {
+            let slot = Moment::NAMES.len() + number;
+            let depends = |program: &&Program| program.dependence(slot) != Dependence::None;
+            if programs.iter().any(depends) {
+                programs.extend(variable.programs());
+                parts[number] = match variable.choices() {
+                    Some(choices) if choices <= left => choices,
+                    Some(_) => 1,
+                    None => 0,
+                };
+                free += u32::from(parts[number] == 0);
+                left /= parts[number].max(1);
+            }
+        }
+        let fits = |parts: &usize| parts.checked_pow(free).is_some_and(|all| all <= left);
+        let each = (2..=MOST_PARTS_OF_ONE).rev().find(fits).unwrap_or(1);
+        for parts in parts.iter_mut().filter(|parts| **parts == 0) {
+            *parts = each;
+        }
+        parts
+    }
+}
+
+/// Goes through the parts of the ranges of the variables.
+struct Cover<'g> {
+    generator: &'g Generator,
+    element: &'g ListedElement,
+    parts: Vec<usize>,
+    extent: Extent,
+}
+
+impl Cover<'_> {
+    /// Goes on to the parts of the next variable's range.
+    fn go_on(&mut self, slots: &mut Vec<Interval>) {
+        let number = slots.len() - Moment::NAMES.len();
+        let Some(variable) = self.generator.variables.get(number) else {
+            return self.add(slots);
+        };
+        for part in variable.parts(slots, self.parts[number]) {
+            slots.push(part);
+            self.go_on(slots);
+            slots.pop();
+        }
+    }
+
+    fn add(&mut self, slots: &[Interval]) {
+        let [from, to] = [self.element.from, self.element.to].map(|number| {
+            let moves = self.generator.moves.iter();
+            let moves = moves.filter(|moving| moving.points.contains(&number));
+            let written = place(&self.generator.points[number], slots);
+            moves.fold(written, |place, moving| moving.image(place, slots))
+        });
+        let middle = [Interval::point(1.0), Interval::point(0.0)];
+        let Extent { away, length } = &mut self.extent;
+        *away = away.max(far(minus(plus(from, to), middle)) / 2.0);
+        *length = length.max(far(minus(to, from)));
+    }
+}
+
+impl Move {
+    /// Where a point in a place may be moved to.
+    fn image(&self, point: Place, slots: &[Interval]) -> Place {
+        let angle = self.rotate.range(slots);
+        let (sine, cosine) = (angle.sine(), angle.cosine());
+        let about = place(&self.about, slots);
+        let [width, height] = place(&self.scale, slots);
+        let [x, y] = minus(point, about);
+        let (x, y) = (x * width, y * height);
+        let turned = [cosine * x - sine * y, sine * x + cosine * y];
+        plus(plus(turned, about), place(&self.shift, slots))
+    }
+}
+
+fn place([x, y]: &[Program; 2], slots: &[Interval]) -> Place {
+    [x.range(slots), y.range(slots)]
+}
+
+fn plus(a: Place, b: Place) -> Place {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+fn minus(a: Place, b: Place) -> Place {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// The most that a point in a place lies from the origin.
+fn far([x, y]: Place) -> f64 {
+    DVec2::new(x.magnitude(), y.magnitude()).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::{Catalogue, Shelf};
+    use crate::document::Document;
+    use crate::geometry::DVec2;
+    use crate::rule::draw::Path;
+
+    #[test]
+    fn what_is_drawn_keeps_within_its_extents() {
+        let catalogue = Catalogue::embedded();
+        let entries = catalogue.entries();
+        let mut drawn = 0;
+        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+            let document = Document::read(&catalogue.open(entry).unwrap(), &catalogue).unwrap();
+            let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+            let limits = [[1.0, 9.0], [0.0, 4.0], [0.0, 4.0], [0.0, 1.0]];
+            let limits = limits.map(|[low, high]| Interval::new(low, high));
+            for generator in rule.generators() {
+                let extents = generator.extents(&limits);
+                for number in 0..if generator.is_random() { 500 } else { 1 } {
+                    let moment = Moment {
+                        index: f64::from(number % 9 + 1),
+                        age: f64::from(number % 5),
+                        step: f64::from(number % 4),
+                        length: f64::from(number % 7) / 6.0,
+                    };
+                    let path = Path::of_seed(3).child(number);
+                    let (mut slots, mut points) = (Vec::new(), Vec::new());
+                    generator.evaluate(&moment, path, &mut slots, &mut points);
+                    for (element, extent) in generator.elements().zip(&extents) {
+                        let [from, to] = [points[element.from], points[element.to]];
+                        let away = (from + to - DVec2::X).length() / 2.0;
+                        let length = (to - from).length();
+                        let most = [extent.away, extent.length].map(|most| most * (1.0 + 1e-12));
+                        assert!(away <= most[0] && length <= most[1], "{}", entry.name);
+                        drawn += 1;
+                    }
+                }
+            }
+        }
+        assert!(drawn > 10_000, "{drawn}");
+    }
+
+    #[test]
+    fn parts_keep_in_mind_what_is_drawn_together() {
+        let catalogue = Catalogue::embedded();
+        for (name, generator, longest) in [("sea-fan", 0, 1.0), ("random-tree", 0, 0.9)] {
+            let source = catalogue.component(Shelf::Rules, name).unwrap();
+            let rule = Document::read(&source, &catalogue)
+                .unwrap()
+                .resolve(&[])
+                .unwrap()
+                .0
+                .into_rule()
+                .unwrap();
+            let generator = &rule.generators()[generator];
+            let extents = generator.extents(&[Interval::ALL; 4]);
+            for (element, extent) in generator.elements().zip(extents) {
+                assert!(
+                    !element.fertile || extent.length < longest,
+                    "{name}: {extent:?}"
+                );
+            }
+        }
+    }
+}
