@@ -89,6 +89,30 @@ fn rows_are_elements_in_order_of_traversal() {
 }
 
 #[test]
+fn count_tells_what_a_walk_finds() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = run(folder.path(), &["count", "koch", "--steps", "6"]).success();
+    assert_eq!(
+        stdout(&text),
+        "elements  4,096\nfertile   4,096\nfractals  1\nlength    5.61865569273\n\
+         bounds    [0, 0] to [1, 0.288675134595]\n"
+    );
+    let json = ["count", "koch", "--steps", "3", "--json", "--threads", "2"];
+    let json = run(folder.path(), &json).success();
+    let json: serde_json::Value = serde_json::from_str(&stdout(&json)).unwrap();
+    let keys = [
+        "bounds", "elements", "fertile", "fractals", "length", "name", "steps",
+    ];
+    assert!(json.as_object().unwrap().keys().eq(keys));
+    assert_eq!(json["elements"], "64");
+    assert_eq!(json["bounds"]["max"][0], 1);
+    let many = ["count", "koch", "--steps", "13"];
+    let refused = run(folder.path(), &many).failure();
+    assert!(stderr(&refused).contains("--max-elements"));
+    assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
 fn info_tells_the_size_of_every_step() {
     let folder = tempfile::tempdir().unwrap();
     let info = run(folder.path(), &["info", "koch", "--steps", "3", "--json"]).success();

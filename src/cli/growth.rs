@@ -30,7 +30,7 @@ pub(super) struct GrowthArguments {
     max_elements: u64,
     /// How many threads work [default: as many as there are cores]
     ///
-    /// SVG and tables are written by several; what is written does not depend on it.
+    /// What they make does not depend on how many they are.
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
     /// Says nothing but what is wrong

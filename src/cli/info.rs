@@ -1,6 +1,6 @@
 //! `kfrac info`: what a rule is, and how large its steps are.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
@@ -80,11 +80,19 @@ struct Info<'a> {
 }
 
 #[derive(Serialize)]
-struct Corners {
+pub(super) struct Corners {
     #[serde(serialize_with = "coordinates")]
     min: [f64; 2],
     #[serde(serialize_with = "coordinates")]
     max: [f64; 2],
+}
+
+/// To twelve decimals.
+impl fmt::Display for Corners {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [[a, b], [c, d]] = [self.min, self.max].map(|corner| corner.map(decimal));
+        write!(f, "[{a}, {b}] to [{c}, {d}]")
+    }
 }
 
 #[derive(Serialize)]
@@ -252,7 +260,7 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
     Some(rows)
 }
 
-fn corners(bounds: &Bounds) -> Corners {
+pub(super) fn corners(bounds: &Bounds) -> Corners {
     Corners {
         min: bounds.min().to_array(),
         max: bounds.max().to_array(),
@@ -307,18 +315,11 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         (None, note) => note.clone().unwrap_or_else(|| "unknown".into()),
     };
     line("dimension", &dimension);
-    let corners = |corners: &Corners| {
-        let [[a, b], [c, d]] = [corners.min, corners.max].map(|corner| corner.map(decimal));
-        format!("[{a}, {b}] to [{c}, {d}]")
-    };
     if let Some(bounds) = &info.bounds {
-        line(
-            "bounds",
-            &format!("{} at step {}", corners(bounds), info.steps),
-        );
+        line("bounds", &format!("{bounds} at step {}", info.steps));
     }
     if let Some(bounds) = &info.limit_bounds {
-        line("", &format!("{} in the limit", corners(bounds)));
+        line("", &format!("{bounds} in the limit"));
     }
     text.push('\n');
     match &info.elements {
@@ -329,9 +330,12 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
 }
 
 /// Twelve decimals, without zeros at the end.
-fn decimal(value: f64) -> String {
+pub(super) fn decimal(value: f64) -> String {
     let text = format!("{value:.12}");
-    text.trim_end_matches('0').trim_end_matches('.').into()
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".into(),
+        text => text.into(),
+    }
 }
 
 fn parameter_line(parameter: &Parameter) -> String {

@@ -1,0 +1,118 @@
+//! `kfrac count`: what a step has, by growing it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::catalogue::Catalogue;
+use crate::grow::{Counted, count};
+use crate::wording::grouped;
+
+use super::growth::GrowthArguments;
+use super::info::{Corners, corners, decimal};
+use super::rule::{Loaded, RuleArguments};
+use super::{Failure, help, output, progress, steps};
+
+/// Grows a rule and counts what there is, without writing it
+///
+/// Every element is put in its place: what is told are the numbers of elements, of those that are
+/// fertile and of fractals, the sum of the lengths, and the box of what is drawn, without strokes. It
+/// is what `kfrac info` tells without growing anything, found in another way.
+#[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    rule: RuleArguments,
+    /// How often fertile elements are replaced [default: what the rule says]
+    ///
+    /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
+    /// elements.
+    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
+    steps: Option<u32>,
+    #[command(flatten)]
+    growth: GrowthArguments,
+    /// As JSON
+    ///
+    /// Counts are decimal strings; bounds are null where nothing is visible.
+    #[arg(long)]
+    json: bool,
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac count koch --steps 12
+      Counts the elements of twelve steps, all 16,777,216 of them
+  kfrac count random-tree --seed 7 --json
+      For another program
+  kfrac count dragon --steps 30 --max-elements 2000000000
+      Takes a second or two
+";
+
+#[derive(Serialize)]
+struct Found<'a> {
+    name: &'a str,
+    steps: u32,
+    elements: String,
+    fertile: String,
+    fractals: String,
+    /// Null where it is beyond a double's range.
+    length: f64,
+    bounds: Option<Corners>,
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let Arguments { rule, growth, .. } = arguments;
+    let loaded = rule.load(catalogue, growth.quiet)?;
+    let steps = steps::choose(arguments.steps, &loaded)?;
+    let graph = loaded.compile(steps)?;
+    growth.check(steps, &graph, &loaded, None)?;
+    let found = progress::watched(!growth.quiet, |progress| {
+        let limits = growth.to(steps, progress);
+        if let Some(progress) = progress
+            && let Ok(Some(elements)) = graph.check_size(steps, limits.most_elements)
+        {
+            progress.expect(elements);
+        }
+        count(&graph, &limits, growth.threads())
+    });
+    let found = found.map_err(|error| growth.explain(error.into(), &loaded, Path::new("-")))?;
+    let text = if arguments.json {
+        let mut text = serde_json::to_string_pretty(&json(&found, &loaded, steps))
+            .map_err(anyhow::Error::new)?;
+        text.push('\n');
+        text
+    } else {
+        text(&found)
+    };
+    Ok(output::print(&text)?)
+}
+
+fn json<'a>(found: &Counted, loaded: &'a Loaded, steps: u32) -> Found<'a> {
+    let bounds = Some(&found.bounds).filter(|bounds| !bounds.is_empty());
+    Found {
+        name: &loaded.name,
+        steps,
+        elements: found.walked.elements.to_string(),
+        fertile: found.fertile.to_string(),
+        fractals: found.walked.fractals.to_string(),
+        length: found.length,
+        bounds: bounds.map(corners),
+    }
+}
+
+fn text(found: &Counted) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: &str| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name:<9} {value}");
+    };
+    line("elements", &grouped(&found.walked.elements.into()));
+    line("fertile", &grouped(&found.fertile.into()));
+    line("fractals", &grouped(&found.walked.fractals.into()));
+    line("length", &decimal(found.length));
+    if !found.bounds.is_empty() {
+        line("bounds", &corners(&found.bounds).to_string());
+    }
+    text
+}
