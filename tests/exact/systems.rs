@@ -177,6 +177,59 @@ fn ratios_are_powers_of_one_number_along_cycles() {
     assert!(near(found.hausdorff.value.unwrap(), 4f64.ln() / 3f64.ln()));
 }
 
+/// The self-seeding square as two sets that are equal, each made of copies of both.
+#[test]
+fn equal_sets_may_have_two_names() {
+    let third = 1.0 / 3.0;
+    let places = [[0, 0], [2, 0], [0, 2], [2, 2], [1, 1]];
+    let shift = |[x, y]: [i32; 2], by: f64| [f64::from(x) * by, f64::from(y) * by];
+    let mut maps: Vec<DAffine2> = places
+        .map(|place| similarity(third, 0.0, false, shift(place, third)))
+        .to_vec();
+    maps.extend(
+        [[4, 3], [3, 4]].map(|place| similarity(third, 0.0, false, shift(place, third / 3.0))),
+    );
+    let one = of(&maps).hausdorff;
+    assert_eq!(one.overlap, Overlap::Exact);
+    let copies = maps.iter().enumerate().flat_map(|(number, map)| {
+        [
+            (0, number % 2, *map),
+            (1, usize::from(number % 3 == 0), *map),
+        ]
+    });
+    let two = dimensions(&System::plane(copies).unwrap())
+        .unwrap()
+        .hausdorff;
+    assert_eq!(two.overlap, Overlap::Exact);
+    assert!(
+        near(one.value.unwrap(), two.value.unwrap()),
+        "{one:?} {two:?}"
+    );
+}
+
+#[test]
+fn what_has_no_finite_type_is_bounded() {
+    // With digits 0, v and Av the words 20 and 01 are the same map; A turns by an irrational part.
+    let turn = 2f64.sqrt() * 30.0;
+    let map = |shift: DVec2| similarity(0.6, turn, false, shift.into());
+    let v = DVec2::X;
+    let found = of(&[
+        map(DVec2::ZERO),
+        map(v),
+        map(map(DVec2::ZERO).transform_vector2(v)),
+    ])
+    .hausdorff;
+    assert_eq!(
+        (found.overlap, found.value),
+        (Overlap::Exact, None),
+        "{found:?}"
+    );
+    // Words without 20 grow by φ² a generation.
+    let golden = f64::midpoint(3.0, 5f64.sqrt()).ln() / -(0.6f64.ln());
+    let bound = found.upper_bound.unwrap();
+    assert!(bound >= golden && bound < golden + 0.05, "{bound} {golden}");
+}
+
 #[test]
 fn a_set_of_the_line_does_not_know_its_reflection() {
     let third = 1.0 / 3.0;
@@ -235,6 +288,9 @@ fn bad_numbers_are_refused() {
     );
     assert_eq!(dimensions(&System::plane([]).unwrap()), None);
     // A map onto a point is no similarity.
-    let flat = dimensions(&System::plane([(0, 0, line(0.0, 0.0))]).unwrap());
-    assert!(flat.is_none_or(|found| found.hausdorff.upper_bound == Some(0.0)));
+    let point = of(&[line(0.0, 0.0)]);
+    assert_eq!(
+        (point.similarity, point.hausdorff.upper_bound),
+        (None, Some(0.0))
+    );
 }

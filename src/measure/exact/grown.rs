@@ -26,31 +26,32 @@ pub fn dimensions_of_graph(graph: &Graph) -> Grown {
     if graph.draws() {
         return at_random(graph);
     }
-    let similarity = similarity_dimension(graph);
-    let mut notes: Vec<String> = similarity.note.into_iter().collect();
     let Some(dimensions) = System::of(graph).as_ref().and_then(dimensions) else {
+        let reason = similarity_dimension(graph).note;
+        let reason = reason.unwrap_or_else(|| "there is no limit set: maps do not shrink".into());
         return Grown {
             dimensions: None,
             drawn: None,
-            notes,
+            notes: vec![reason],
         };
     };
+    let mut notes = Vec::new();
     let own = dimensions.hausdorff.value;
+    if own == Some(0.0) {
+        let points = "the limit set of the fertile elements is made of single points, and the \
+                      line that is drawn has finite length";
+        notes.push(points.into());
+    }
     let drawn = if draws_infertile(graph) {
-        notes.push(
-            "the infertile elements that are drawn have the dimension 1: what is drawn has the \
-             larger of the two"
-                .into(),
-        );
+        let lines = "infertile elements that are drawn have the dimension 1: what is drawn has \
+                     the larger of the two";
+        notes.push(lines.into());
         let bound = dimensions.hausdorff.upper_bound;
         let small = bound.is_some_and(|bound| bound <= 1.0).then_some(1.0);
         own.map(|own| own.max(1.0)).or(small)
     } else {
         own
     };
-    if own == Some(0.0) {
-        notes.push("the line that is drawn has finite length".into());
-    }
     Grown {
         dimensions: Some(dimensions),
         drawn,

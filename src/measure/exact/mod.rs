@@ -7,6 +7,10 @@
 //!   similarity dimension (Moran 1946, Hutchinson 1981; Mauldin & Williams 1988 for graphs). Pieces
 //!   that coincide break it, and nothing else does where neighbour maps are finitely many (Bandt &
 //!   Graf 1992, Schief 1994, Zerner 1996).
+//!   In a system of several sets two of them may be equal, or parts of each other; that does no
+//!   harm: if no piece is there twice, finitely many neighbour maps mean that a ball of a piece's
+//!   size meets a bounded number of pieces, so the set has positive measure in its similarity
+//!   dimension, and overlaps have none.
 //! - Pieces that coincide are counted once (Ngai & Wang 2001).
 //! - The boundary of a set with inside is where neighbours touch (Strichartz & Wang 1999, Duvall &
 //!   Keesling 1999, Scheicher & Thuswaldner 2002).

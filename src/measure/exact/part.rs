@@ -84,7 +84,10 @@ impl PartDimension {
     }
 
     fn by_neighbours(&mut self, system: &System, flat: &Flat, generations: &Generations) {
-        let growth = growth(generations);
+        let similarity = self.similarity.value;
+        let agrees =
+            |growth: &f64| (libm::log(*growth) / generations.depth - similarity).abs() < SAME;
+        let growth = growth(generations).filter(agrees);
         if let Some(growth) = growth {
             let form = closed_form(growth, generations.depth);
             self.similarity.closed_form = form.or(self.similarity.closed_form.take());
@@ -166,11 +169,14 @@ impl PartDimension {
             return;
         }
         let tried = match neighbours.end {
-            End::Complete => "pieces coincide, and have too many types".into(),
-            _ => format!(
+            End::Complete => "pieces coincide, and are of too many types".into(),
+            End::Capped => format!(
                 "pieces coincide, among more than {} neighbour maps",
                 neighbours.pairs.len()
             ),
+            End::TooClose => {
+                "pieces coincide, and neighbour maps are neither equal nor apart".into()
+            }
         };
         self.give_up(&tried);
         if let (Some(bound), Some(known)) = (upper_bound(generations), self.hausdorff.upper_bound) {
