@@ -30,11 +30,11 @@ const MOST_LENGTH: usize = 40;
 /// A root beyond this means that the maps do not contract.
 const LARGEST: f64 = 16.0;
 
-/// A product of maps along a path, by its singular values in falling order.
+/// A product of maps along a path, by the logarithms of its singular values in falling order.
 struct Product {
     from: usize,
     to: usize,
-    values: [f64; 3],
+    logarithms: [f64; 3],
 }
 
 /// The affinity dimension of a strongly connected part; `None` unless all products of some length
@@ -58,11 +58,11 @@ pub(super) fn affinity(part: &System) -> Option<Affinity> {
         let products = next.iter().map(|&(from, to, matrix)| Product {
             from,
             to,
-            values: singular_values(matrix, part.space),
+            logarithms: singular_values(matrix, part.space).map(libm::log),
         });
         let [_, last] = sums;
         sums = [last, products.collect()];
-        contracts |= sums[1].iter().all(|product| product.values[0] < 1.0);
+        contracts |= sums[1].iter().all(|product| product.logarithms[0] < 0.0);
         paths = next;
         length += 1;
     }
@@ -86,21 +86,38 @@ pub(super) fn affinity(part: &System) -> Option<Affinity> {
     })
 }
 
-/// Where a falling function comes to zero.
+/// Where a falling function comes to zero, by the false position that Illinois improved (Dowell &
+/// Jarratt 1971): logarithms of sums of powers are nearly straight.
 fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, LARGEST);
-    if excess(high) > 0.0 {
-        return None;
-    }
-    if excess(low) <= 0.0 {
+    let (mut above, mut below) = (excess(low), excess(high));
+    if above <= 0.0 {
         return Some(0.0);
     }
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if excess(middle) > 0.0 {
-            low = middle
+    if below > 0.0 {
+        return None;
+    }
+    while high - low > 1e-14 * LARGEST {
+        let share = above / (above - below);
+        let between = low + (high - low) * share;
+        let inside = share.is_finite() && between > low && between < high;
+        let place = if inside {
+            between
         } else {
-            high = middle
+            f64::midpoint(low, high)
+        };
+        if place <= low || place >= high {
+            break;
+        }
+        let value = excess(place);
+        // The end that stays counts half, so that it moves next time.
+        if value > 0.0 {
+            (low, above, below) = (place, value, below / 2.0);
+        } else {
+            (high, below, above) = (place, value, above / 2.0);
+        }
+        if value.abs() < 1e-14 {
+            return Some(place);
         }
     }
     Some(high)
@@ -111,7 +128,7 @@ fn sum(products: &[Product], part: &System, s: f64) -> f64 {
     let space = part.space;
     let mut matrix = vec![0.0; part.size * part.size];
     for product in products {
-        matrix[product.from * part.size + product.to] += cost(&product.values[..space], s);
+        matrix[product.from * part.size + product.to] += cost(&product.logarithms[..space], s);
     }
     if part.size == 1 {
         return matrix[0];
@@ -119,22 +136,24 @@ fn sum(products: &[Product], part: &System, s: f64) -> f64 {
     dense_radius(matrix, part.size)
 }
 
-/// φ^s: the product of the largest singular values, the last by its share of s; beyond all of them
-/// the determinant to the power s/d.
-fn cost(values: &[f64], s: f64) -> f64 {
+/// φ^s, from logarithms of singular values: the product of the largest, the last by its share of s;
+/// beyond all of them the determinant to the power s/d.
+fn cost(logarithms: &[f64], s: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
+    let space = logarithms.len() as f64;
+    if s >= space {
+        return libm::exp(logarithms.iter().sum::<f64>() * s / space);
+    }
     let mut left = s;
-    let mut product = 1.0;
-    for &value in values {
-        product *= libm::pow(value, left.clamp(0.0, 1.0));
+    let mut sum = 0.0;
+    for logarithm in logarithms {
+        if left <= 0.0 {
+            break;
+        }
+        sum += left.min(1.0) * logarithm;
         left -= 1.0;
     }
-    if left > 0.0 {
-        let determinant: f64 = values.iter().product();
-        #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
-        let space = values.len() as f64;
-        return libm::pow(determinant, s / space);
-    }
-    product
+    libm::exp(sum)
 }
 
 /// Singular values in falling order: columns are turned in pairs until they are at right angles
