@@ -2,13 +2,16 @@
 //!
 //! The growth λ is the spectral radius of a matrix of whole numbers, so it is an algebraic integer:
 //! whole, or a quadratic one (t + √(t² − 4n))/2, up to a root. The ratio is looked for among roots,
-//! quadratic numbers and cosines of whole degrees. Candidates are few and agreement is asked for to
-//! 13 digits, so that none is found by chance.
+//! quadratic numbers and cosines of parts of the circle. Candidates are so few, and agreement is
+//! asked for to so many digits, that none is found by chance: one in some million systems.
 
 use std::fmt::Write;
 
-/// Numbers that agree to this, relatively, are the same.
-const SAME: f64 = 1e-12;
+/// Growths and ratios that agree to this, relatively, are the same.
+const SAME: f64 = 2e-13;
+
+/// Dimensions that do: the logarithms have some more rounding in them, candidates are very few.
+const SAME_DIMENSION: f64 = 1e-12;
 
 /// Powers of λ and of 1/ρ that are tried.
 const MOST_POWER: u32 = 4;
@@ -21,21 +24,24 @@ pub(super) fn closed_form(growth: f64, depth: f64) -> Option<String> {
     if growth == 1.0 {
         return Some("0".into());
     }
-    if let Some(fraction) = fraction(value, 4) {
-        return Some(fraction.text());
+    if let Some(plain) = plain(value) {
+        return Some(plain);
     }
     let base = libm::exp(depth);
-    let integer = |value| whole(value).map(|number| number.to_string());
-    let rational = |value| fraction(value, 1_000).map(Fraction::text);
+    let integer = |value| whole(value, SAME).map(|number| number.to_string());
+    let rational = |value| fraction(value, 1_000, SAME).map(Fraction::text);
     // The logarithm of √3 is better known as half of log 3.
     let surd = |value| quadratic(value, 1);
     let (a, mut over) = recognised(growth, integer).or_else(|| recognised(growth, surd))?;
     let (b, under) = recognised(base, rational).or_else(|| recognised(base, number))?;
     // D = log(over)/a · b/log(under).
     let mut factor = Fraction::new(i64::from(b), i64::from(a));
-    if let (Ok(whole), 1) = (over.parse::<i64>(), factor.under) {
-        over = whole.pow(b / a).to_string();
-        factor.over = 1;
+    if let (Ok(number), 1) = (over.parse::<i64>(), factor.under) {
+        // 2 log 3/log 7 is log 9/log 7, as long as that is short.
+        if let Some(power) = number.checked_pow(b / a).filter(|power| *power < 10_000) {
+            over = power.to_string();
+            factor.over = 1;
+        }
     }
     let (over, under) = without_powers(over, under);
     let quotient = format!("log({over})/log({under})");
@@ -55,7 +61,7 @@ pub(super) fn closed_form(growth: f64, depth: f64) -> Option<String> {
 
 /// A dimension without more than its value: whole, or a fraction of a small denominator.
 pub(super) fn plain(value: f64) -> Option<String> {
-    fraction(value, 4).map(Fraction::text)
+    fraction(value, 4, SAME_DIMENSION).map(Fraction::text)
 }
 
 /// Two whole numbers without a power that both are: log 16/log 9 is log 4/log 3.
@@ -75,7 +81,7 @@ fn without_powers(over: String, under: String) -> (String, String) {
 /// A value without rounding errors, where it is whole or a fraction of a small denominator.
 #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
 pub(super) fn settled(value: f64) -> f64 {
-    fraction(value, 4).map_or(value, |found| found.over as f64 / found.under as f64)
+    fraction(value, 4, SAME_DIMENSION).map_or(value, |found| found.over as f64 / found.under as f64)
 }
 
 /// The least power of a number that is recognised, and its form.
@@ -96,14 +102,17 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-fn whole(value: f64) -> Option<i64> {
+fn whole(value: f64, tolerance: f64) -> Option<i64> {
+    // Of larger numbers too many come near to a whole one.
+    const MOST: f64 = 1e5;
     let rounded = value.round();
-    #[expect(clippy::cast_possible_truncation, reason = "below 10⁹")]
-    (rounded.abs() < 1e9 && same(value, rounded)).then_some(rounded as i64)
+    #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
+    (rounded.abs() < MOST && (value - rounded).abs() <= tolerance * value.abs())
+        .then_some(rounded as i64)
 }
 
-/// (t + √s)/d with whole t and s, where value² d² − … leaves whole numbers: with the conjugate
-/// (t − √s)/d the product is whole over d².
+/// A quadratic number (t ± √s)/2d with whole t, s and d, where d goes up to a limit; algebraic
+/// integers only if that is 1.
 fn quadratic(value: f64, most: i64) -> Option<String> {
     const MOST_TRACE: i64 = 60;
     for under in 1..=most {
@@ -210,10 +219,10 @@ impl Fraction {
 }
 
 /// The fraction with the least denominator up to a limit that a number is.
-fn fraction(value: f64, most: i64) -> Option<Fraction> {
+fn fraction(value: f64, most: i64, tolerance: f64) -> Option<Fraction> {
     (1..=most).find_map(|under| {
         #[expect(clippy::cast_precision_loss, reason = "a small whole number")]
-        let over = whole(value * under as f64)?;
+        let over = whole(value * under as f64, tolerance)?;
         Some(Fraction { over, under })
     })
 }

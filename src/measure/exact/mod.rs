@@ -47,7 +47,7 @@ use part::{PartDimension, part_dimension};
 pub enum Overlap {
     /// No two copies have a point in common.
     None,
-    /// Copies have points in common, but the open set condition holds.
+    /// The open set condition holds, and copies touch, or come too near to tell.
     Touching,
     /// Pieces coincide.
     Exact,

@@ -126,26 +126,16 @@ fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
     sides.into_iter().any(|side| apart(side.perp()))
 }
 
-/// How copies of a set lie that no finite type tells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Contact {
-    /// No two copies have a point in common.
-    Apart,
-    /// Two copies come as near to each other as numbers tell.
-    Touch,
-    /// The search was given up.
-    Unknown,
-}
-
 /// Pairs that are looked at, at most.
 const MOST_PAIRS: usize = 30_000;
 
 /// Pieces of this size, in a system of size 1, that are not apart are taken to touch.
 const TOUCH: f64 = 1e-7;
 
-/// Whether copies touch: the larger piece of a pair is split until the balls around pieces are
-/// apart or tiny.
-pub(super) fn contact(flat: &Flat) -> Contact {
+/// Whether no two copies in a set have a point in common: the larger piece of a pair is split until
+/// the balls around pieces are apart. `false` where some come as near as numbers tell, or the search
+/// is given up.
+pub(super) fn copies_are_apart(flat: &Flat) -> bool {
     let mut copies = vec![Vec::new(); flat.size];
     for copy in &flat.copies {
         copies[copy.from].push((copy.to, copy.map));
@@ -173,7 +163,7 @@ pub(super) fn contact(flat: &Flat) -> Contact {
         }
         seen += 1;
         if seen > MOST_PAIRS {
-            return Contact::Unknown;
+            return false;
         }
         let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {
             (a, b)
@@ -181,7 +171,7 @@ pub(super) fn contact(flat: &Flat) -> Contact {
             (b, a)
         };
         if ball(&larger).1 < TOUCH {
-            return Contact::Touch;
+            return false;
         }
         let inner = copies[larger.0].iter();
         let mut pairs: Vec<_> = inner
@@ -191,5 +181,5 @@ pub(super) fn contact(flat: &Flat) -> Contact {
         pairs.sort_by(|x, y| gap(&y.0, &y.1).total_cmp(&gap(&x.0, &x.1)));
         open.extend(pairs);
     }
-    Contact::Apart
+    true
 }

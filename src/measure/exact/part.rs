@@ -6,7 +6,7 @@ use super::closed_form::{closed_form, plain, settled};
 use super::distinct::upper_bound;
 use super::hull::Flat;
 use super::neighbours::{End, Neighbours};
-use super::open_set::{Contact, contact, hulls_are_open_sets};
+use super::open_set::{copies_are_apart, hulls_are_open_sets};
 use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
 use super::system::System;
@@ -186,7 +186,7 @@ impl PartDimension {
 
     /// Not of finite type, as far as is known.
     fn by_open_set(&mut self, flat: &Flat, tried: &str) {
-        if contact(flat) == Contact::Apart {
+        if copies_are_apart(flat) {
             self.decide(
                 Overlap::None,
                 "open set condition: no two copies touch".into(),
