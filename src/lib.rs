@@ -17,7 +17,7 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   similarity dimension
+//!     ├── measure   dimensions, exactly where they can be
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed

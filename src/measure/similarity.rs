@@ -65,6 +65,18 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     }
 }
 
+/// The similarity dimension of a strongly connected part, given the ratios between its objects, and
+/// whether Moran's equation gives it: all objects have the same ratios.
+pub(super) fn dimension_of_part(
+    size: usize,
+    ratios: impl Iterator<Item = (usize, usize, f64)>,
+) -> (f64, bool) {
+    let edges = ratios.map(|(from, to, ratio)| Edge { from, to, ratio });
+    let edges = edges.collect();
+    let part = Part { size, edges }.contracted();
+    (part.dimension(), part.moran_ratios().is_some())
+}
+
 struct Edge {
     from: usize,
     to: usize,
@@ -142,7 +154,7 @@ fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
 }
 
 /// The number of each object's strongly connected component.
-fn components(targets: &[Vec<usize>]) -> Vec<usize> {
+pub(super) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
     const NONE: usize = usize::MAX;
     let size = targets.len();
     let (mut order, mut low, mut component) = (vec![NONE; size], vec![0; size], vec![NONE; size]);

@@ -230,8 +230,9 @@ impl Generator {
         points
     }
 
+    /// The points for draws of one's own, of each variable in the order of listing.
     #[inline]
-    fn evaluate_with(
+    pub(crate) fn evaluate_with(
         &self,
         moment: &Moment,
         draw: impl Fn(&Variable, &[f64]) -> f64,

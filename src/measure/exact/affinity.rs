@@ -1,0 +1,182 @@
+//! The affinity dimension (Falconer 1988) of maps that are not similarities.
+//!
+//! A map's copy of a ball is an ellipsoid; the singular value function φ^s says what covering it by
+//! balls costs. The s at which the sum of φ^s over all products of n maps is 1 never lies below the
+//! box and Hausdorff dimension, for any n, since φ^s(AB) ≤ φ^s(A) φ^s(B).
+
+use glam::DMat3;
+
+use super::spectral::dense_radius;
+use super::system::System;
+
+/// An affinity dimension, which bounds the dimension of the set from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affinity {
+    /// A bound from products of the length below, or one less.
+    pub upper_bound: f64,
+    /// What the bounds tend to: the s at which sums over products of two successive lengths are
+    /// equal. Sharper, but no bound.
+    pub estimate: f64,
+    /// The length of the longest products.
+    pub length: usize,
+}
+
+/// Products of one length, at most.
+const MOST_PRODUCTS: usize = 10_000;
+
+/// Longer products are not needed.
+const MOST_LENGTH: usize = 40;
+
+/// A root beyond this means that the maps do not contract.
+const LARGEST: f64 = 16.0;
+
+/// A product of maps along a path, by the logarithms of its singular values in falling order.
+struct Product {
+    from: usize,
+    to: usize,
+    logarithms: [f64; 3],
+}
+
+/// The affinity dimension of a strongly connected part; `None` unless all products of some length
+/// contract, as far as they are followed.
+pub(super) fn affinity(part: &System) -> Option<Affinity> {
+    let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
+        .map(|set| (set, set, DMat3::IDENTITY))
+        .collect();
+    let mut sums: [Vec<Product>; 2] = [Vec::new(), Vec::new()];
+    let mut contracts = false;
+    let mut length = 0;
+    while length < MOST_LENGTH {
+        let mut next = Vec::new();
+        for (from, to, matrix) in &paths {
+            let copies = part.copies.iter().filter(|copy| copy.from == *to);
+            next.extend(copies.map(|copy| (*from, copy.to, *matrix * copy.map.matrix3)));
+        }
+        if next.len() > MOST_PRODUCTS {
+            break;
+        }
+        let products = next.iter().map(|&(from, to, matrix)| Product {
+            from,
+            to,
+            logarithms: singular_values(matrix, part.space).map(libm::log),
+        });
+        let [_, last] = sums;
+        sums = [last, products.collect()];
+        contracts |= sums[1].iter().all(|product| product.logarithms[0] < 0.0);
+        paths = next;
+        length += 1;
+    }
+    if !contracts {
+        return None;
+    }
+    let [shorter, longer] = &sums;
+    let bounds = sums.iter().filter(|products| !products.is_empty());
+    let bounds = bounds.filter_map(|products| root(|s| libm::log(sum(products, part, s))));
+    let upper_bound = bounds.min_by(f64::total_cmp)?;
+    let between = |s| libm::log(sum(longer, part, s)) - libm::log(sum(shorter, part, s));
+    let estimate = if shorter.is_empty() {
+        None
+    } else {
+        root(between)
+    };
+    Some(Affinity {
+        upper_bound,
+        estimate: estimate.unwrap_or(upper_bound).min(upper_bound),
+        length,
+    })
+}
+
+/// Where a falling function comes to zero, by the false position that Illinois improved (Dowell &
+/// Jarratt 1971): logarithms of sums of powers are nearly straight.
+fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
+    let (mut low, mut high) = (0.0, LARGEST);
+    let (mut above, mut below) = (excess(low), excess(high));
+    if above <= 0.0 {
+        return Some(0.0);
+    }
+    if below > 0.0 {
+        return None;
+    }
+    while high - low > 1e-14 * LARGEST {
+        let share = above / (above - below);
+        let between = low + (high - low) * share;
+        let inside = share.is_finite() && between > low && between < high;
+        let place = if inside {
+            between
+        } else {
+            f64::midpoint(low, high)
+        };
+        if place <= low || place >= high {
+            break;
+        }
+        let value = excess(place);
+        // The end that stays counts half, so that it moves next time.
+        if value > 0.0 {
+            (low, above, below) = (place, value, below / 2.0);
+        } else {
+            (high, below, above) = (place, value, above / 2.0);
+        }
+        if value.abs() < 1e-14 {
+            return Some(place);
+        }
+    }
+    Some(high)
+}
+
+/// The spectral radius of the matrix of sums of φ^s between sets.
+fn sum(products: &[Product], part: &System, s: f64) -> f64 {
+    let space = part.space;
+    let mut matrix = vec![0.0; part.size * part.size];
+    for product in products {
+        matrix[product.from * part.size + product.to] += cost(&product.logarithms[..space], s);
+    }
+    if part.size == 1 {
+        return matrix[0];
+    }
+    dense_radius(matrix, part.size)
+}
+
+/// φ^s, from logarithms of singular values: the product of the largest, the last by its share of s;
+/// beyond all of them the determinant to the power s/d.
+fn cost(logarithms: &[f64], s: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
+    let space = logarithms.len() as f64;
+    if s >= space {
+        return libm::exp(logarithms.iter().sum::<f64>() * s / space);
+    }
+    let mut left = s;
+    let mut sum = 0.0;
+    for logarithm in logarithms {
+        if left <= 0.0 {
+            break;
+        }
+        sum += left.min(1.0) * logarithm;
+        left -= 1.0;
+    }
+    libm::exp(sum)
+}
+
+/// Singular values in falling order: columns are turned in pairs until they are at right angles
+/// (Hestenes 1958). In the plane the third column already is, and is left out.
+fn singular_values(matrix: DMat3, space: usize) -> [f64; 3] {
+    let mut columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    for _ in 0..12 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            let (a, b) = (columns[p], columns[q]);
+            let product = a.dot(b);
+            if product == 0.0 {
+                continue;
+            }
+            let theta = (b.length_squared() - a.length_squared()) / (2.0 * product);
+            let tangent = 1.0_f64.copysign(theta) / (theta.abs() + libm::hypot(theta, 1.0));
+            let cosine = 1.0 / libm::hypot(tangent, 1.0);
+            let sine = tangent * cosine;
+            columns[p] = cosine * a - sine * b;
+            columns[q] = sine * a + cosine * b;
+        }
+    }
+    let mut values = columns.map(|column| column.length());
+    values[space..].fill(0.0);
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}

@@ -1,0 +1,66 @@
+//! An upper bound where types do not end: distinct pieces counted one by one.
+
+use glam::DAffine3;
+
+use super::neighbours::{Pair, Register};
+use super::sizes::{Generations, Piece};
+
+/// Pieces of all generations of a set, at most.
+const MOST_PIECES: usize = 60_000;
+
+/// An upper bound of the dimension: log N / (n log 1/ρ) with the most distinct pieces N that a set
+/// has in generation n, for the n that gives the least.
+///
+/// The most of all sets cannot more than multiply: N(m + n) ≤ N(m) N(n).
+pub(super) fn upper_bound(generations: &Generations) -> Option<f64> {
+    let counts: Vec<Vec<usize>> = (0..generations.size())
+        .map(|set| counts(generations, set, MOST_PIECES / generations.size()))
+        .collect();
+    let last = counts.iter().map(Vec::len).min()?;
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "counts of pieces and generations"
+    )]
+    let bounds = (1..last).map(|generation| {
+        let most = counts.iter().map(|counts| counts[generation]).max();
+        libm::log(most.unwrap_or(0) as f64) / (generation as f64 * generations.depth)
+    });
+    bounds.min_by(f64::total_cmp)
+}
+
+/// The number of distinct pieces of a set by generation, as far as the limit allows.
+fn counts(generations: &Generations, set: usize, limit: usize) -> Vec<usize> {
+    let grow = libm::exp(generations.depth);
+    let mut pieces = vec![(Piece { set, wait: 0 }, DAffine3::IDENTITY)];
+    let mut counts = vec![1];
+    let mut total = 0;
+    loop {
+        let mut register = Register::default();
+        let mut next = Vec::new();
+        // Pieces are compared in the unit of their generation.
+        for (piece, map) in &pieces {
+            for step in generations.steps(*piece) {
+                let mut map = *map * step.map;
+                map.matrix3 *= grow;
+                map.translation *= grow;
+                let pair = Pair {
+                    first: step.piece,
+                    second: step.piece,
+                    map,
+                };
+                if register.number(pair).1 {
+                    next.push((step.piece, map));
+                }
+            }
+            if total + next.len() > limit {
+                return counts;
+            }
+        }
+        if register.too_close {
+            return counts;
+        }
+        total += next.len();
+        counts.push(next.len());
+        pieces = next;
+    }
+}

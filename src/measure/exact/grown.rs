@@ -1,0 +1,101 @@
+//! The dimensions of what a graph grows.
+
+use crate::graph::{Graph, Replacement};
+use crate::measure::similarity_dimension;
+
+use super::closed_form::{plain, settled};
+use super::random::expected_dimension;
+use super::{Dimensions, Equation, Hausdorff, Overlap, Similar, System, dimensions};
+
+/// What is known exactly of the dimensions of a graph's limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grown {
+    /// The dimensions of what fertile elements become; `None` where there is no limit, or it is not
+    /// made of copies of itself.
+    pub dimensions: Option<Dimensions>,
+    /// The Hausdorff dimension of all that is drawn in the limit, with the elements that stay
+    /// infertile and are visible; `None` where it is not known.
+    pub drawn: Option<f64>,
+    /// What is to be said about it.
+    pub notes: Vec<String>,
+}
+
+/// The dimensions of a graph's limit, as far as they are known exactly.
+#[must_use]
+pub fn dimensions_of_graph(graph: &Graph) -> Grown {
+    if graph.draws() {
+        return at_random(graph);
+    }
+    let Some(dimensions) = System::of(graph).as_ref().and_then(dimensions) else {
+        let reason = similarity_dimension(graph).note;
+        let reason = reason.unwrap_or_else(|| "there is no limit set: maps do not shrink".into());
+        return Grown {
+            dimensions: None,
+            drawn: None,
+            notes: vec![reason],
+        };
+    };
+    let mut notes = Vec::new();
+    let own = dimensions.hausdorff.value;
+    if own == Some(0.0) {
+        let points = "the limit set of the fertile elements is made of single points, and the \
+                      line that is drawn has finite length";
+        notes.push(points.into());
+    }
+    let drawn = if draws_infertile(graph) {
+        let lines = "infertile elements that are drawn have the dimension 1: what is drawn has \
+                     the larger of the two";
+        notes.push(lines.into());
+        let bound = dimensions.hausdorff.upper_bound;
+        let small = bound.is_some_and(|bound| bound <= 1.0).then_some(1.0);
+        own.map(|own| own.max(1.0)).or(small)
+    } else {
+        own
+    };
+    Grown {
+        dimensions: Some(dimensions),
+        drawn,
+        notes,
+    }
+}
+
+fn at_random(graph: &Graph) -> Grown {
+    match expected_dimension(graph) {
+        Err(reason) => Grown {
+            dimensions: None,
+            drawn: None,
+            notes: vec![format!("the ratios are drawn: {reason}")],
+        },
+        Ok(value) => {
+            let value = settled(value);
+            let method = "for almost all draws, if copies do not overlap (Falconer 1986)";
+            let dimensions = Dimensions {
+                similarity: Some(Similar {
+                    value,
+                    equation: Equation::Expected,
+                    closed_form: plain(value),
+                }),
+                affinity: None,
+                hausdorff: Hausdorff {
+                    value: None,
+                    closed_form: None,
+                    upper_bound: Some(value.min(2.0)),
+                    overlap: Overlap::Unknown,
+                    method: method.into(),
+                },
+                boundary: None,
+            };
+            Grown {
+                dimensions: Some(dimensions),
+                drawn: None,
+                notes: vec!["the expected sum of ratio^D is 1".into()],
+            }
+        }
+    }
+}
+
+/// Whether elements that are drawn stay infertile.
+fn draws_infertile(graph: &Graph) -> bool {
+    let mut objects = graph.objects().iter();
+    objects.any(|object| object.visible && matches!(object.replacement, Replacement::Kept))
+}

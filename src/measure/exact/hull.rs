@@ -1,0 +1,157 @@
+//! The smallest space that a set lies in, and its maps there.
+//!
+//! Two maps that differ only off that space put a copy in the same place: whether copies coincide
+//! is asked inside it. A Cantor set in the plane is a set of the line.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::system::{Copy, System, ratio};
+
+/// A strongly connected system of similarities in coordinates of its own.
+#[derive(Clone, Debug)]
+pub(super) struct Flat {
+    /// The dimension of the affine hull of each set.
+    pub(super) dimension: usize,
+    pub(super) size: usize,
+    /// Maps in the coordinates of the hulls: 0 is a point of the set, the first `dimension` axes
+    /// span its hull, and the others are scaled by the ratio. Sets are about 1 large.
+    pub(super) copies: Vec<Copy>,
+}
+
+/// What is smaller, in a system of size 1, is taken for zero.
+const FLAT: f64 = 1e-8;
+
+impl Flat {
+    /// Precondition: all ratios are below 1, and every set holds a copy.
+    pub(super) fn of(system: &System) -> Self {
+        let points = points(system);
+        let mut extent = 0.0;
+        for copy in &system.copies {
+            let away = copy.map.transform_point3(points[copy.to]) - points[copy.from];
+            extent = f64::max(extent, away.length());
+        }
+        let unit = if extent > 0.0 { extent } else { 1.0 };
+        let mut hulls: Vec<Vec<DVec3>> = vec![Vec::new(); system.size];
+        // A hull grows in at least one set a round, three times at most in each.
+        for _ in 0..=3 * system.size {
+            let mut grows = false;
+            for copy in &system.copies {
+                let away = copy.map.transform_point3(points[copy.to]) - points[copy.from];
+                let turned = hulls[copy.to].clone().into_iter();
+                let turned = turned.map(|axis| (copy.map.matrix3 * axis).normalize());
+                for vector in std::iter::once(away / unit).chain(turned) {
+                    grows |= extend(&mut hulls[copy.from], vector);
+                }
+            }
+            if !grows {
+                break;
+            }
+        }
+        let dimension = hulls.iter().map(Vec::len).max().unwrap_or(0);
+        let bases: Vec<DMat3> = hulls.into_iter().map(completed).collect();
+        let copies = system.copies.iter().map(|copy| {
+            let away = copy.map.transform_point3(points[copy.to]) - points[copy.from];
+            let [inner, outer] = [bases[copy.to], bases[copy.from].transpose()];
+            let map = DAffine3 {
+                matrix3: outer * copy.map.matrix3 * inner,
+                translation: outer * away / unit,
+            };
+            Copy {
+                map: within(map, dimension),
+                ..*copy
+            }
+        });
+        Self {
+            dimension,
+            size: system.size,
+            copies: copies.collect(),
+        }
+    }
+}
+
+/// A point of every set: the limit along the first copies.
+fn points(system: &System) -> Vec<DVec3> {
+    let mut first = vec![None; system.size];
+    for copy in &system.copies {
+        first[copy.from].get_or_insert(copy);
+    }
+    let mut points = vec![DVec3::ZERO; system.size];
+    // As many rounds as a ratio of 0.99 takes to reach the last digit.
+    for _ in 0..4_000 {
+        let next: Vec<DVec3> = first
+            .iter()
+            .map(|copy| {
+                copy.map_or(DVec3::ZERO, |copy| {
+                    copy.map.transform_point3(points[copy.to])
+                })
+            })
+            .collect();
+        let still = next == points;
+        points = next;
+        if still {
+            break;
+        }
+    }
+    points
+}
+
+/// Adds the part of a vector that is new to an orthonormal list.
+fn extend(axes: &mut Vec<DVec3>, vector: DVec3) -> bool {
+    let remainder = |vector: DVec3| {
+        axes.iter()
+            .fold(vector, |left, axis| left - left.dot(*axis) * *axis)
+    };
+    // Twice is enough (Kahan).
+    let left = remainder(remainder(vector));
+    let new = axes.len() < 3 && left.length() > FLAT;
+    if new {
+        axes.push(left.normalize());
+    }
+    new
+}
+
+/// An orthonormal list with the axes that it lacks.
+fn completed(mut axes: Vec<DVec3>) -> DMat3 {
+    // The largest remainder is taken, so that nothing is lost to rounding.
+    while axes.len() < 3 {
+        let remainder = |vector: DVec3| {
+            axes.iter()
+                .fold(vector, |left, axis| left - left.dot(*axis) * *axis)
+        };
+        let all = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| remainder(remainder(axis)));
+        let longest =
+            all.into_iter().fold(
+                DVec3::ZERO,
+                |a, b| if b.length() > a.length() { b } else { a },
+            );
+        axes.push(longest.normalize());
+    }
+    DMat3::from_cols(axes[0], axes[1], axes[2])
+}
+
+/// A map without what it does off the first axes, but for the scale.
+fn within(map: DAffine3, dimension: usize) -> DAffine3 {
+    let ratio = ratio(map.matrix3);
+    let keep = |axis: usize, vector: DVec3| {
+        let mut kept = vector;
+        for row in 0..3 {
+            if row >= dimension || axis >= dimension {
+                kept[row] = if row == axis { ratio } else { 0.0 };
+            }
+        }
+        kept
+    };
+    let linear = map.matrix3;
+    let mut translation = map.translation;
+    for row in dimension..3 {
+        translation[row] = 0.0;
+    }
+    DAffine3 {
+        matrix3: DMat3::from_cols(
+            keep(0, linear.x_axis),
+            keep(1, linear.y_axis),
+            keep(2, linear.z_axis),
+        ),
+        translation,
+    }
+}

@@ -1,0 +1,185 @@
+//! Systems that are not of finite type: the inside of the convex hulls as an open set, and copies
+//! that lie apart.
+//!
+//! If the hulls of copies overlap nowhere but at their edges, the open set condition holds whatever
+//! the ratios and turns are (Moran 1946, Hutchinson 1981).
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use super::balls::Balls;
+use super::hull::Flat;
+use super::system::ratio;
+
+/// Rounds in which a hull grows, and corners that it may get.
+const MOST_ROUNDS: usize = 600;
+const MOST_CORNERS: usize = 500;
+
+/// What is nearer to a side of the hull, in a system of size 1, lies on it.
+const STILL: f64 = 1e-13;
+
+/// Hulls that overlap by less, in a system of size 1, have sides in common.
+const SLACK: f64 = 1e-10;
+
+/// Whether the inside of the convex hulls is a feasible open set: the hulls of the copies in each
+/// set overlap in sides only. `false` where that is not so, or hulls have too many corners.
+pub(super) fn hulls_are_open_sets(flat: &Flat) -> bool {
+    if flat.dimension == 0 || flat.dimension > 2 {
+        return false;
+    }
+    let Some(hulls) = hulls(flat) else {
+        return false;
+    };
+    let copies: Vec<(usize, Vec<DVec2>)> = flat
+        .copies
+        .iter()
+        .map(|copy| (copy.from, moved(&copy.map, &hulls[copy.to])))
+        .collect();
+    copies.iter().enumerate().all(|(number, (from, a))| {
+        let others = copies[..number].iter().filter(|(other, _)| other == from);
+        others.into_iter().all(|(_, b)| separated(a, b))
+    })
+}
+
+fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
+    let image = |point: &DVec2| map.transform_point3(point.extend(0.0)).truncate();
+    points.iter().map(image).collect()
+}
+
+/// The corners of every set's convex hull, counter-clockwise.
+fn hulls(flat: &Flat) -> Option<Vec<Vec<DVec2>>> {
+    let mut hulls = vec![vec![DVec2::ZERO]; flat.size];
+    for _ in 0..MOST_ROUNDS {
+        let mut points: Vec<Vec<DVec2>> = hulls.clone();
+        for copy in &flat.copies {
+            points[copy.from].extend(moved(&copy.map, &hulls[copy.to]));
+        }
+        let next: Vec<Vec<DVec2>> = points.into_iter().map(convex).collect();
+        if next.iter().any(|corners| corners.len() > MOST_CORNERS) {
+            return None;
+        }
+        let still = next.iter().zip(&hulls).all(|(next, hull)| {
+            let near = |a: &DVec2| hull.iter().any(|b| a.distance(*b) < STILL);
+            next.len() == hull.len() && next.iter().all(near)
+        });
+        hulls = next;
+        if still {
+            return Some(hulls);
+        }
+    }
+    None
+}
+
+/// The corners of a convex hull (Andrew 1979).
+fn convex(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup_by(|a, b| a.distance(*b) < STILL);
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain[..] {
+                let along = point - a;
+                if along.perp_dot(b - a) < -STILL * along.length() {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    if points.len() < 3 {
+        return points;
+    }
+    let mut corners = half(&mut points.iter().copied());
+    corners.extend(half(&mut points.iter().rev().copied()));
+    corners
+}
+
+/// Whether a line separates two convex polygons, along a side of one of them.
+fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
+    let sides = |corners: &[DVec2]| -> Vec<DVec2> {
+        let next = corners.iter().cycle().skip(1);
+        let sides = corners.iter().zip(next);
+        sides
+            .map(|(from, to)| (to - from).normalize_or_zero())
+            .collect()
+    };
+    let apart = |axis: DVec2| {
+        let range = |corners: &[DVec2]| {
+            let along = corners.iter().map(|corner| corner.dot(axis));
+            along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
+                (low.min(at), high.max(at))
+            })
+        };
+        let ((a_low, a_high), (b_low, b_high)) = (range(a), range(b));
+        a_high <= b_low + SLACK || b_high <= a_low + SLACK
+    };
+    let sides: Vec<DVec2> = sides(a).into_iter().chain(sides(b)).collect();
+    let flat = sides
+        .iter()
+        .all(|side| side.perp_dot(sides[0]).abs() < SLACK);
+    // Intervals of a line are apart along it, or touch.
+    if flat {
+        return apart(sides[0]);
+    }
+    sides.into_iter().any(|side| apart(side.perp()))
+}
+
+/// Pairs that are looked at, at most.
+const MOST_PAIRS: usize = 30_000;
+
+/// Pieces of this size, in a system of size 1, that are not apart are taken to touch.
+const TOUCH: f64 = 1e-7;
+
+/// Whether no two copies in a set have a point in common: the larger piece of a pair is split until
+/// the balls around pieces are apart. `false` where some come as near as numbers tell, or the search
+/// is given up.
+pub(super) fn copies_are_apart(flat: &Flat) -> bool {
+    let mut copies = vec![Vec::new(); flat.size];
+    for copy in &flat.copies {
+        copies[copy.from].push((copy.to, copy.map));
+    }
+    let balls = Balls::of(copies.clone());
+    let ball = |(set, map): &(usize, DAffine3)| -> (DVec3, f64) {
+        let centre = map.transform_point3(balls.centres[*set]);
+        (centre, ratio(map.matrix3) * balls.radii[*set])
+    };
+    // How far the balls of two pieces are apart; negative where they meet.
+    let gap = |a: &(usize, DAffine3), b: &(usize, DAffine3)| {
+        let ((a, r), (b, s)) = (ball(a), ball(b));
+        a.distance(b) - (r + s) * (1.0 + 1e-9)
+    };
+    let mut open = Vec::new();
+    for copies in &copies {
+        for (number, a) in copies.iter().enumerate() {
+            open.extend(copies[..number].iter().map(|b| (*a, *b)));
+        }
+    }
+    let mut seen = 0;
+    while let Some((a, b)) = open.pop() {
+        if gap(&a, &b) > 0.0 {
+            continue;
+        }
+        seen += 1;
+        if seen > MOST_PAIRS {
+            return false;
+        }
+        let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        if ball(&larger).1 < TOUCH {
+            return false;
+        }
+        let inner = copies[larger.0].iter();
+        let mut pairs: Vec<_> = inner
+            .map(|(to, map)| ((*to, larger.1 * *map), smaller))
+            .collect();
+        // The nearest is looked at first.
+        pairs.sort_by(|x, y| gap(&y.0, &y.1).total_cmp(&gap(&x.0, &x.1)));
+        open.extend(pairs);
+    }
+    true
+}

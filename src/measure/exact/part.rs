@@ -1,0 +1,227 @@
+//! The dimension of a strongly connected part of a system.
+
+use crate::measure::similarity::dimension_of_part;
+
+use super::closed_form::{closed_form, plain, settled};
+use super::distinct::upper_bound;
+use super::hull::Flat;
+use super::neighbours::{End, Neighbours};
+use super::open_set::{copies_are_apart, hulls_are_open_sets};
+use super::sizes::{Generations, Piece};
+use super::spectral::spectral_radius;
+use super::system::System;
+use super::types::Types;
+use super::{Boundary, Equation, Hausdorff, Overlap, Similar};
+
+/// What is known of a part.
+#[derive(Clone, Debug)]
+pub(super) struct PartDimension {
+    pub(super) similarity: Similar,
+    pub(super) hausdorff: Hausdorff,
+    pub(super) boundary: Option<Boundary>,
+}
+
+/// Dimensions that agree to this are the same.
+const SAME: f64 = 1e-10;
+
+/// The dimension of a part: similarities with ratios below 1.
+pub(super) fn part_dimension(system: &System) -> PartDimension {
+    let (value, moran) = dimension_of_part(system.size, system.ratios());
+    let value = settled(value);
+    let equation = if moran {
+        Equation::Moran
+    } else {
+        Equation::Spectral
+    };
+    let mut part = PartDimension {
+        similarity: Similar {
+            value,
+            equation,
+            closed_form: plain(value),
+        },
+        hausdorff: Hausdorff {
+            value: None,
+            closed_form: None,
+            upper_bound: Some(value.min(bound_of_space(system))),
+            overlap: Overlap::Unknown,
+            method: String::new(),
+        },
+        boundary: None,
+    };
+    if value == 0.0 {
+        part.decide(
+            Overlap::None,
+            "one copy in each: the limit is a point".into(),
+        );
+        return part;
+    }
+    let flat = Flat::of(system);
+    match Generations::of(&flat) {
+        Some(generations) => part.by_neighbours(system, &flat, &generations),
+        None => part.by_open_set(&flat, "the ratios are not powers of one number"),
+    }
+    part
+}
+
+#[expect(clippy::cast_precision_loss, reason = "2 or 3")]
+fn bound_of_space(system: &System) -> f64 {
+    system.space as f64
+}
+
+impl PartDimension {
+    /// The set has its similarity dimension.
+    fn decide(&mut self, overlap: Overlap, method: String) {
+        let Similar {
+            value, closed_form, ..
+        } = self.similarity.clone();
+        self.hausdorff = Hausdorff {
+            value: Some(value),
+            closed_form,
+            upper_bound: Some(value),
+            overlap,
+            method,
+        };
+    }
+
+    fn by_neighbours(&mut self, system: &System, flat: &Flat, generations: &Generations) {
+        let similarity = self.similarity.value;
+        let agrees =
+            |growth: &f64| (libm::log(*growth) / generations.depth - similarity).abs() < SAME;
+        let growth = growth(generations).filter(agrees);
+        if let Some(growth) = growth {
+            let form = closed_form(growth, generations.depth);
+            self.similarity.closed_form = form.or(self.similarity.closed_form.take());
+        }
+        let neighbours = Neighbours::of(generations);
+        let count = neighbours.pairs.len();
+        if neighbours.coincide.contains(&true) {
+            self.by_types(generations, &neighbours);
+            return;
+        }
+        match neighbours.end {
+            End::Complete => {}
+            End::Capped => {
+                let tried = format!("more than {count} neighbour maps");
+                self.by_open_set(flat, &tried);
+                return;
+            }
+            End::TooClose => {
+                self.by_open_set(flat, "neighbour maps that are neither equal nor apart");
+                return;
+            }
+        }
+        let touching = neighbours.touching();
+        let left = touching.iter().filter(|touching| **touching).count();
+        if left == 0 {
+            let method = "open set condition: no two copies touch, by neighbour maps";
+            self.decide(Overlap::None, method.into());
+            return;
+        }
+        let targets: Vec<Vec<usize>> = neighbours
+            .next
+            .iter()
+            .enumerate()
+            .map(|(pair, next)| {
+                let next = next.iter().filter(|_| touching[pair]);
+                let next = next.map(|successor| successor.pair as usize);
+                next.filter(|&pair| touching[pair]).collect()
+            })
+            .collect();
+        let spread = spectral_radius(&targets);
+        let (Some(growth), Some(spread)) = (growth, spread) else {
+            self.by_open_set(flat, "a spectral radius was not found");
+            return;
+        };
+        if spread > growth * (1.0 - SAME) {
+            self.by_open_set(flat, "different sets overlap as much as they grow");
+            return;
+        }
+        let method = format!(
+            "open set condition: none of {count} neighbour maps is the identity (Bandt & Graf 1992)"
+        );
+        self.decide(Overlap::Touching, method);
+        let full = flat.dimension == system.space
+            && (self.similarity.value - bound_of_space(system)).abs() < SAME;
+        if full {
+            self.boundary = Some(Boundary {
+                value: settled(libm::log(spread) / generations.depth),
+                closed_form: closed_form(spread, generations.depth),
+                method: format!("spectral radius of {left} touching neighbour maps"),
+            });
+        }
+    }
+
+    /// Pieces coincide.
+    fn by_types(&mut self, generations: &Generations, neighbours: &Neighbours) {
+        self.hausdorff.overlap = Overlap::Exact;
+        let types = (neighbours.end == End::Complete)
+            .then(|| Types::of(generations, neighbours))
+            .flatten();
+        if let Some(types) = types {
+            let value = settled(libm::log(types.growth) / generations.depth);
+            self.hausdorff.value = Some(value);
+            self.hausdorff.upper_bound = Some(value);
+            self.hausdorff.closed_form = closed_form(types.growth, generations.depth);
+            self.hausdorff.method = format!(
+                "growth of distinct pieces, of {} types (Ngai & Wang 2001)",
+                types.count
+            );
+            return;
+        }
+        let tried = match neighbours.end {
+            End::Complete => "pieces coincide, and are of too many types".into(),
+            End::Capped => format!(
+                "pieces coincide, among more than {} neighbour maps",
+                neighbours.pairs.len()
+            ),
+            End::TooClose => {
+                "pieces coincide, and neighbour maps are neither equal nor apart".into()
+            }
+        };
+        self.give_up(&tried);
+        if let (Some(bound), Some(known)) = (upper_bound(generations), self.hausdorff.upper_bound) {
+            self.hausdorff.upper_bound = Some(known.min(bound));
+        }
+    }
+
+    /// Not of finite type, as far as is known.
+    fn by_open_set(&mut self, flat: &Flat, tried: &str) {
+        if copies_are_apart(flat) {
+            self.decide(
+                Overlap::None,
+                "open set condition: no two copies touch".into(),
+            );
+        } else if hulls_are_open_sets(flat) {
+            let method = "open set condition: the convex hulls of copies overlap in sides only";
+            self.decide(Overlap::Touching, method.into());
+        } else if flat.dimension > 2 {
+            self.give_up(&format!("{tried}; convex hulls in space are not looked at"));
+        } else {
+            self.give_up(&format!("{tried}; the convex hulls of copies overlap"));
+        }
+    }
+
+    fn give_up(&mut self, tried: &str) {
+        self.hausdorff.method = format!("not decided: {tried}");
+    }
+}
+
+/// How pieces multiply from generation to generation.
+fn growth(generations: &Generations) -> Option<f64> {
+    let start = |set| Piece { set, wait: 0 };
+    let mut pieces: Vec<Piece> = (0..generations.size()).map(start).collect();
+    let mut numbers: std::collections::HashMap<Piece, usize> =
+        pieces.iter().copied().zip(0..).collect();
+    let mut targets: Vec<Vec<usize>> = Vec::new();
+    while let Some(&piece) = pieces.get(targets.len()) {
+        let mut next = Vec::new();
+        for step in generations.steps(piece) {
+            next.push(*numbers.entry(step.piece).or_insert_with(|| {
+                pieces.push(step.piece);
+                pieces.len() - 1
+            }));
+        }
+        targets.push(next);
+    }
+    spectral_radius(&targets)
+}

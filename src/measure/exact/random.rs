@@ -1,0 +1,240 @@
+//! Rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams 1986), or spectral
+//! radius 1 of the matrix of these expectations.
+
+use crate::expression::{Dependence, Program};
+use crate::graph::{Alternative, Graph, Replacement};
+use crate::rule::draw::Distribution;
+use crate::rule::{Generator, Moment, Placement, Rule, Selection};
+
+use super::spectral::dense_radius;
+
+/// Draws of one generator that are looked at, at most.
+const MOST_DRAWS: usize = 40_000;
+
+/// A ratio between objects, with its probability.
+struct Ratio {
+    from: usize,
+    to: usize,
+    ratio: f64,
+    weight: f64,
+}
+
+/// The dimension of a random rule, for almost all seeds if copies do not overlap; or why it is not
+/// known.
+pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
+    let mut ratios = Vec::new();
+    for object in graph.behaviours() {
+        match &object.replacement {
+            Replacement::Kept => {}
+            Replacement::Beyond => return Err("what replaces an element changes without end"),
+            Replacement::Fixed(production) => {
+                for (placement, instance) in production.placed_instances() {
+                    if placement == Placement::SeedsAsInitiator {
+                        return Err("seeds are placed as the initiator");
+                    }
+                    let place = [object.behaviour, instance.object];
+                    push(&mut ratios, graph, place, instance.length, 1.0);
+                }
+            }
+            Replacement::Evaluated(alternatives) => {
+                for (alternative, weight) in weighted(graph.evaluated(), alternatives)? {
+                    let from = object.behaviour;
+                    push_draws(&mut ratios, graph, from, alternative, weight)?;
+                }
+            }
+        }
+    }
+    if ratios.iter().any(|ratio| ratio.ratio >= 1.0) {
+        return Err("a generator may not shrink");
+    }
+    let size = graph.behaviours().count();
+    let radius = |dimension: f64| {
+        let mut matrix = vec![0.0; size * size];
+        for ratio in &ratios {
+            let share = ratio.weight * libm::pow(ratio.ratio, dimension);
+            matrix[ratio.from * size + ratio.to] += share;
+        }
+        dense_radius(matrix, size)
+    };
+    if radius(0.0) <= 1.0 {
+        return Err("what is fertile does not multiply");
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    while radius(high) > 1.0 {
+        (low, high) = (high, 2.0 * high);
+    }
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if radius(middle) > 1.0 {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    Ok(high)
+}
+
+/// Adds the ratio of a fertile element: from a behaviour to an object.
+fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, weight: f64) {
+    let [from, object] = place;
+    let object = &graph.objects()[object];
+    if !matches!(object.replacement, Replacement::Kept) {
+        ratios.push(Ratio {
+            from,
+            to: object.behaviour,
+            ratio,
+            weight,
+        });
+    }
+}
+
+/// Generators with their probabilities.
+fn weighted<'a>(
+    rule: &Rule,
+    alternatives: &'a [Alternative],
+) -> Result<Vec<(&'a Alternative, f64)>, &'static str> {
+    if let [only] = alternatives {
+        return Ok(vec![(only, 1.0)]);
+    }
+    let Selection::AtRandom(entries) = rule.selection() else {
+        return Err("generators are selected by more than draws");
+    };
+    let total: f64 = entries.iter().map(|(weight, _)| weight).sum();
+    let weight = |alternative: &Alternative| -> f64 {
+        let own = entries
+            .iter()
+            .filter(|entry| entry.1 == alternative.generator);
+        own.map(|(weight, _)| weight / total).sum()
+    };
+    Ok(alternatives.iter().map(|all| (all, weight(all))).collect())
+}
+
+/// Adds the ratios of a generator for draws that stand for all.
+fn push_draws(
+    ratios: &mut Vec<Ratio>,
+    graph: &Graph,
+    from: usize,
+    alternative: &Alternative,
+    weight: f64,
+) -> Result<(), &'static str> {
+    let generator = &graph.evaluated().generators()[alternative.generator];
+    let moments = [Moment::INDEX, Moment::AGE, Moment::STEP, Moment::LENGTH];
+    let depends = |program: &Program| {
+        let mut slots = moments.iter();
+        slots.any(|&slot| program.dependence(slot) != Dependence::None)
+    };
+    if generator.programs().any(depends) {
+        return Err("ratios depend on more than draws");
+    }
+    let moment = Moment {
+        index: 1.0,
+        age: 0.0,
+        step: 0.0,
+        length: 1.0,
+    };
+    let (mut scratch, mut points) = (Vec::new(), Vec::new());
+    for (values, share) in draws(generator, &moment)? {
+        let draw = |_: &_, slots: &[f64]| values[slots.len()];
+        generator.evaluate_with(&moment, draw, &mut scratch, &mut points);
+        let elements = generator.elements().zip(&alternative.objects);
+        for (element, &object) in elements {
+            let ratio = (points[element.to] - points[element.from]).length();
+            push(ratios, graph, [from, object], ratio, weight * share);
+        }
+        let mut parts = generator.parts().iter();
+        if parts.any(|part| part.placement == Placement::SeedsAsInitiator) {
+            return Err("seeds are placed as the initiator");
+        }
+    }
+    Ok(())
+}
+
+/// Draws of all variables by slot, with weights: a product of quadratures.
+fn draws(generator: &Generator, moment: &Moment) -> Result<Vec<(Vec<f64>, f64)>, &'static str> {
+    let mut draws = vec![(moment.slots().to_vec(), 1.0)];
+    for variable in generator.variables() {
+        let mut next = Vec::new();
+        for (slots, weight) in &draws {
+            for (value, share) in nodes(variable.distribution(), slots) {
+                let mut slots = slots.clone();
+                slots.push(value);
+                next.push((slots, weight * share));
+            }
+            if next.len() > MOST_DRAWS {
+                return Err("too many numbers are drawn to integrate over");
+            }
+        }
+        draws = next;
+    }
+    Ok(draws)
+}
+
+/// Values that stand for a distribution, with weights.
+fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
+    match distribution {
+        Distribution::Uniform(low, high) => {
+            let (low, high) = (low.eval(slots), high.eval(slots));
+            let place = |(at, weight)| (low + (high - low) * at, weight);
+            legendre().into_iter().map(place).collect()
+        }
+        Distribution::Normal(mean, deviation) => {
+            let (mean, deviation) = (mean.eval(slots), deviation.eval(slots));
+            // The trapezium rule is exponentially accurate here.
+            const STEP: f64 = 0.25;
+            let height = STEP / std::f64::consts::TAU.sqrt();
+            let node = |k: i32| {
+                let at = f64::from(k) * STEP;
+                (mean + deviation * at, height * libm::exp(-at * at / 2.0))
+            };
+            (-33..=33).map(node).collect()
+        }
+        Distribution::Choice(values) => {
+            #[expect(clippy::cast_precision_loss, reason = "a count of list entries")]
+            let weight = 1.0 / values.len() as f64;
+            values
+                .iter()
+                .map(|value| (value.eval(slots), weight))
+                .collect()
+        }
+    }
+}
+
+/// Gauss & Legendre's nodes and weights for the interval from 0 to 1.
+fn legendre() -> Vec<(f64, f64)> {
+    const COUNT: u32 = 20;
+    let count = f64::from(COUNT);
+    let node = |number: u32| {
+        let mut x = libm::cos(std::f64::consts::PI * (f64::from(number) + 0.75) / (count + 0.5));
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut value, mut before) = (x, 1.0);
+            for degree in 2..=COUNT {
+                let n = f64::from(degree);
+                (value, before) = (
+                    ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n,
+                    value,
+                );
+            }
+            slope = count * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        (f64::midpoint(1.0, x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..COUNT).map(node).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Distribution, legendre, nodes};
+    use crate::expression::Program;
+
+    #[test]
+    fn moments_are_integrated() {
+        let third: f64 = legendre().iter().map(|(at, weight)| weight * at * at).sum();
+        assert!((third - 1.0 / 3.0).abs() < 1e-14, "{third}");
+        let [mean, deviation] = [3.0, 0.5].map(Program::constant);
+        let normal = nodes(&Distribution::Normal(mean, deviation), &[]);
+        let square: f64 = normal.iter().map(|(at, weight)| weight * at * at).sum();
+        assert!((square - 9.25).abs() < 1e-12, "{square}");
+    }
+}

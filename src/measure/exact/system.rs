@@ -1,0 +1,164 @@
+//! What dimensions are computed from: sets that are made of smaller copies of each other.
+
+use crate::geometry::{DAffine2, DMat2};
+use crate::graph::{Graph, Instance, Replacement};
+use crate::measure::similarity::components;
+use crate::rule::Placement;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// A copy of one set inside another: the set `from` holds the image of the set `to` under the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Copy {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) map: DAffine3,
+}
+
+/// Sets K₀, K₁, … that are unions of copies, K_from = ∪ map(K_to) over the copies in `from`
+/// (Mauldin & Williams 1988). One set that holds copies of itself only is the attractor of an
+/// iterated function system (Hutchinson 1981).
+///
+/// Guarantees: the numbers of sets are in range, and all maps are finite.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// 2 in the plane, 3 in space.
+    pub(super) space: usize,
+    pub(super) size: usize,
+    pub(super) copies: Vec<Copy>,
+}
+
+impl System {
+    /// Sets of the plane, from their copies: the number of the set that holds one, the number of the
+    /// set that it is a copy of, and the map.
+    ///
+    /// `None` if a number is not finite.
+    #[must_use]
+    pub fn plane(copies: impl IntoIterator<Item = (usize, usize, DAffine2)>) -> Option<Self> {
+        let copies = copies.into_iter();
+        Self::new(2, copies.map(|(from, to, map)| (from, to, embedded(map))))
+    }
+
+    /// Sets in space, likewise.
+    #[must_use]
+    pub fn space(copies: impl IntoIterator<Item = (usize, usize, DAffine3)>) -> Option<Self> {
+        Self::new(3, copies.into_iter())
+    }
+
+    fn new(space: usize, copies: impl Iterator<Item = (usize, usize, DAffine3)>) -> Option<Self> {
+        let copies: Vec<Copy> = copies
+            .map(|(from, to, map)| Copy { from, to, map })
+            .collect();
+        let numbers = copies.iter().flat_map(|copy| [copy.from, copy.to]);
+        let size = numbers.max().map_or(0, |most| most + 1);
+        let finite = copies.iter().all(|copy| copy.map.is_finite());
+        finite.then_some(Self {
+            space,
+            size,
+            copies,
+        })
+    }
+
+    /// What the fertile elements of a graph become, without the elements that stay infertile.
+    ///
+    /// `None` if the graph is not a list of fixed maps, or has resets.
+    #[must_use]
+    pub fn of(graph: &Graph) -> Option<Self> {
+        if !graph.is_regular() || !graph.is_plain() || graph.depth().is_some() {
+            return None;
+        }
+        let fertile = |instance: &Instance| {
+            let object = &graph.objects()[instance.object];
+            !matches!(object.replacement, Replacement::Kept)
+        };
+        let mut copies = Vec::new();
+        // Objects of one behaviour are replaced by the same.
+        for object in graph.behaviours() {
+            let Replacement::Fixed(production) = &object.replacement else {
+                continue;
+            };
+            for (placement, instance) in production.placed_instances() {
+                if !fertile(instance) {
+                    continue;
+                }
+                if placement == Placement::SeedsAsInitiator {
+                    return None;
+                }
+                let to = graph.objects()[instance.object].behaviour;
+                copies.push((object.behaviour, to, instance.frame.map));
+            }
+        }
+        Self::plane(copies)
+    }
+
+    /// The strongly connected parts that have a copy inside, each with its sets numbered from 0.
+    ///
+    /// The dimension of the whole is the largest of theirs: every point lies in a copy of one, and
+    /// there are countably many copies.
+    pub(super) fn parts(&self) -> Vec<Self> {
+        let mut targets = vec![Vec::new(); self.size];
+        for copy in &self.copies {
+            targets[copy.from].push(copy.to);
+        }
+        let component = components(&targets);
+        let count = component.iter().max().map_or(0, |most| most + 1);
+        let mut parts = vec![
+            Self {
+                space: self.space,
+                size: 0,
+                copies: Vec::new(),
+            };
+            count
+        ];
+        let number: Vec<usize> = component
+            .iter()
+            .map(|&part| {
+                parts[part].size += 1;
+                parts[part].size - 1
+            })
+            .collect();
+        for copy in &self.copies {
+            if component[copy.from] == component[copy.to] {
+                parts[component[copy.from]].copies.push(Copy {
+                    from: number[copy.from],
+                    to: number[copy.to],
+                    map: copy.map,
+                });
+            }
+        }
+        parts.retain(|part| !part.copies.is_empty());
+        parts
+    }
+
+    /// Whether all maps are similarities.
+    pub(super) fn is_similar(&self) -> bool {
+        // In the plane's third direction a map of the plane scales as its area's root.
+        self.copies.iter().all(|copy| {
+            let linear = copy.map.matrix3;
+            let ratio = ratio(linear);
+            let square = linear.transpose() * linear;
+            let scaled = DMat3::from_diagonal(DVec3::splat(ratio * ratio));
+            ratio > 0.0 && square.abs_diff_eq(scaled, 1e-9 * ratio * ratio)
+        })
+    }
+
+    /// The copies as the similarity dimension sees them: from, to, ratio.
+    pub(super) fn ratios(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let copies = self.copies.iter();
+        copies.map(|copy| (copy.from, copy.to, ratio(copy.map.matrix3)))
+    }
+}
+
+/// The ratio of a similarity.
+pub(super) fn ratio(linear: DMat3) -> f64 {
+    libm::cbrt(linear.determinant().abs())
+}
+
+/// A map of the plane as one of space, which scales the third direction like a similarity would.
+fn embedded(map: DAffine2) -> DAffine3 {
+    let DMat2 { x_axis, y_axis } = map.matrix2;
+    let across = map.matrix2.determinant().abs().sqrt();
+    DAffine3 {
+        matrix3: DMat3::from_cols(x_axis.extend(0.0), y_axis.extend(0.0), DVec3::Z * across),
+        translation: map.translation.extend(0.0),
+    }
+}

@@ -1,0 +1,35 @@
+//! Dimensions by neighbour maps, against published values and against what can be counted.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+#[path = "exact/laws.rs"]
+mod laws;
+#[path = "exact/library.rs"]
+mod library;
+#[path = "exact/systems.rs"]
+mod systems;
+
+use kfrac::geometry::{DAffine2, DVec2};
+use kfrac::measure::exact::{Dimensions, System, dimensions};
+
+/// z → ratio · e^{i turn} z + shift, reflected in the x-axis first or not; the turn in degrees.
+fn similarity(ratio: f64, turn: f64, reflected: bool, shift: [f64; 2]) -> DAffine2 {
+    let turn = DAffine2::from_angle(turn.to_radians());
+    let scale = DVec2::new(ratio, if reflected { -ratio } else { ratio });
+    DAffine2::from_translation(DVec2::from(shift)) * turn * DAffine2::from_scale(scale)
+}
+
+/// x → ratio x + shift on the x-axis.
+fn line(ratio: f64, shift: f64) -> DAffine2 {
+    similarity(ratio, 0.0, false, [shift, 0.0])
+}
+
+fn of(maps: &[DAffine2]) -> Dimensions {
+    let copies = maps.iter().map(|map| (0, 0, *map));
+    dimensions(&System::plane(copies).unwrap()).unwrap()
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-10
+}
