@@ -62,6 +62,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             (Model::Rule(rule), KindDocument::Rule(document)) => {
                 rule::write(rule, document, &options, out)
             }
+            _ => return Err(anyhow::anyhow!("there is no figure of this kind yet").into()),
         };
         written.map_err(|error| match error {
             RenderError::Io(error) => output::failed(error, path),

@@ -166,7 +166,7 @@ impl Assembly<'_> {
         let (_, parent) = entries.remove(index);
         let parents = self.parent(&parent).unwrap_or_else(|| {
             self.complete = false;
-            harmless_parent(&parent.place)
+            harmless_parent(&parent.place, self.kind.unwrap_or_default())
         });
         merge(&mut entries, parents);
         Some((place, entries))
@@ -461,19 +461,25 @@ impl Assembly<'_> {
 }
 
 /// Stands in for the parent of a rule that was not found.
-fn harmless_parent(place: &Place) -> Entries {
-    [
-        ("initiator", Shelf::Initiators),
-        ("generator", Shelf::Generators),
-    ]
-    .map(|(name, shelf)| {
-        let key = Key {
-            name: name.into(),
-            place: place.clone(),
-        };
-        (key, harmless(shelf, place))
-    })
-    .into()
+fn harmless_parent(place: &Place, kind: Kind) -> Entries {
+    let key = |name: &str| Key {
+        name: name.into(),
+        place: place.clone(),
+    };
+    let node = |value| Node {
+        place: place.clone(),
+        value,
+    };
+    match kind {
+        Kind::Rule => vec![
+            (key("initiator"), harmless(Shelf::Initiators, place)),
+            (key("generator"), harmless(Shelf::Generators, place)),
+        ],
+        Kind::Ifs => {
+            let map = Value::Mapping(vec![(key("scale"), node(Value::Number(0.5)))]);
+            vec![(key("maps"), node(Value::Sequence(vec![node(map)])))]
+        }
+    }
 }
 
 /// Stands in for a component that was not found, so that no second error is reported for it.

@@ -35,6 +35,8 @@ struct State {
 struct Reach {
     spread: f64,
     ratio: f64,
+    /// The radius of all that becomes of an object, where single ratios do not tell it.
+    within: Option<f64>,
     /// Objects that surely draw something.
     alive: Vec<bool>,
     /// What lies around every object, as a multiple of its length.
@@ -45,6 +47,9 @@ impl Reach {
     /// The radius around its origin, in its own unit frame, of all that an object draws within a
     /// number of levels, or ever: the sum of a geometric series.
     fn radius(&self, levels: Option<u32>) -> f64 {
+        if let Some(within) = self.within {
+            return within;
+        }
         if self.ratio < 1.0 {
             return self.spread / (1.0 - self.ratio);
         }
@@ -81,7 +86,7 @@ impl Graph {
     /// Exact to some 15 digits. `None` where there is none or the graph does not tell.
     #[must_use]
     pub fn limit_bounds(&self) -> Option<Bounds> {
-        if self.depth.is_some() || self.longest_ratio() >= 1.0 {
+        if self.depth.is_some() || !self.contracts() {
             return None;
         }
         self.bounds_at(None, |_| 0.0)
@@ -94,9 +99,11 @@ impl Graph {
         if !self.is_plain() || !self.is_regular() || resets {
             return None;
         }
+        let (spread, ratio) = (self.spread(&pad), self.longest_ratio());
         let reach = Reach {
-            spread: self.spread(&pad),
-            ratio: self.longest_ratio(),
+            spread,
+            ratio,
+            within: self.reach_by_products(DVec2::ZERO, spread),
             alive: self.alive(steps.is_none()),
             pads: self.objects.iter().map(pad).collect(),
         };

@@ -6,9 +6,6 @@ use crate::rule::Placement;
 
 use super::{Graph, Instance, Object, Replacement};
 
-/// The middle of an element in its unit frame.
-const MIDDLE: DVec2 = DVec2::new(0.5, 0.0);
-
 /// Radii that still change by less than this multiple are good enough.
 const TOLERANCE: f64 = 1e-3;
 
@@ -16,7 +13,7 @@ const TOLERANCE: f64 = 1e-3;
 const MOST_SWEEPS: usize = 64;
 
 impl Graph {
-    /// For every object, the radius of a disc about the middle of its unit frame that holds it and
+    /// For every object, the radius of a disc about the [middle](Graph::middle) of its unit frame that holds it and
     /// all that becomes of it, seeds included, at every step; infinite where the graph does not
     /// tell: where numbers are drawn, where seeds are placed as the initiator, and where what
     /// becomes of the object does not shrink.
@@ -30,7 +27,7 @@ impl Graph {
     #[must_use]
     pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
-        let away = |instance: &Instance| instance.frame.map.transform_point2(MIDDLE) - MIDDLE;
+        let away = |instance: &Instance| instance.frame.map.transform_point2(self.middle) - self.middle;
         let ratio = self.longest_ratio();
         let spread = self.instances().map(|(_, instance)| {
             let far = away(instance).length();
@@ -43,7 +40,8 @@ impl Graph {
         let most = if ratio < 1.0 {
             spread / (1.0 - ratio)
         } else {
-            f64::INFINITY
+            self.reach_by_products(self.middle, spread)
+                .unwrap_or(f64::INFINITY)
         };
         let drawn = |object: &Object| matches!(object.replacement, Replacement::Evaluated(_));
         let unknown = self
@@ -76,6 +74,12 @@ impl Graph {
             }
         }
         radii
+    }
+
+    /// About where, in the unit frame of an element, what becomes of it lies.
+    #[must_use]
+    pub fn middle(&self) -> DVec2 {
+        self.middle
     }
 
     /// Whether an object leads to seeds that are placed as the initiator, by object. However small
@@ -118,7 +122,7 @@ impl Graph {
     /// length in so many steps then.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
-        if !self.is_plain() || self.resets().contains(&true) {
+        if !self.is_plain() || !self.is_similar() || self.resets().contains(&true) {
             return None;
         }
         let fertile = |instance: &&Instance| {
@@ -127,7 +131,7 @@ impl Graph {
         let start = self.initiator.instances.iter().filter(fertile);
         let later = self.instances().map(|(_, instance)| instance);
         let start = one_length(start)?;
-        Some([start, one_length(later.filter(fertile))?])
+        Some([start * self.unit, one_length(later.filter(fertile))?])
     }
 
     /// Whether all that is replaced again and again becomes smaller than any length: no object
@@ -143,6 +147,9 @@ impl Graph {
         }
         if self.longest_ratio() * SLACK < 1.0 {
             return true;
+        }
+        if self.affine {
+            return self.contracts();
         }
         // The longest paths (Bellman 1958): they go on growing if and only if there is such a cycle.
         let mut longest = vec![1.0; self.objects.len()];

@@ -44,6 +44,9 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if graph.depth().is_some() {
         return Similarity::none("what replaces an element changes from step to step without end");
     }
+    if !graph.is_similar() {
+        return Similarity::none("the maps are no similarities");
+    }
     let edges = edges(graph);
     let Some(edges) = edges else {
         return Similarity::none("there is no limit set: seeds are placed as the initiator");

@@ -163,7 +163,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         })?;
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
-        let mirrored = element.frame.direction.is_mirrored();
+        let mirrored = map.matrix2.determinant() < 0.0;
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
         self.tracer
@@ -275,7 +275,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         match self.scene.style.width {
             Width::Pixels(_) => 0,
             Width::Relative(width) => {
-                let fine = width * element.frame.length() * self.scene.canvas.scale() * FINE;
+                let length = element.frame.stretch() * self.scene.graph.unit();
+                let fine = width * length * self.scene.canvas.scale() * FINE;
                 (WIDTHS_AN_OCTAVE * libm::log2(fine.max(1.0))).round() as i32
             }
         }
