@@ -36,6 +36,7 @@ pub mod build;
 pub mod catalogue;
 pub mod cli;
 pub mod diagnostic;
+mod digraph;
 pub mod document;
 pub mod estimate;
 pub mod export;
