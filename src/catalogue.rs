@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use include_dir::{Dir, include_dir};
 
-use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
 use crate::model::Kind;
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
@@ -188,6 +188,18 @@ impl Catalogue {
             }
         }
         Ok(first)
+    }
+
+    /// A file of data, from the folder of the file that names it.
+    pub(crate) fn data(&self, name: &str, named: &Place) -> Result<Arc<Source>, Diagnostic> {
+        let folder = named.source().path().parent();
+        let path = folder.unwrap_or(Path::new("")).join(name);
+        // What is read must not wait for what a pipe or a terminal says.
+        if path.is_file() {
+            return read_file(&path);
+        }
+        Err(Diagnostic::error(format!("there is no file '{}'", path.display()))
+            .hint("a list of points, or a file of two columns in the folder of this one"))
     }
 
     /// A rule or component by name.

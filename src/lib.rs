@@ -48,6 +48,7 @@ pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
+pub mod heading;
 pub mod ifs;
 pub mod measure;
 pub mod model;

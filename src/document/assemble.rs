@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest}
 
 use crate::model::Kind;
 
+use super::data;
 use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, check_description, shape};
@@ -44,6 +45,7 @@ pub(super) fn assemble(
     }
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
+    assembly.inline_data(&mut entries);
     let (kind, complete) = (assembly.kind.unwrap_or_default(), assembly.complete);
     let value = Value::Mapping(entries);
     Some((Node { place, value }, kind, complete))
@@ -226,6 +228,33 @@ impl Assembly<'_> {
                 }
                 "base_element" => self.component(node, Shelf::BaseElements),
                 _ => {}
+            }
+        }
+    }
+
+    /// Puts points in the place of the name of a file that holds them.
+    fn inline_data(&mut self, entries: &mut Entries) {
+        let interpolation = entries.iter_mut().find(|(key, _)| key.name == "interpolate");
+        let Some((_, Node { value: Value::Mapping(of), .. })) = interpolation else {
+            return;
+        };
+        let Some((_, points)) = of.iter_mut().find(|(key, _)| key.name == "points") else {
+            return;
+        };
+        let Value::Text(name) = &points.value else {
+            return;
+        };
+        let found = self.catalogue.data(name, &points.place);
+        match found.map_err(|error| error.at(&points.place)).and_then(|source| data::read(&source)) {
+            Ok(read) => *points = read,
+            Err(error) => {
+                self.diagnostics.push(error);
+                self.complete = false;
+                let point = |x| {
+                    let number = |value| Node { place: points.place.clone(), value: Value::Number(value) };
+                    Node { place: points.place.clone(), value: Value::Sequence(vec![number(x), number(0.0)]) }
+                };
+                points.value = Value::Sequence([0.0, 0.5, 1.0].map(point).into());
             }
         }
     }

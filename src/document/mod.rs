@@ -4,6 +4,7 @@
 //! reads the result into the document of its kind. Nothing outside this module sees YAML.
 
 mod assemble;
+mod data;
 mod heading;
 mod ifs;
 mod merge;

@@ -1,6 +1,6 @@
 //! A system as a file has it.
 
-use super::{Contraction, Ifs, Shape};
+use super::{Contraction, Ifs, IfsError, Shape};
 use crate::geometry::DVec2;
 use crate::heading::Heading;
 
@@ -33,6 +33,40 @@ impl System {
     #[must_use]
     pub fn contraction(&self) -> &Contraction {
         &self.contraction
+    }
+}
+
+impl System {
+    /// The system without some maps, and without the edges from and to them. What approximant 0 draws
+    /// stays.
+    ///
+    /// # Errors
+    ///
+    /// Where what is left is no system: without maps, or with maps that nothing enters or leaves.
+    pub fn omitting(&self, maps: &[usize]) -> Result<Self, Vec<IfsError>> {
+        let mut definition = self.ifs.definition.clone();
+        let stays = |map: usize| !maps.contains(&map);
+        // The new numbers of those that stay.
+        let numbers: Vec<usize> = (0..definition.maps.len())
+            .map(|map| (0..map).filter(|&map| stays(map)).count())
+            .collect();
+        let mut number = 0..;
+        definition
+            .maps
+            .retain(|_| number.next().is_some_and(stays));
+        if let Some(edges) = &mut definition.edges {
+            edges.retain(|edge| stays(edge.from) && stays(edge.to));
+            for edge in edges {
+                (edge.from, edge.to) = (numbers[edge.from], numbers[edge.to]);
+            }
+        }
+        let ifs = Ifs::new(definition)?;
+        Ok(Self {
+            heading: self.heading.clone(),
+            contraction: ifs.contraction(),
+            ifs,
+            chained: self.chained && maps.is_empty(),
+        })
     }
 }
 
