@@ -21,6 +21,7 @@ mod sheet;
 mod show;
 mod steps;
 mod stop;
+mod system;
 mod text;
 
 use std::io;
