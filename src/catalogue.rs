@@ -198,8 +198,10 @@ impl Catalogue {
         if path.is_file() {
             return read_file(&path);
         }
-        Err(Diagnostic::error(format!("there is no file '{}'", path.display()))
-            .hint("a list of points, or a file of two columns in the folder of this one"))
+        Err(
+            Diagnostic::error(format!("there is no file '{}'", path.display()))
+                .hint("a list of points, or a file of two columns in the folder of this one"),
+        )
     }
 
     /// A rule or component by name.

@@ -172,7 +172,9 @@ impl RuleArguments {
         }
         let usage = |message: String| Failure::Usage(message);
         let Model::Ifs(system) = &model else {
-            return Err(usage(format!("--omit leaves maps out, and {name} has none")));
+            return Err(usage(format!(
+                "--omit leaves maps out, and {name} has none"
+            )));
         };
         let count = system.ifs().maps().len();
         let mut maps = Vec::new();

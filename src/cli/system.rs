@@ -80,7 +80,10 @@ impl SystemInfo {
                     format!("fixed point [{x}, {y}]")
                 },
             );
-            lines.push(("map", format!("{name}: weight {}, {fixed}", decimal(map.weight))));
+            lines.push((
+                "map",
+                format!("{name}: weight {}, {fixed}", decimal(map.weight)),
+            ));
         }
         if self.default_weights {
             let how = "by the determinants of the maps, since the file gives none";

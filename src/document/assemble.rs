@@ -234,8 +234,17 @@ impl Assembly<'_> {
 
     /// Puts points in the place of the name of a file that holds them.
     fn inline_data(&mut self, entries: &mut Entries) {
-        let interpolation = entries.iter_mut().find(|(key, _)| key.name == "interpolate");
-        let Some((_, Node { value: Value::Mapping(of), .. })) = interpolation else {
+        let interpolation = entries
+            .iter_mut()
+            .find(|(key, _)| key.name == "interpolate");
+        let Some((
+            _,
+            Node {
+                value: Value::Mapping(of),
+                ..
+            },
+        )) = interpolation
+        else {
             return;
         };
         let Some((_, points)) = of.iter_mut().find(|(key, _)| key.name == "points") else {
@@ -245,14 +254,23 @@ impl Assembly<'_> {
             return;
         };
         let found = self.catalogue.data(name, &points.place);
-        match found.map_err(|error| error.at(&points.place)).and_then(|source| data::read(&source)) {
+        match found
+            .map_err(|error| error.at(&points.place))
+            .and_then(|source| data::read(&source))
+        {
             Ok(read) => *points = read,
             Err(error) => {
                 self.diagnostics.push(error);
                 self.complete = false;
                 let point = |x| {
-                    let number = |value| Node { place: points.place.clone(), value: Value::Number(value) };
-                    Node { place: points.place.clone(), value: Value::Sequence(vec![number(x), number(0.0)]) }
+                    let number = |value| Node {
+                        place: points.place.clone(),
+                        value: Value::Number(value),
+                    };
+                    Node {
+                        place: points.place.clone(),
+                        value: Value::Sequence(vec![number(x), number(0.0)]),
+                    }
                 };
                 points.value = Value::Sequence([0.0, 0.5, 1.0].map(point).into());
             }

@@ -72,12 +72,7 @@ fn middle(graph: &Graph) -> DVec2 {
 fn filling(bounds: Option<Bounds>) -> BaseElement {
     let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
     let (min, max) = (bounds.min(), bounds.max());
-    let corners = [
-        min,
-        DVec2::new(max.x, min.y),
-        max,
-        DVec2::new(min.x, max.y),
-    ];
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
     let size = bounds.size();
     let shape = if size.x > 0.0 && size.y > 0.0 {
         Shape::polygon(&corners)
@@ -135,48 +130,47 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The object inside a map; of the whole there is one, the first.
-    fn inside(&self, branch: usize, map: usize) -> usize {
-        1 + branch * (self.ifs.maps().len() + self.ifs.condensation().len()) + map
+    /// The objects of a branch: one inside every map, and the condensation sets inside every map.
+    fn branch(&self) -> usize {
+        self.ifs.maps().len() * (1 + self.ifs.condensation().len())
     }
 
-    /// A condensation set; the one of no branch is not told apart where branches are not.
-    fn condensed(&self, branch: Option<usize>, set: usize) -> usize {
-        let maps = self.ifs.maps().len();
-        match branch {
-            Some(branch) => self.inside(branch, maps + set),
-            None if self.tells_last => self.inside(maps, set),
-            None => self.inside(0, maps + set),
+    /// The object inside a map; of the whole there is one, the first.
+    fn inside(&self, branch: usize, map: usize) -> usize {
+        1 + branch * self.branch() + map
+    }
+
+    /// A condensation set inside a map of a branch, or inside none.
+    fn condensed(&self, place: Option<(usize, usize)>, set: usize) -> usize {
+        let (maps, sets) = (self.ifs.maps().len(), self.ifs.condensation().len());
+        match place {
+            Some((branch, map)) => self.inside(branch, maps + map * sets + set),
+            None => self.inside(self.branches(), set),
         }
     }
 
     fn run(&self) -> Graph {
         let maps = self.ifs.maps().len();
-        let whole = self.production(None, &(0..maps).collect::<Vec<_>>());
+        let all: Vec<usize> = (0..maps).collect();
+        let whole = self.production(None, &all);
         let mut objects = vec![Object {
             replacement: Replacement::Fixed(Arc::new(whole)),
             ..self.object(INITIAL, None, None)
         }];
         for branch in 0..self.branches() {
             let last_map = self.tells_last.then_some(branch);
-            // Without a digraph, what stands inside is the same for all maps.
-            let mut shared: Option<Arc<Production>> = None;
             for map in 0..maps {
-                let production = match &shared {
-                    Some(shared) if !self.ifs.is_recurrent() => Arc::clone(shared),
-                    _ => Arc::new(self.production(Some(branch), &self.before[map])),
-                };
-                shared = Some(Arc::clone(&production));
+                let production = self.production(Some((branch, map)), &self.before[map]);
                 objects.push(Object {
-                    replacement: Replacement::Fixed(production),
+                    replacement: Replacement::Fixed(Arc::new(production)),
                     ..self.object(INITIAL, Some(map), last_map)
                 });
             }
-            objects.extend(self.condensation(last_map));
+            for map in 0..maps {
+                objects.extend(self.condensation(Some(map), last_map));
+            }
         }
-        if self.tells_last {
-            objects.extend(self.condensation(None));
-        }
+        objects.extend(self.condensation(None, None));
         self.number_behaviours(&mut objects);
         let provisional = BaseElement::line();
         let sets = self.ifs.condensation().iter();
@@ -217,9 +211,13 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn condensation(&self, last_map: Option<usize>) -> impl Iterator<Item = Object> + '_ {
+    fn condensation(
+        &self,
+        map: Option<usize>,
+        last_map: Option<usize>,
+    ) -> impl Iterator<Item = Object> + '_ {
         let sets = 1..=self.ifs.condensation().len();
-        sets.map(move |base_element| self.object(base_element, None, last_map))
+        sets.map(move |base_element| self.object(base_element, map, last_map))
     }
 
     /// Objects that are replaced by the same have one behaviour.
@@ -246,33 +244,35 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// Images under some maps, and the condensation sets.
-    fn production(&self, branch: Option<usize>, maps: &[usize]) -> Production {
+    /// What stands in a place, the whole or inside a map of a branch: images under some maps, and the
+    /// condensation sets.
+    fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Production {
         let sets = self.ifs.condensation().len();
         let drawn_as_first = self.ifs.initial().is_none();
         let mut instances = Vec::new();
-        let into = |map: usize| match branch {
-            Some(branch) => branch,
+        // What stands inside the outermost map belongs to its branch.
+        let branch = |map: usize| match place {
+            Some((branch, _)) => branch,
             None if self.tells_last => map,
             None => 0,
         };
         for (number, &map) in maps.iter().enumerate() {
             let affine = self.ifs.maps()[map].affine;
-            let mut instance = self.instance(self.inside(into(map), map), &affine, number);
+            let mut instance = self.instance(self.inside(branch(map), map), &affine, number);
             instance.joined = self.chained && number > 0;
             instances.push(instance);
         }
         let own = if drawn_as_first { sets.min(1) } else { sets };
         for set in 0..own {
-            let object = self.condensed(branch.filter(|_| self.tells_last), set);
+            let object = self.condensed(place, set);
             instances.push(self.instance(object, &DAffine2::IDENTITY, instances.len()));
         }
         // The others stand inside the maps already when what is drawn as the first one does.
         for set in own..sets {
             for &map in maps {
-                let branch = self.tells_last.then(|| into(map));
+                let object = self.condensed(Some((branch(map), map)), set);
                 let affine = self.ifs.maps()[map].affine;
-                instances.push(self.instance(self.condensed(branch, set), &affine, instances.len()));
+                instances.push(self.instance(object, &affine, instances.len()));
             }
         }
         Production {

@@ -51,9 +51,7 @@ impl System {
             .map(|map| (0..map).filter(|&map| stays(map)).count())
             .collect();
         let mut number = 0..;
-        definition
-            .maps
-            .retain(|_| number.next().is_some_and(stays));
+        definition.maps.retain(|_| number.next().is_some_and(stays));
         if let Some(edges) = &mut definition.edges {
             edges.retain(|edge| stays(edge.from) && stays(edge.to));
             for edge in edges {
@@ -74,7 +72,10 @@ impl Ifs {
     /// `map 2`, or its name.
     pub(crate) fn map_name(&self, map: usize) -> String {
         let name = self.maps().get(map).and_then(|map| map.name.as_ref());
-        name.map_or_else(|| format!("map {}", map + 1), |name| format!("map '{name}'"))
+        name.map_or_else(
+            || format!("map {}", map + 1),
+            |name| format!("map '{name}'"),
+        )
     }
 
     /// `map 2, then map 1`: maps one after the other.

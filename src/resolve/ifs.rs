@@ -167,7 +167,11 @@ impl Resolver<OfIfs> {
                 Some(axes(scale?.into(), rotate?.into()))
             }
             LinearDocument::Complex { times, conjugate } => {
-                let map = if *conjugate { complex_conjugate } else { complex };
+                let map = if *conjugate {
+                    complex_conjugate
+                } else {
+                    complex
+                };
                 Some(map(self.constant_point(times)?, DVec2::ZERO).matrix2)
             }
         }
@@ -257,18 +261,17 @@ impl Resolver<OfIfs> {
             Verdict::Diverges => {
                 let length = f64::from(u32::try_from(contraction.word.len()).unwrap_or(u32::MAX));
                 let factor = libm::pow(contraction.lower, length);
+                let (does, it, s) = match contraction.word.len() {
+                    1 => ("does", "it", "s"),
+                    _ => ("do", "they", ""),
+                };
                 let grows = if factor > 1.0 + 1e-9 {
-                    format!("grows, by {factor:.6}")
+                    format!("grow{s} by the factor {factor:.6}")
                 } else {
-                    "does not shrink".into()
+                    format!("never get{s} smaller")
                 };
-                let message = match contraction.word[..] {
-                    [map] => format!(
-                        "{} applied over and over {grows}",
-                        ifs.map_name(map)
-                    ),
-                    _ => format!("{} over and over {grows}", ifs.product_name(&contraction.word)),
-                };
+                let name = ifs.product_name(&contraction.word);
+                let message = format!("{name} {does} not contract: over and over, {it} {grows}");
                 let hint = "a system needs maps that contract: all of their products must shrink";
                 self.error_with_hint(&place, message, hint);
                 None

@@ -1,6 +1,7 @@
 //! An iterated function system: what its keys hold.
 
 use crate::catalogue::Shelf;
+use crate::document::Point;
 use crate::document::Written;
 use crate::document::ifs::{
     CondensationDocument, EdgeDocument, IfsDocument, InterpolationDocument, LinearDocument,
@@ -9,7 +10,6 @@ use crate::document::ifs::{
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
-use crate::document::Point;
 use crate::model::Kind;
 
 use super::first_line;
@@ -397,11 +397,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
 }
 
 /// A list of points, which must be there.
-fn read_points(
-    reader: &mut Reader,
-    fields: &Fields<'_>,
-    hint: &'static str,
-) -> Option<Vec<Point>> {
+fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
     let Some(node) = fields.take("points") else {
         let message = "there are no `points`";
         reader.error_with_hint(&first_line(fields.place), message, hint);
@@ -445,4 +441,3 @@ fn read_edges(reader: &mut Reader, node: &Node) -> Vec<EdgeDocument> {
     }
     edges
 }
-

@@ -56,10 +56,7 @@ const FORMS: [Member; 6] = [
     key("ellipse", Form::Mapping(&ELLIPSE), "An ellipse."),
 ];
 
-const fn alone(
-    needs: &'static [&'static str],
-    excludes: &'static [&'static str],
-) -> Way {
+const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
     Way { needs, excludes }
 }
 
