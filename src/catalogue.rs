@@ -1,6 +1,6 @@
 //! Where rule files and components are found: the user's folders, then the embedded library.
 //!
-//! A library folder holds `rules`, `initiators`, `generators` and `base_elements`, each with YAML
+//! A library folder holds `rules`, `ifs`, `initiators`, `generators` and `base_elements`, each with YAML
 //! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use include_dir::{Dir, include_dir};
 
-use crate::diagnostic::{Diagnostic, Source, did_you_mean};
+use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
 use crate::model::Kind;
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
@@ -20,6 +20,8 @@ static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
 pub enum Shelf {
     /// A production rule.
     Rules,
+    /// An iterated function system.
+    Ifs,
     /// An initiator.
     Initiators,
     /// A generator.
@@ -34,6 +36,7 @@ impl Shelf {
     pub fn of(kind: Kind) -> Self {
         match kind {
             Kind::Rule => Self::Rules,
+            Kind::Ifs => Self::Ifs,
         }
     }
 
@@ -44,8 +47,9 @@ impl Shelf {
     }
 
     /// All shelves, in the order in which they are listed.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Rules,
+        Self::Ifs,
         Self::Initiators,
         Self::Generators,
         Self::BaseElements,
@@ -56,6 +60,7 @@ impl Shelf {
     pub fn folder(self) -> &'static str {
         match self {
             Self::Rules => "rules",
+            Self::Ifs => "ifs",
             Self::Initiators => "initiators",
             Self::Generators => "generators",
             Self::BaseElements => "base_elements",
@@ -67,6 +72,7 @@ impl Shelf {
     pub fn kind(self) -> &'static str {
         match self {
             Self::Rules => "rule",
+            Self::Ifs => "ifs",
             Self::Initiators => "initiator",
             Self::Generators => "generator",
             Self::BaseElements => "base_element",
@@ -77,6 +83,7 @@ impl Shelf {
     #[must_use]
     pub fn noun(self) -> &'static str {
         match self {
+            Self::Ifs => "system",
             Self::BaseElements => "base element",
             other => other.kind(),
         }
@@ -181,6 +188,20 @@ impl Catalogue {
             }
         }
         Ok(first)
+    }
+
+    /// A file of data, from the folder of the file that names it.
+    pub(crate) fn data(&self, name: &str, named: &Place) -> Result<Arc<Source>, Diagnostic> {
+        let folder = named.source().path().parent();
+        let path = folder.unwrap_or(Path::new("")).join(name);
+        // What is read must not wait for what a pipe or a terminal says.
+        if path.is_file() {
+            return read_file(&path);
+        }
+        Err(
+            Diagnostic::error(format!("there is no file '{}'", path.display()))
+                .hint("a list of points, or a file of two columns in the folder of this one"),
+        )
     }
 
     /// A rule or component by name.

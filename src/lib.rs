@@ -26,6 +26,9 @@
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
+//! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
+//! interpolation are worked out on it without a graph.
+//!
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
 //! `render` turns into pictures.
 //!
@@ -42,6 +45,7 @@ pub mod catalogue;
 pub mod chaos;
 pub mod cli;
 pub mod diagnostic;
+mod digraph;
 pub mod document;
 pub mod estimate;
 pub mod export;
@@ -51,6 +55,7 @@ pub mod geometry;
 pub mod graph;
 pub mod grow;
 pub mod heading;
+pub mod ifs;
 pub mod measure;
 pub mod model;
 pub mod parallel;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::graph::{CompileError, Graph};
 use crate::heading::Heading;
+use crate::ifs::System;
 use crate::rule::Rule;
 
 /// A kind of files that can be grown.
@@ -13,17 +14,20 @@ pub enum Kind {
     /// A production rule.
     #[default]
     Rule,
+    /// An iterated function system.
+    Ifs,
 }
 
 impl Kind {
     /// All kinds, in the order in which they are listed and names are looked up.
-    pub const ALL: [Self; 1] = [Self::Rule];
+    pub const ALL: [Self; 2] = [Self::Rule, Self::Ifs];
 
     /// What `kind:` says in its files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rule => "rule",
+            Self::Ifs => "ifs",
         }
     }
 }
@@ -33,6 +37,8 @@ impl Kind {
 pub enum Model {
     /// A production rule.
     Rule(Arc<Rule>),
+    /// An iterated function system.
+    Ifs(Arc<System>),
 }
 
 impl Model {
@@ -41,6 +47,7 @@ impl Model {
     pub fn kind(&self) -> Kind {
         match self {
             Self::Rule(_) => Kind::Rule,
+            Self::Ifs(_) => Kind::Ifs,
         }
     }
 
@@ -49,6 +56,7 @@ impl Model {
     pub fn heading(&self) -> &Heading {
         match self {
             Self::Rule(rule) => &rule.heading,
+            Self::Ifs(system) => &system.heading,
         }
     }
 
@@ -57,6 +65,7 @@ impl Model {
     pub fn rule(&self) -> Option<&Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
+            Self::Ifs(_) => None,
         }
     }
 
@@ -65,6 +74,7 @@ impl Model {
     pub fn into_rule(self) -> Option<Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
+            Self::Ifs(_) => None,
         }
     }
 
@@ -76,6 +86,7 @@ impl Model {
     pub fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
         match self {
             Self::Rule(rule) => Graph::compile(rule, steps),
+            Self::Ifs(system) => Ok(Graph::of_system(system)),
         }
     }
 
@@ -84,6 +95,7 @@ impl Model {
     pub fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         match self {
             Self::Rule(rule) => error.diagnostic(rule),
+            Self::Ifs(_) => Diagnostic::error(error.to_string()),
         }
     }
 }

@@ -6,10 +6,13 @@
 //! computed from them.
 
 mod heading;
+mod ifs;
+mod interpolation;
 mod numbers;
 mod outline;
 mod parameters;
 mod rule;
+mod set;
 mod unused;
 
 use std::collections::HashSet;
@@ -38,7 +41,13 @@ pub(crate) fn resolve(
     match document {
         KindDocument::Rule(document) => {
             resolved(&document.heading, settings, |resolver, heading| {
-                Model::Rule(resolver.rule(document, heading).into())
+                Some(Model::Rule(resolver.rule(document, heading).into()))
+            })
+        }
+        KindDocument::Ifs(document) => {
+            resolved(&document.heading, settings, |resolver, heading| {
+                let system = resolver.system(document, heading)?;
+                Some(Model::Ifs(system.into()))
             })
         }
     }
@@ -48,14 +57,15 @@ pub(crate) fn resolve(
 fn resolved<K: Default>(
     document: &HeadingDocument,
     settings: &[Setting],
-    model: impl FnOnce(&mut Resolver<K>, Heading) -> Model,
+    model: impl FnOnce(&mut Resolver<K>, Heading) -> Option<Model>,
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     let mut resolver = Resolver::<K>::default();
     let heading = resolver.heading(document, settings);
     let model = model(&mut resolver, heading);
-    if resolver.diagnostics.has_errors() {
-        return Err(resolver.diagnostics);
-    }
+    let model = match model {
+        Some(model) if !resolver.diagnostics.has_errors() => model,
+        _ => return Err(resolver.diagnostics),
+    };
     let mut doubts = Diagnostics::default();
     doubts.extend(unused::parameters(document, &resolver.used));
     doubts.extend(resolver.diagnostics);

@@ -117,6 +117,10 @@ pub enum ColorBy {
     Generator,
     /// Its direction.
     Direction,
+    /// The map of a system that is applied first, the innermost one.
+    FirstMap,
+    /// The map of a system that is applied last, the outermost one: the tiling.
+    LastMap,
 }
 
 /// The names of the variants of an enumeration, as files and the command line write them.
@@ -171,6 +175,8 @@ impl Named for ColorBy {
         ("index", Self::Index),
         ("generator", Self::Generator),
         ("direction", Self::Direction),
+        ("first-map", Self::FirstMap),
+        ("last-map", Self::LastMap),
     ];
 }
 

@@ -198,14 +198,14 @@ fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
     let rule = match shelf {
-        Shelf::Rules => text.clone(),
+        Shelf::Rules | Shelf::Ifs => text.clone(),
         Shelf::Initiators => "initiator: changed\ngenerator: koch\n".into(),
         Shelf::Generators => "initiator: segment\ngenerator: changed\n".into(),
         Shelf::BaseElements => {
             "initiator: segment\ngenerator: koch\nbase_element: changed\n".into()
         }
     };
-    if shelf != Shelf::Rules {
+    if !Shelf::grown().contains(&shelf) {
         let folder = library.join(shelf.folder());
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("changed.yaml"), text).unwrap();

@@ -41,7 +41,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 /// nowhere from where the text is put.
 fn without_modeline(text: &str) -> &str {
     match text.split_once('\n') {
-        Some((first, rest)) if first.trim_end() == Shelf::Rules.modeline() => rest,
+        Some((first, rest)) if is_modeline(first.trim_end()) => rest,
         _ => text,
     }
+}
+
+fn is_modeline(line: &str) -> bool {
+    Shelf::grown().iter().any(|shelf| shelf.modeline() == line)
 }

@@ -47,7 +47,9 @@ const OF_RULES: [(&str, &str); 7] = [
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let entries = catalogue.entries();
-    let rules = entries.iter().filter(|entry| entry.shelf == Shelf::Rules);
+    let rules = entries
+        .iter()
+        .filter(|entry| Shelf::grown().contains(&entry.shelf));
     // A script is no place for names that a shell would take apart.
     let is_word = |name: &str| {
         name.chars()

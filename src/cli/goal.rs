@@ -2,6 +2,8 @@
 
 use crate::graph::Graph;
 use crate::grow::WalkError;
+use crate::ifs::Verdict;
+use crate::model::Model;
 use crate::render::{Detail, NoDetail, RenderError};
 use crate::wording;
 
@@ -26,6 +28,7 @@ impl Goal {
     ) -> Result<Self, Failure> {
         Ok(match (steps, detail) {
             (None, Some(pixels)) => Self::Detail(pixels),
+            (None, None) if goes_on_to_a_detail(loaded) => Self::Detail(1.0),
             (asked, pixels) => Self::Steps(steps::choose(asked, loaded)?, pixels),
         })
     }
@@ -117,6 +120,16 @@ impl Goal {
                 wording::counted(&u64::from(steps_taken).into(), "step")
             ),
         }
+    }
+}
+
+/// Whether nobody says how far, and a system is drawn as far as it can be seen.
+fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
+    match &loaded.model {
+        Model::Ifs(system) => {
+            system.heading().steps.is_none() && system.contraction().verdict == Verdict::Contracts
+        }
+        Model::Rule(_) => false,
     }
 }
 

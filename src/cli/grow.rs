@@ -111,7 +111,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
-    let graph = loaded.compile(goal.steps())?;
+    let color_by = arguments.picture.style(loaded.model.heading()).color_by;
+    let graph = loaded.compile_for(goal.steps(), color_by)?;
     arguments.check(goal, format, &graph, &loaded)?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);

@@ -10,12 +10,14 @@ use crate::geometry::Bounds;
 use crate::graph::{Count, Graph, Level};
 use crate::heading::Parameter;
 use crate::measure::similarity_dimension;
+use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
 use crate::wording;
 
 use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
+use super::system::SystemInfo;
 use super::{Failure, help, output, steps};
 
 /// Says what a rule is: parameters, sizes of its steps, bounds, dimension
@@ -78,6 +80,8 @@ struct Info<'a> {
     bounds: Option<Corners>,
     limit_bounds: Option<Corners>,
     dimension: Dimension,
+    #[serde(flatten)]
+    system: Option<SystemInfo>,
 }
 
 #[derive(Serialize)]
@@ -227,6 +231,10 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
             similarity: similarity.value,
             note: similarity.note,
         },
+        system: match &loaded.model {
+            Model::Ifs(system) => Some(SystemInfo::of(system)),
+            Model::Rule(_) => None,
+        },
     }
 }
 
@@ -299,6 +307,9 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
     let names: Vec<_> = generators.iter().map(Generator::name).collect();
     if names.len() > 1 {
         line("generators", &names.join(", "));
+    }
+    for (label, value) in info.system.iter().flat_map(|system| system.lines(decimal)) {
+        line(label, &value);
     }
     line("random", if info.random { "yes" } else { "no" });
     line(

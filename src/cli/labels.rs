@@ -44,7 +44,9 @@ fn command(
     let mut command = format!("kfrac {subcommand} {file}");
     let settings = loaded.settings.iter();
     let settings = settings.map(|setting| ("set", format!("{}={}", setting.name, setting.value)));
-    for (name, value) in settings.chain(options) {
+    let omitted: Vec<_> = loaded.omitted.iter().map(u32::to_string).collect();
+    let omitted = (!omitted.is_empty()).then(|| ("omit", omitted.join(",")));
+    for (name, value) in settings.chain(omitted).chain(options) {
         // Joined by a sign of equality, so that a value may begin with a minus.
         command.push_str(&format!(" --{name}={}", quoted(&value)));
     }

@@ -22,6 +22,7 @@ mod sheet;
 mod show;
 mod steps;
 mod stop;
+mod system;
 mod text;
 
 use std::io;

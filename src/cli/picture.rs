@@ -184,6 +184,8 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
             ColorBy::Index => "The element's place in its fractal",
             ColorBy::Generator => "The generator that an element comes from",
             ColorBy::Direction => "The element's direction",
+            ColorBy::FirstMap => "The map of a system that is applied first, the innermost one",
+            ColorBy::LastMap => "The map of a system that is applied last: the tiling",
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))

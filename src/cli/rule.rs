@@ -13,6 +13,7 @@ use crate::document::{Document, Setting};
 use crate::expression::{Expression, Scope};
 use crate::graph::Graph;
 use crate::model::Model;
+use crate::style::{ColorBy, Named};
 
 use super::{Failure, text};
 
@@ -44,6 +45,9 @@ pub(super) struct RuleArguments {
     /// The value may be an expression: --set angle=180/7. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,
+    /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
+    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) omit: Vec<u32>,
 }
 
 fn setting(text: &str) -> Result<Setting, String> {
@@ -71,6 +75,8 @@ pub(super) struct Loaded {
     pub(super) model: Model,
     /// The parameters that were set.
     pub(super) settings: Vec<Setting>,
+    /// The maps that are left out, as the command line has them.
+    pub(super) omitted: Vec<u32>,
 }
 
 impl Loaded {
@@ -78,6 +84,22 @@ impl Loaded {
     pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
         let compiled = self.model.compile(steps);
         compiled.map_err(|error| self.model.diagnostic(&error).into())
+    }
+
+    /// The same for pictures whose colours tell something.
+    pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
+        match (&self.model, color_by) {
+            (Model::Ifs(system), ColorBy::LastMap) => Ok(Graph::telling_last_maps(system)),
+            (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) => {
+                let message = format!(
+                    "{} is a rule and has no maps that --color-by {} could tell apart",
+                    self.name,
+                    color_by.name()
+                );
+                Err(anyhow::anyhow!(message).into())
+            }
+            _ => self.compile(steps),
+        }
     }
 }
 
@@ -133,12 +155,43 @@ impl RuleArguments {
         if !quiet && !warnings.is_empty() {
             text::complain(&warnings);
         }
+        let model = self.without_omitted(model, &name)?;
         Ok(Loaded {
             name,
             document,
             model,
             settings: self.set.clone(),
+            omitted: self.omit.clone(),
         })
+    }
+
+    /// The model without the maps that are left out.
+    fn without_omitted(&self, model: Model, name: &str) -> Result<Model, Failure> {
+        if self.omit.is_empty() {
+            return Ok(model);
+        }
+        let usage = |message: String| Failure::Usage(message);
+        let Model::Ifs(system) = &model else {
+            return Err(usage(format!(
+                "--omit leaves maps out, and {name} has none"
+            )));
+        };
+        let count = system.ifs().maps().len();
+        let mut maps = Vec::new();
+        for &number in &self.omit {
+            match usize::try_from(number) {
+                Ok(number) if number <= count => maps.push(number - 1),
+                _ => {
+                    let message = format!("--omit {number}: {name} has {count} maps");
+                    return Err(usage(message));
+                }
+            }
+        }
+        let left = system.omitting(&maps).map_err(|errors| {
+            let said: Vec<_> = errors.iter().map(ToString::to_string).collect();
+            usage(format!("--omit: of what is left, {}", said.join("; ")))
+        })?;
+        Ok(Model::Ifs(left.into()))
     }
 
     /// What is wrong with a setting is wrong with the command line, not with the file.

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         Some(steps) => steps.clone(),
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
     };
-    let graph = loaded.compile(steps.largest())?;
+    let graph = loaded.compile_for(steps.largest(), arguments.style(&loaded).color_by)?;
     for &step in steps.as_slice() {
         arguments.growth.check(step, &graph, &loaded, None)?;
     }

@@ -62,6 +62,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             (Model::Rule(rule), KindDocument::Rule(document)) => {
                 rule::write(rule, document, &options, out)
             }
+            (Model::Ifs(system), _) => rule::write_system(system, &options, out),
+            (Model::Rule(_), _) => unreachable!("a model is of its document's kind"),
         };
         written.map_err(|error| match error {
             RenderError::Io(error) => output::failed(error, path),

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest}
 
 use crate::model::Kind;
 
+use super::data;
 use super::merge::{Entries, merge, merge_entries};
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, check_description, shape};
@@ -44,6 +45,7 @@ pub(super) fn assemble(
     }
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
+    assembly.inline_data(&mut entries);
     let (kind, complete) = (assembly.kind.unwrap_or_default(), assembly.complete);
     let value = Value::Mapping(entries);
     Some((Node { place, value }, kind, complete))
@@ -166,7 +168,7 @@ impl Assembly<'_> {
         let (_, parent) = entries.remove(index);
         let parents = self.parent(&parent).unwrap_or_else(|| {
             self.complete = false;
-            harmless_parent(&parent.place)
+            harmless_parent(&parent.place, self.kind.unwrap_or_default())
         });
         merge(&mut entries, parents);
         Some((place, entries))
@@ -226,6 +228,51 @@ impl Assembly<'_> {
                 }
                 "base_element" => self.component(node, Shelf::BaseElements),
                 _ => {}
+            }
+        }
+    }
+
+    /// Puts points in the place of the name of a file that holds them.
+    fn inline_data(&mut self, entries: &mut Entries) {
+        let interpolation = entries
+            .iter_mut()
+            .find(|(key, _)| key.name == "interpolate");
+        let Some((
+            _,
+            Node {
+                value: Value::Mapping(of),
+                ..
+            },
+        )) = interpolation
+        else {
+            return;
+        };
+        let Some((_, points)) = of.iter_mut().find(|(key, _)| key.name == "points") else {
+            return;
+        };
+        let Value::Text(name) = &points.value else {
+            return;
+        };
+        let found = self.catalogue.data(name, &points.place);
+        match found
+            .map_err(|error| error.at(&points.place))
+            .and_then(|source| data::read(&source))
+        {
+            Ok(read) => *points = read,
+            Err(error) => {
+                self.diagnostics.push(error);
+                self.complete = false;
+                let point = |x| {
+                    let number = |value| Node {
+                        place: points.place.clone(),
+                        value: Value::Number(value),
+                    };
+                    Node {
+                        place: points.place.clone(),
+                        value: Value::Sequence(vec![number(x), number(0.0)]),
+                    }
+                };
+                points.value = Value::Sequence([0.0, 0.5, 1.0].map(point).into());
             }
         }
     }
@@ -461,19 +508,25 @@ impl Assembly<'_> {
 }
 
 /// Stands in for the parent of a rule that was not found.
-fn harmless_parent(place: &Place) -> Entries {
-    [
-        ("initiator", Shelf::Initiators),
-        ("generator", Shelf::Generators),
-    ]
-    .map(|(name, shelf)| {
-        let key = Key {
-            name: name.into(),
-            place: place.clone(),
-        };
-        (key, harmless(shelf, place))
-    })
-    .into()
+fn harmless_parent(place: &Place, kind: Kind) -> Entries {
+    let key = |name: &str| Key {
+        name: name.into(),
+        place: place.clone(),
+    };
+    let node = |value| Node {
+        place: place.clone(),
+        value,
+    };
+    match kind {
+        Kind::Rule => vec![
+            (key("initiator"), harmless(Shelf::Initiators, place)),
+            (key("generator"), harmless(Shelf::Generators, place)),
+        ],
+        Kind::Ifs => {
+            let map = Value::Mapping(vec![(key("scale"), node(Value::Number(0.5)))]);
+            vec![(key("maps"), node(Value::Sequence(vec![node(map)])))]
+        }
+    }
 }
 
 /// Stands in for a component that was not found, so that no second error is reported for it.

@@ -10,16 +10,21 @@ pub(super) type Entries = Vec<(Key, Node)>;
 /// Keys that are true of the parent alone.
 const NOT_INHERITED: [&str; 2] = ["dimension", "hausdorff_dimension"];
 
+/// The keys that stand in place of each other in a system.
+const MAPS: [&str; 3] = ["maps", "vertices", "interpolate"];
+
 /// Adds a parent's entries to those of a rule that extends it.
 pub(super) fn merge(own: &mut Entries, parents: Entries) {
     let has = |own: &Entries, name: &str| own.iter().any(|(key, _)| key.name == name);
     let one = has(own, "generator");
     let several = has(own, "generators");
+    let maps = MAPS.iter().any(|way| has(own, way));
     for (key, inherited) in parents {
         let name = key.name.as_str();
         let replaced = match name {
             "generator" => several,
             "generators" | "select" => one,
+            _ if MAPS.contains(&name) => maps,
             _ => NOT_INHERITED.contains(&name),
         };
         if replaced {

@@ -4,7 +4,9 @@
 //! reads the result into the document of its kind. Nothing outside this module sees YAML.
 
 mod assemble;
+mod data;
 mod heading;
+mod ifs;
 mod merge;
 pub mod node;
 mod read;
@@ -16,6 +18,10 @@ mod style;
 mod yaml;
 
 pub use heading::{HeadingDocument, ParameterDocument};
+pub use ifs::{
+    CondensationDocument, EdgeDocument, FormDocument, IfsDocument, InterpolationDocument,
+    LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
+};
 pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
     PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
@@ -70,6 +76,19 @@ impl Point {
         }
     }
 
+    /// (0, 0), where a point was left out.
+    pub(crate) fn origin(place: &Place) -> Self {
+        let zero = || Written {
+            value: Expression::number(0.0),
+            place: place.clone(),
+        };
+        Self {
+            x: zero(),
+            y: zero(),
+            place: place.clone(),
+        }
+    }
+
     /// Whether two points are written the same.
     #[must_use]
     pub fn is_written_like(&self, other: &Self) -> bool {
@@ -82,6 +101,8 @@ impl Point {
 pub enum KindDocument {
     /// A production rule.
     Rule(RuleDocument),
+    /// An iterated function system.
+    Ifs(IfsDocument),
 }
 
 impl KindDocument {
@@ -90,6 +111,7 @@ impl KindDocument {
     pub fn heading(&self) -> &HeadingDocument {
         match self {
             Self::Rule(rule) => &rule.heading,
+            Self::Ifs(ifs) => &ifs.heading,
         }
     }
 }
@@ -146,6 +168,7 @@ impl Document {
     pub fn rule(&self) -> Option<&RuleDocument> {
         match &self.kind {
             KindDocument::Rule(rule) => Some(rule),
+            KindDocument::Ifs(_) => None,
         }
     }
 

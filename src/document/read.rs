@@ -5,14 +5,17 @@ mod base_element;
 mod elements;
 mod generator;
 mod heading;
+mod ifs;
 mod parameters;
 mod rule;
 mod select;
+mod set;
 
 pub(super) use base_element::BASE_ELEMENT;
 pub(super) use elements::{ELEMENTS, INITIATOR};
 pub(super) use generator::GENERATOR;
 pub(super) use heading::{DESCRIPTION, check_description};
+pub(super) use ifs::IFS;
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 
@@ -28,6 +31,7 @@ use super::shape::Shape;
 pub(super) fn shape(kind: Kind) -> &'static Shape {
     match kind {
         Kind::Rule => &RULE,
+        Kind::Ifs => &IFS,
     }
 }
 
@@ -41,6 +45,7 @@ pub(super) fn read(
     let mut reader = Reader::after(diagnostics);
     let document = match kind {
         Kind::Rule => rule::read_rule(&mut reader, node, complete).map(KindDocument::Rule),
+        Kind::Ifs => ifs::read_ifs(&mut reader, node, complete).map(KindDocument::Ifs),
     };
     diagnostics.extend(reader.diagnostics);
     document

@@ -10,7 +10,7 @@ mod json;
 use crate::catalogue::{Catalogue, Shelf};
 
 use super::read::{
-    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, INITIATOR, PARAMETER, PARAMS, RULE,
+    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, PARAMETER, PARAMS, RULE,
 };
 use super::shape::{Choice, Form, Needed, Shape};
 use json::{Json, Object, list};
@@ -41,13 +41,17 @@ const BASE_ELEMENT_FILE: Shape = Shape {
 #[must_use]
 pub fn schema(shelf: Shelf) -> String {
     let mut definitions = Definitions {
-        alone: shelf != Shelf::Rules,
+        alone: !Shelf::grown().contains(&shelf),
         named: Vec::new(),
     };
     let (about, body) = match shelf {
         Shelf::Rules => (
             "A production rule: what the growth starts from, and what replaces an element.",
-            definitions.rule(),
+            definitions.grown(&RULE),
+        ),
+        Shelf::Ifs => (
+            "An iterated function system: maps that shrink the plane, and what they are applied to.",
+            definitions.grown(&IFS),
         ),
         Shelf::Initiators => (
             "An initiator: what the growth starts from.",
@@ -78,16 +82,16 @@ struct Definitions {
 }
 
 impl Definitions {
-    /// A rule, which may leave to the one that it extends what a rule must have.
-    fn rule(&mut self) -> Object {
+    /// What can be grown, which may leave to the file that it extends what such a file must have.
+    fn grown(&mut self, shape: &Shape) -> Object {
         let extends = Object::default().with("required", list(["extends"]));
         let values = Object::default().with("additionalProperties", required(&PARAMETER, true));
-        let alone = required(&RULE, true)
+        let alone = required(shape, true)
             .with("properties", Object::default().with(PARAMS.name, values))
-            .and(ways(&RULE, true));
-        self.keys(&RULE)
+            .and(ways(shape, true));
+        self.keys(shape)
             .with("if", extends)
-            .with("then", ways(&RULE, false))
+            .with("then", required(shape, false).and(ways(shape, false)))
             .with("else", alone)
     }
 

@@ -17,7 +17,9 @@ pub enum Format {
 
 /// The columns: the fractal's number and age; the element's rank in it, its first and last point
 /// of traversal in the rule's units, whether it is fertile, its direction, whether it is visible.
-const COLUMNS: [&str; 10] = [
+///
+/// Where maps may be any affine ones, six columns follow: x' = a x + c y + e, y' = b x + d y + f.
+const COLUMNS: [&str; 16] = [
     "fractal",
     "age",
     "index",
@@ -28,7 +30,16 @@ const COLUMNS: [&str; 10] = [
     "fertile",
     "direction",
     "visible",
+    "a",
+    "b",
+    "c",
+    "d",
+    "e",
+    "f",
 ];
+
+/// The columns of what has similarities only.
+const WITHOUT_MAPS: usize = 10;
 
 /// Grows a graph and writes the elements of the approximant, a row each, in order of traversal.
 ///
@@ -46,7 +57,12 @@ pub fn write(
     out: &mut impl Write,
 ) -> Result<Walked, WalkError<io::Error>> {
     if format == Format::Csv {
-        writeln!(out, "{}", COLUMNS.join(",")).map_err(WalkError::Visitor)?;
+        let columns = if graph.is_affine() {
+            &COLUMNS[..]
+        } else {
+            &COLUMNS[..WITHOUT_MAPS]
+        };
+        writeln!(out, "{}", columns.join(",")).map_err(WalkError::Visitor)?;
     }
     if let Some(progress) = growth.progress
         && let Ok(Some(elements)) = graph.check_size(growth.steps, growth.most_elements)
@@ -89,6 +105,7 @@ struct Row {
     fertile: bool,
     direction: Direction,
     visible: bool,
+    map: Option<[f64; 6]>,
 }
 
 /// Rows, and the text that they become.
@@ -138,6 +155,11 @@ impl Cells<'_> {
         self.flag(7, row.fertile);
         self.whole(8, u64::from(row.direction.number()));
         self.flag(9, row.visible);
+        if let Some(map) = row.map {
+            for (column, value) in (WITHOUT_MAPS..).zip(map) {
+                self.coordinate(column, value);
+            }
+        }
         if self.format == Format::JsonLines {
             self.text.push(b'}');
         }
@@ -198,7 +220,9 @@ impl Visitor for Collector<'_> {
 
     fn element(&mut self, element: &Element) -> io::Result<()> {
         let ends = element.frame.ends();
-        if !ends.iter().all(|end| end.is_finite()) {
+        let affine = self.graph.is_affine();
+        let map = affine.then(|| element.frame.map.to_cols_array());
+        if !ends.iter().all(|end| end.is_finite()) || !element.frame.map.is_finite() {
             let message = "an element lies beyond the range of numbers";
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
@@ -209,6 +233,7 @@ impl Visitor for Collector<'_> {
             fertile: element.fertile,
             direction: element.frame.direction,
             visible: self.graph.objects()[element.object].visible,
+            map,
         });
         Ok(())
     }

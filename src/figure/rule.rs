@@ -13,6 +13,7 @@ mod lines;
 mod marks;
 mod page;
 mod panel;
+mod system;
 mod words;
 
 use std::io::Write;
@@ -29,6 +30,8 @@ use crate::style::Colour;
 use super::LABEL;
 use super::text::Font;
 use block::Block;
+
+pub use system::write_system;
 
 /// How the figure is made.
 #[derive(Clone, Debug)]

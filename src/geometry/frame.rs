@@ -59,6 +59,22 @@ impl Frame {
     pub fn length(&self) -> f64 {
         self.map.matrix2.x_axis.length()
     }
+
+    /// The most that the map makes anything longer: its larger singular value. For a similarity it
+    /// is the length.
+    #[inline]
+    #[must_use]
+    pub fn stretch(&self) -> f64 {
+        let (x, y) = (self.map.matrix2.x_axis, self.map.matrix2.y_axis);
+        // The parts that keep and that reverse the sense of rotation; of a similarity one is zero.
+        let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
+        let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
+        if reversed == 0.0 {
+            kept.sqrt() / 2.0
+        } else {
+            (kept.sqrt() + reversed.sqrt()) / 2.0
+        }
+    }
 }
 
 /// The similarity z → from + (to − from)·τ_d(z) that puts an element of a generator into place.

@@ -172,6 +172,9 @@ impl<'r> Compiler<'r> {
             counts_index: self.depends.counts_index,
             draws: rule.is_random(),
             seeds,
+            affine: false,
+            unit: 1.0,
+            middle: DVec2::new(0.5, 0.0),
         })
     }
 
@@ -220,6 +223,7 @@ impl<'r> Compiler<'r> {
             base_element: class.base_element,
             visible: class.visible,
             origin: class.origin,
+            last_map: None,
             behaviour,
             replacement: if class.fertile {
                 Replacement::Beyond

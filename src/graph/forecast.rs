@@ -9,7 +9,7 @@ use std::ops::AddAssign;
 use crate::geometry::Direction;
 use crate::rule::{BaseElement, Placement};
 
-use super::{Alternative, Chain, Count, Graph, Replacement};
+use super::{Alternative, Chain, Count, Graph, Instance, Replacement};
 
 /// The size of one approximant.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,8 @@ pub struct Level {
     pub fertile: Count,
     /// The number of fractals that have been started: 1, and one for every seed.
     pub fractals: Count,
-    /// Σ |p1 − p0| over all elements, in the rule's units; `None` if it depends on draws.
+    /// Σ |p1 − p0| over all elements, in the rule's units; `None` if it depends on draws, or
+    /// on more than the ratios of the maps.
     pub length: Option<f64>,
     /// The enclosed area, in square units, where all outlines are closed: the sum over the outlines,
     /// so that what overlaps counts as often as it occurs.
@@ -236,7 +237,7 @@ impl<'g> Forecast<'g> {
         };
         let orientation = area_under(&graph.initiator).signum();
         for (number, instance) in graph.initiator.instances.iter().enumerate() {
-            let square = instance.length * instance.length;
+            let square = forecast.square(instance);
             forecast.add(
                 instance.object,
                 &Count::from(1u64),
@@ -258,6 +259,15 @@ impl<'g> Forecast<'g> {
             );
         }
         forecast
+    }
+
+    /// By how much areas change in an instance.
+    fn square(&self, instance: &Instance) -> f64 {
+        if self.graph.affine {
+            instance.frame.map.matrix2.determinant().abs()
+        } else {
+            instance.length * instance.length
+        }
     }
 
     fn add(&mut self, object: usize, count: &Count, sums: Sums) {
@@ -318,7 +328,8 @@ impl<'g> Forecast<'g> {
             elements: self.elements(),
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
-            length: plain.then(|| all().map(|(_, tally)| tally.sums.length).sum()),
+            length: (plain && self.graph.is_similar())
+                .then(|| all().map(|(_, tally)| tally.sums.length).sum()),
             area: match self.outlines {
                 Outlines::ClosedElements if plain => {
                     Some(all().map(|(_, tally)| tally.sums.area).sum())
@@ -444,7 +455,7 @@ impl<'g> Forecast<'g> {
                 self.new_lengths[1] += parent.length * longer;
             }
             before = instance;
-            let square = instance.length * instance.length;
+            let square = self.square(instance);
             let sums = Sums {
                 apart: match (is_first, joins) {
                     (true, _) => parent.apart,

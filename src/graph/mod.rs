@@ -13,9 +13,11 @@
 
 mod bounds;
 mod compile;
+mod contract;
 mod count;
 mod error;
 mod forecast;
+mod ifs;
 mod limit;
 mod reach;
 mod state;
@@ -37,8 +39,11 @@ pub struct Object {
     pub base_element: usize,
     /// Whether it is drawn.
     pub visible: bool,
-    /// The generator that listed it, by number; `None` for the initiator.
+    /// The generator that listed it, or the map that is applied to it first, by number; `None` for the
+    /// initiator, and for the condensation sets of a system.
     pub origin: Option<usize>,
+    /// The map of a system that is applied last to what stands there, by number, where that is told.
+    pub last_map: Option<usize>,
     /// What it becomes: objects of one behaviour have the same replacements, however they look.
     pub(crate) behaviour: usize,
     /// What takes its place in the next step.
@@ -72,7 +77,8 @@ pub struct Alternative {
 pub struct Instance {
     /// Map and direction relative to the parent.
     pub frame: Frame,
-    /// |to − from|: its length as a multiple of its parent's.
+    /// Its length as a multiple of its parent's: |to − from|, or the most that its map stretches
+    /// anything where that is no similarity.
     pub length: f64,
     /// Whether it joins the instance listed before it (the first one: the last, in a closed chain).
     pub joined: bool,
@@ -127,6 +133,12 @@ pub struct Graph {
     pub(crate) counts_index: bool,
     pub(crate) draws: bool,
     pub(crate) seeds: bool,
+    /// Whether maps may be any affine ones.
+    pub(crate) affine: bool,
+    /// The length of an element whose frame is the unit frame.
+    pub(crate) unit: f64,
+    /// A point of the unit frame about which lies what becomes of an element.
+    pub(crate) middle: DVec2,
 }
 
 impl Graph {
@@ -185,6 +197,38 @@ impl Graph {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
+    }
+
+    /// Whether maps may be any affine ones, as in systems; those of rules are similarities.
+    #[must_use]
+    pub fn is_affine(&self) -> bool {
+        self.affine
+    }
+
+    /// Whether all maps are similarities, up to rounding.
+    #[must_use]
+    pub fn is_similar(&self) -> bool {
+        const ROUNDING: f64 = 1e-12;
+        let similar = |instance: &Instance| {
+            let linear = instance.frame.map.matrix2;
+            let square = instance.length * instance.length;
+            (linear.determinant().abs() - square).abs() <= ROUNDING * square
+        };
+        !self.affine || self.instances().all(|(_, instance)| similar(instance))
+    }
+
+    /// Whether any element may join the one before it.
+    pub(crate) fn joins(&self) -> bool {
+        let all = self.instances().map(|(_, instance)| instance);
+        let all = all.chain(&self.initiator.instances);
+        !self.is_plain() || { all }.any(|instance| instance.joined)
+    }
+
+    /// The length of an element whose frame is the unit frame: 1 in rules, in systems the long side of
+    /// the limit set's box.
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        self.unit
     }
 
     /// The first object of every behaviour.

@@ -9,9 +9,6 @@ use crate::rule::Placement;
 
 use super::{Graph, Instance, Object, Replacement};
 
-/// The middle of an element in its unit frame.
-const MIDDLE: DVec2 = DVec2::new(0.5, 0.0);
-
 /// Radii that still change by less than this multiple are good enough.
 const TOLERANCE: f64 = 1e-3;
 
@@ -28,10 +25,10 @@ struct Edge {
 }
 
 impl Graph {
-    /// For every object, the radius of a disc about the middle of its unit frame that holds it and
-    /// all that becomes of it, seeds included, at every step, whatever is drawn; infinite where the
-    /// graph does not tell: where seeds are placed as the initiator, and where what becomes of the
-    /// object does not surely shrink.
+    /// For every object, the radius of a disc about the [middle](Graph::middle) of its unit frame that
+    /// holds it and all that becomes of it, seeds included, at every step, whatever is drawn; infinite
+    /// where the graph does not tell: where seeds are placed as the initiator, and where what becomes of
+    /// the object does not surely shrink.
     ///
     /// `own` is the radius of an object that is drawn itself, about the same point. The result may
     /// be larger than the smallest disc, never smaller but by rounding.
@@ -57,7 +54,8 @@ impl Graph {
         let most = if ratio < 1.0 {
             spread / (1.0 - ratio)
         } else {
-            f64::INFINITY
+            self.reach_by_products(self.middle, spread)
+                .unwrap_or(f64::INFINITY)
         };
         let unknown = self.resets();
         let mut radii: Vec<f64> = (0..own.len())
@@ -99,11 +97,13 @@ impl Graph {
     /// The radius of a disc that holds the outline of an object, where it is drawn, and its unit
     /// frame, about the middle of the latter.
     pub(crate) fn outline_radius(&self, object: &Object) -> f64 {
+        // Elements that are not drawn have a place nevertheless; in systems that is a point.
+        let frame = if self.affine { 0.0 } else { self.middle.x };
         if object.visible {
-            self.base_elements()[object.base_element].radius()
+            let base_element = &self.base_elements()[object.base_element];
+            base_element.radius_about(self.middle).max(frame)
         } else {
-            // Elements that are not drawn have a place nevertheless.
-            MIDDLE.x
+            frame
         }
     }
 
@@ -114,7 +114,7 @@ impl Graph {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
                 let edge = |(_, instance): (_, &Instance)| Edge {
                     object: instance.object,
-                    away: instance.frame.map.transform_point2(MIDDLE).distance(MIDDLE),
+                    away: (instance.frame.map.transform_point2(self.middle) - self.middle).length(),
                     length: instance.length,
                 };
                 return self.children(object).map(edge).collect();
@@ -143,6 +143,12 @@ impl Graph {
         let index = Interval::new(1.0, f64::INFINITY);
         let length = Interval::new(0.0, f64::INFINITY);
         [index, time, time, length]
+    }
+
+    /// About where, in the unit frame of an element, what becomes of it lies.
+    #[must_use]
+    pub fn middle(&self) -> DVec2 {
+        self.middle
     }
 
     /// Whether an object leads to seeds that are placed as the initiator, by object. However small
@@ -193,7 +199,7 @@ impl Graph {
     /// length in so many steps then.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
-        if !self.is_plain() || self.resets().contains(&true) {
+        if !self.is_plain() || !self.is_similar() || self.resets().contains(&true) {
             return None;
         }
         let fertile = |instance: &&Instance| {
@@ -202,7 +208,7 @@ impl Graph {
         let start = self.initiator.instances.iter().filter(fertile);
         let later = self.instances().map(|(_, instance)| instance);
         let start = one_length(start)?;
-        Some([start, one_length(later.filter(fertile))?])
+        Some([start * self.unit, one_length(later.filter(fertile))?])
     }
 
     /// Whether all that is replaced again and again becomes smaller than any length: no object
@@ -218,6 +224,9 @@ impl Graph {
         }
         if self.longest_ratio() * SLACK < 1.0 {
             return true;
+        }
+        if self.affine {
+            return self.contracts();
         }
         // The longest paths (Bellman 1958): they go on growing if and only if there is such a cycle.
         let mut longest = vec![1.0; self.objects.len()];

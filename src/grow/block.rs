@@ -143,7 +143,12 @@ impl Run<'_> {
     /// The lengths |p1 − p0| of all elements together.
     #[must_use]
     pub fn length(&self) -> f64 {
-        self.frame.length() * self.block.length
+        if self.graph.is_affine() {
+            let lengths = self.elements().map(|element| element.frame.length());
+            lengths.sum()
+        } else {
+            self.frame.length() * self.block.length
+        }
     }
 
     /// Adds what is drawn, without strokes, to a box.
@@ -249,7 +254,8 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
         let frame = found.standing.frame;
         let object = &graph.objects()[found.object];
         let base_element = &graph.base_elements()[object.base_element];
-        if object.visible && base_element.is_line() {
+        // Of what is sheared the parts do not keep their share of the width.
+        if object.visible && base_element.is_line() && !graph.is_affine() {
             sticks.iter_mut().for_each(|sticks| {
                 sticks.push(Stick {
                     ends: frame.ends(),

@@ -169,7 +169,7 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
         } else {
             (self.enter)(&subtree)
         };
-        let length = standing.frame.length();
+        let length = standing.frame.stretch();
         match enter {
             Enter::Keep if own.visible => {
                 let base_element = &self.graph.base_elements()[own.base_element];
@@ -178,7 +178,7 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
             }
             Enter::Keep | Enter::Skip => {}
             Enter::Replace => {
-                let middle = standing.frame.map.transform_point2(DVec2::new(0.5, 0.0));
+                let middle = standing.frame.map.transform_point2(self.graph.middle());
                 let farthest =
                     middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;
                 if farthest > self.found() {

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::digraph::components;
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
 
@@ -42,6 +43,9 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     }
     if graph.depth().is_some() {
         return Similarity::none("what replaces an element changes from step to step without end");
+    }
+    if !graph.is_similar() {
+        return Similarity::none("the maps are no similarities");
     }
     let edges = edges(graph);
     let Some(edges) = edges else {
@@ -119,7 +123,7 @@ struct Part {
     edges: Vec<Edge>,
 }
 
-/// The strongly connected parts that have an edge inside (Tarjan 1972).
+/// The strongly connected parts that have an edge inside.
 fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
     let mut targets = vec![Vec::new(); size];
     for edge in edges {
@@ -151,53 +155,6 @@ fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
     }
     parts.retain(|part| !part.edges.is_empty());
     parts
-}
-
-/// The number of each object's strongly connected component.
-pub(super) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
-    const NONE: usize = usize::MAX;
-    let size = targets.len();
-    let (mut order, mut low, mut component) = (vec![NONE; size], vec![0; size], vec![NONE; size]);
-    let (mut visited, mut count) = (0, 0);
-    let mut open = Vec::new();
-    for root in 0..size {
-        if order[root] != NONE {
-            continue;
-        }
-        // Objects on the way from the root, each with the number of its targets that were taken.
-        let mut way = vec![(root, 0)];
-        while let Some((object, taken)) = way.last_mut() {
-            let object = *object;
-            if *taken == 0 {
-                (order[object], low[object]) = (visited, visited);
-                visited += 1;
-                open.push(object);
-            }
-            if let Some(&target) = targets[object].get(*taken) {
-                *taken += 1;
-                if order[target] == NONE {
-                    way.push((target, 0));
-                } else if component[target] == NONE {
-                    low[object] = low[object].min(order[target]);
-                }
-                continue;
-            }
-            way.pop();
-            if let Some((parent, _)) = way.last() {
-                low[*parent] = low[*parent].min(low[object]);
-            }
-            if low[object] == order[object] {
-                while let Some(member) = open.pop() {
-                    component[member] = count;
-                    if member == object {
-                        break;
-                    }
-                }
-                count += 1;
-            }
-        }
-    }
-    component
 }
 
 impl Part {

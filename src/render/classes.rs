@@ -42,7 +42,7 @@ impl Classes {
         let largest = match by {
             ColorBy::None | ColorBy::Fractal | ColorBy::Index => 0,
             ColorBy::Step | ColorBy::Age => u64::from(steps),
-            ColorBy::Generator => graph.origins() as u64,
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => graph.origins() as u64,
             ColorBy::Direction => 3,
         };
         Self { by, largest }
@@ -74,9 +74,12 @@ impl Classes {
             ColorBy::Age => u64::from(fractal.age),
             ColorBy::Fractal => fractal.number,
             ColorBy::Index => element.index - 1,
-            ColorBy::Generator => graph.objects()[element.object]
+            ColorBy::Generator | ColorBy::FirstMap => graph.objects()[element.object]
                 .origin
                 .map_or(0, |generator| generator as u64 + 1),
+            ColorBy::LastMap => graph.objects()[element.object]
+                .last_map
+                .map_or(0, |map| map as u64 + 1),
             ColorBy::Direction => u64::from(element.frame.direction.number()) - 1,
         }
     }

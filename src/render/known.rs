@@ -39,9 +39,13 @@ impl<'g> Survey<'g> {
             ColorBy::Fractal => Vec::new(),
             ColorBy::Index => one(false, 0)?,
             ColorBy::Step => stands.values(|stands| u64::from(stands.born)),
-            ColorBy::Generator => {
+            ColorBy::Generator | ColorBy::FirstMap => {
                 stands.values(|stands| stands.origin(graph).map_or(0, |origin| origin as u64 + 1))
             }
+            ColorBy::LastMap => stands.values(|stands| {
+                let object = &graph.objects()[stands.object];
+                object.last_map.map_or(0, |map| map as u64 + 1)
+            }),
             ColorBy::Direction => stands.values(|stands| u64::from(stands.direction.number()) - 1),
         };
         for value in used {

@@ -219,7 +219,7 @@ impl<'a> Surveyor<'a> {
     /// Surveys everything down to elements of a number of pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
         let start = self.graph.initiator().instances.iter();
-        let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
+        let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();
         let mut shortest = longest * FIRST_LOOK;
         let mut survey = self.look_down_to(shortest)?;
         for _ in 0..MOST_LOOKS {

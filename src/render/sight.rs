@@ -17,7 +17,7 @@ mod tests;
 /// Where walks for a picture need not go.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
-    /// Elements shorter than this are not replaced, in the rule's units.
+    /// Elements whose frames are shorter than this are not replaced, in the rule's units.
     shortest: f64,
     window: Option<Window>,
     /// Whether an object is replaced however small it is, by object; empty if none is.
@@ -30,6 +30,8 @@ struct Window {
     bounds: Bounds,
     /// How far what becomes of an object reaches from the middle of its frame, by object.
     reaches: Arc<[f64]>,
+    /// That middle, in every frame.
+    middle: DVec2,
     /// What is done with an element whose descendants all lie outside.
     outside: Enter,
 }
@@ -48,7 +50,7 @@ impl Sight {
     /// the initiator: those are as large as ever.
     pub(super) fn to_length(graph: &Graph, shortest: f64) -> Self {
         Self {
-            shortest,
+            shortest: shortest / graph.unit(),
             window: None,
             is_whole: if shortest > 0.0 {
                 graph.resets().into()
@@ -79,6 +81,7 @@ impl Sight {
         let window = Window {
             bounds: Bounds::new(bounds.min() - pad, bounds.max() + pad),
             reaches: reaches.into(),
+            middle: graph.middle(),
             outside,
         };
         Self {
@@ -103,7 +106,7 @@ impl Sight {
         if !self.cuts() {
             return Enter::Replace;
         }
-        let length = subtree.frame.length();
+        let length = subtree.frame.stretch();
         if let Some(window) = &self.window
             && window.is_outside(subtree, length)
         {
@@ -122,7 +125,7 @@ impl Window {
     fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
         // Rounding must not hide what just touches the edge.
         const SLACK: f64 = 1.0 + 1e-9;
-        let middle = subtree.frame.map.transform_point2(DVec2::new(0.5, 0.0));
+        let middle = subtree.frame.map.transform_point2(self.middle);
         let nearest = middle.clamp(self.bounds.min(), self.bounds.max());
         let reach = self.reaches[subtree.object] * length * SLACK;
         middle.distance_squared(nearest) > reach * reach
@@ -154,7 +157,7 @@ fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
 /// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
 fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
     let stroke = match style.width {
-        Width::Relative(width) => width * relative_overhang(style),
+        Width::Relative(width) => width * graph.unit() * relative_overhang(style),
         Width::Pixels(_) => 0.0,
     };
     graph.outline_radius(object) + stroke
@@ -187,7 +190,7 @@ fn links(graph: &Graph, longest: f64) -> f64 {
     let mut farthest = 0.0;
     for object in graph.objects() {
         let base_element = &graph.base_elements()[object.base_element];
-        if !object.visible || base_element.is_closed() {
+        if !object.visible || base_element.is_closed() || !graph.joins() {
             continue;
         }
         let (start, _) = base_element.outline(false);

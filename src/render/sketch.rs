@@ -208,7 +208,7 @@ impl<'a> Sketcher<'a> {
         }));
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
-        let mirrored = element.frame.direction.is_mirrored();
+        let mirrored = map.matrix2.determinant() < 0.0;
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
         self.start_at(map.transform_point2(start));
@@ -312,7 +312,7 @@ impl<'a> Sketcher<'a> {
     }
 
     fn width_class(&self, element: &Element) -> i32 {
-        self.octave(element.frame.length()).map_or(0, width_class)
+        self.octave(element.frame.stretch()).map_or(0, width_class)
     }
 
     /// The logarithm to base 2 of the width that the stroke of an element of a length has, in
@@ -321,7 +321,7 @@ impl<'a> Sketcher<'a> {
         match self.scene.style.width {
             Width::Pixels(_) => None,
             Width::Relative(width) => Some(libm::log2(
-                width * length * self.scene.canvas.scale() * FINE,
+                width * length * self.scene.graph.unit() * self.scene.canvas.scale() * FINE,
             )),
         }
     }

@@ -114,7 +114,7 @@ impl<'g> Survey<'g> {
     pub(super) fn pad(&self, object: &Object) -> f64 {
         match self.style.width {
             Width::Relative(width) if self.is_stroked(object) => {
-                width * relative_overhang(self.style)
+                width * self.graph.unit() * relative_overhang(self.style)
             }
             _ => 0.0,
         }
@@ -276,7 +276,7 @@ impl Visitor for Survey<'_> {
             self.strokes |= self.is_stroked(object);
             if !self.is_bounded {
                 let base_element = &self.graph.base_elements()[object.base_element];
-                let pad = self.pad(object) * element.frame.length();
+                let pad = self.pad(object) * element.frame.stretch();
                 base_element.add_to(&mut self.bounds, &element.frame.map, pad);
             }
         }

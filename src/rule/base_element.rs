@@ -157,14 +157,14 @@ impl BaseElement {
         largest
     }
 
-    /// The radius of a disc that holds the outline and its unit frame, about the middle of the latter:
-    /// no less than the smallest, and no more than √2 times that.
+    /// The radius of a disc about a point that holds the outline: no less than the smallest, and no
+    /// more than √2 times that.
     #[must_use]
-    pub fn radius(&self) -> f64 {
-        let mut far = DVec2::new(0.5, 0.0);
+    pub fn radius_about(&self, centre: DVec2) -> f64 {
+        let mut far = DVec2::ZERO;
         for axis in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
-            let beyond = self.support(axis) - axis.x / 2.0;
-            far = far.max(axis.abs() * beyond);
+            let beyond = self.support(axis) - axis.dot(centre);
+            far = far.max(axis.abs() * beyond.abs());
         }
         far.length()
     }
@@ -244,7 +244,7 @@ fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
 
 /// Cubic Bézier pieces along the circular arc from `from` through `through` to `to`.
 ///
-/// Each spans at most 22.5°, which keeps them within 1e-9 of the radius of the arc. `None` if the
+/// Each spans at most 22.5°, which keeps them within 1e-7 of the radius of the arc. `None` if the
 /// three points lie on a line.
 #[must_use]
 pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {

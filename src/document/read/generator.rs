@@ -11,6 +11,7 @@ use crate::rule::Placement;
 use super::elements::{ABOUT_ELEMENTS, ELEMENTS, read_entries, required_entries};
 use super::first_line;
 use super::parameters::written;
+use super::set::pair;
 
 pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",
@@ -325,16 +326,7 @@ fn read_move(reader: &mut Reader, node: &Node) -> Option<MoveDocument> {
     {
         reader.error_with_hint(&node.place, "this move moves nothing", MOVE.hint);
     }
-    let scale = fields.take("scale").map(|node| match &node.value {
-        Value::Sequence(_) => {
-            let point = reader.point(node);
-            [point.x, point.y]
-        }
-        _ => {
-            let scale = reader.number(node);
-            [scale.clone(), scale]
-        }
-    });
+    let scale = fields.take("scale").map(|node| pair(reader, node));
     let points = match fields.take("points") {
         None => WhichPoints::Inner,
         Some(Node {

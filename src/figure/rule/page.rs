@@ -36,7 +36,7 @@ pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
     };
     let font = &common.font;
     let (generators, bases) = (rule.generators().len(), rule.base_elements().len());
-    let columns = [
+    let columns = vec![
         ("initiator", components::initiator(rule, &common)),
         (
             plural(generators, "generator", "generators"),
@@ -47,16 +47,27 @@ pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
             components::base_elements(&common),
         ),
     ];
+    let source = rule.description().source.as_deref().unwrap_or_default();
+    let key = |width| key::key(rule, font, width);
+    lay_out(font, columns, [title, source], key, &key::notes(rule))
+}
+
+/// A page of columns under a title and a source, with a key as wide as they are, and notes.
+pub(super) fn lay_out(
+    font: &Font,
+    columns: Vec<(&str, Block)>,
+    [title, source]: [&str; 2],
+    key: impl Fn(f64) -> Block,
+    notes: &[String],
+) -> Block {
     let columns = beside(columns, font);
     let width = columns.size.x.max(LEAST_WIDTH);
     let paragraph = |text: &str, size: f64| {
         let lines = font.wrap(&shortened(text), size, width);
         Block::text(font, lines, size, false)
     };
-    let source = rule.description().source.as_deref().unwrap_or_default();
     let head = vec![paragraph(title, TITLE), paragraph(source, SMALL)];
-    let mut foot = vec![key::key(rule, font, width)];
-    let notes = key::notes(rule);
+    let mut foot = vec![key(width)];
     foot.extend(notes.iter().map(|note| paragraph(note, SMALL)));
     let content = vec![
         Block::column(head, 2.0, false),
@@ -71,7 +82,7 @@ pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
     page
 }
 
-fn plural(count: usize, one: &'static str, several: &'static str) -> &'static str {
+pub(super) fn plural(count: usize, one: &'static str, several: &'static str) -> &'static str {
     if count == 1 { one } else { several }
 }
 
@@ -94,7 +105,7 @@ fn across(width: f64) -> Block {
 }
 
 /// Columns with their headings, and lines between them.
-fn beside<const N: usize>(columns: [(&str, Block); N], font: &Font) -> Block {
+fn beside(columns: Vec<(&str, Block)>, font: &Font) -> Block {
     let heights = columns.iter().map(|(_, block)| block.size.y);
     let height = heights.fold(0.0, f64::max).ceil();
     let top = (1.4 * HEADING).round() + 12.0;

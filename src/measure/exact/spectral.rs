@@ -1,6 +1,6 @@
 //! How fast paths of a graph multiply: the spectral radius of its matrix.
 
-use crate::measure::similarity::components;
+use crate::digraph::components;
 
 /// The enclosure must be this narrow, relatively, to be taken for a value.
 const NARROW: f64 = 1e-13;

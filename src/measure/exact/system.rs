@@ -1,8 +1,8 @@
 //! What dimensions are computed from: sets that are made of smaller copies of each other.
 
+use crate::digraph::components;
 use crate::geometry::{DAffine2, DMat2};
 use crate::graph::{Graph, Instance, Replacement};
-use crate::measure::similarity::components;
 use crate::rule::Placement;
 use glam::{DAffine3, DMat3, DVec3};
 

@@ -1,0 +1,119 @@
+//! What `kfrac info` says of an iterated function system beside what it says of all files.
+
+use serde::Serialize;
+
+use crate::geometry::DVec2;
+use crate::ifs::{System, Verdict};
+
+/// The maps, whether they contract, and the measure that random iteration draws.
+#[derive(Serialize)]
+pub(super) struct SystemInfo {
+    maps: Vec<MapInfo>,
+    /// Whether the weights are worked out from the maps' determinants.
+    default_weights: bool,
+    contraction: ContractionInfo,
+    measure: Option<MeasureInfo>,
+}
+
+#[derive(Serialize)]
+struct MapInfo {
+    name: Option<String>,
+    weight: f64,
+    fixed_point: Option<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+struct ContractionInfo {
+    contracts: Option<bool>,
+    lower: f64,
+    upper: f64,
+    length: u32,
+}
+
+#[derive(Serialize)]
+struct MeasureInfo {
+    mean: [f64; 2],
+    covariance: [[f64; 2]; 2],
+}
+
+impl SystemInfo {
+    pub(super) fn of(system: &System) -> Self {
+        let ifs = system.ifs();
+        let contraction = system.contraction();
+        let point = |point: DVec2| (point + DVec2::ZERO).to_array();
+        let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
+        let maps = maps.map(|((map, &weight), fixed)| MapInfo {
+            name: map.name.clone(),
+            weight,
+            fixed_point: fixed.map(point),
+        });
+        let measure = ifs.measure().map(|measure| MeasureInfo {
+            mean: point(measure.moments.mean),
+            covariance: measure.moments.covariance.to_cols_array_2d(),
+        });
+        Self {
+            maps: maps.collect(),
+            default_weights: ifs.has_default_weights(),
+            contraction: ContractionInfo {
+                contracts: match contraction.verdict {
+                    Verdict::Contracts => Some(true),
+                    Verdict::Diverges => Some(false),
+                    Verdict::Undecided => None,
+                },
+                lower: contraction.lower,
+                upper: contraction.upper,
+                length: contraction.length,
+            },
+            measure,
+        }
+    }
+
+    /// The same in lines, each with its label.
+    pub(super) fn lines(&self, decimal: fn(f64) -> String) -> Vec<(&'static str, String)> {
+        let mut lines = Vec::new();
+        for (number, map) in self.maps.iter().enumerate() {
+            let name = map.name.clone().unwrap_or_else(|| (number + 1).to_string());
+            let fixed = map.fixed_point.map_or_else(
+                || "no single fixed point".into(),
+                |point| {
+                    let [x, y] = point.map(decimal);
+                    format!("fixed point [{x}, {y}]")
+                },
+            );
+            lines.push((
+                "map",
+                format!("{name}: weight {}, {fixed}", decimal(map.weight)),
+            ));
+        }
+        if self.default_weights {
+            let how = "by the determinants of the maps, since the file gives none";
+            lines.push(("weights", how.into()));
+        }
+        let ContractionInfo {
+            contracts,
+            lower,
+            upper,
+            length,
+        } = self.contraction;
+        let known = match contracts {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "not decided",
+        };
+        let s = if length == 1 { "" } else { "s" };
+        lines.push((
+            "contracts",
+            format!(
+                "{known}: by a factor from {lower:.6} to {upper:.6} a map, by products of up to \
+                 {length} map{s}"
+            ),
+        ));
+        if let Some(measure) = &self.measure {
+            let [x, y] = measure.mean.map(decimal);
+            lines.push(("mean", format!("[{x}, {y}]")));
+            let [[xx, xy], [yx, yy]] = measure.covariance.map(|row| row.map(decimal));
+            lines.push(("covariance", format!("[[{xx}, {xy}], [{yx}, {yy}]]")));
+        }
+        lines
+    }
+}

@@ -1,0 +1,49 @@
+//! Directed graphs, by the numbers of their vertices.
+
+/// The number of each vertex's strongly connected component (Tarjan 1972), from the lists of the
+/// vertices that edges lead to. An edge never leads to a component of a higher number.
+pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
+    const NONE: usize = usize::MAX;
+    let size = targets.len();
+    let (mut order, mut low, mut component) = (vec![NONE; size], vec![0; size], vec![NONE; size]);
+    let (mut visited, mut count) = (0, 0);
+    let mut open = Vec::new();
+    for root in 0..size {
+        if order[root] != NONE {
+            continue;
+        }
+        // Vertices on the way from the root, each with the number of its targets that were taken.
+        let mut way = vec![(root, 0)];
+        while let Some((vertex, taken)) = way.last_mut() {
+            let vertex = *vertex;
+            if *taken == 0 {
+                (order[vertex], low[vertex]) = (visited, visited);
+                visited += 1;
+                open.push(vertex);
+            }
+            if let Some(&target) = targets[vertex].get(*taken) {
+                *taken += 1;
+                if order[target] == NONE {
+                    way.push((target, 0));
+                } else if component[target] == NONE {
+                    low[vertex] = low[vertex].min(order[target]);
+                }
+                continue;
+            }
+            way.pop();
+            if let Some((parent, _)) = way.last() {
+                low[*parent] = low[*parent].min(low[vertex]);
+            }
+            if low[vertex] == order[vertex] {
+                while let Some(member) = open.pop() {
+                    component[member] = count;
+                    if member == vertex {
+                        break;
+                    }
+                }
+                count += 1;
+            }
+        }
+    }
+    component
+}

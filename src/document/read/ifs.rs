@@ -1,0 +1,443 @@
+//! An iterated function system: what its keys hold.
+
+use crate::catalogue::Shelf;
+use crate::document::Point;
+use crate::document::Written;
+use crate::document::ifs::{
+    CondensationDocument, EdgeDocument, IfsDocument, InterpolationDocument, LinearDocument,
+    MapDocument, MapsDocument, Scales,
+};
+use crate::document::node::{Node, Value};
+use crate::document::reader::{Fields, Reader};
+use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
+use crate::model::Kind;
+
+use super::first_line;
+use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::parameters::{PARAMS, written};
+use super::set::{CONDENSATION, SET, pair, read_set};
+
+/// The keys of an iterated function system.
+pub(in crate::document) const IFS: Shape = Shape {
+    what: "an iterated function system",
+    keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
+    ways: &[
+        Way {
+            needs: &["maps"],
+            excludes: &["vertices", "interpolate"],
+        },
+        Way {
+            needs: &["vertices"],
+            excludes: &["maps", "interpolate"],
+        },
+        Way {
+            needs: &["interpolate"],
+            excludes: &["maps", "vertices"],
+        },
+    ],
+    hint: "a system is a mapping of keys: `kfrac cat gasket` shows a short one",
+};
+
+/// The keys that only a system has.
+const IFS_ALONE: [Member; 9] = [
+    needed_key(
+        "kind",
+        Form::Words(&[Kind::Ifs.name()]),
+        "The kind of file.",
+    ),
+    key(
+        "extends",
+        Form::File(Shelf::Ifs),
+        "Another system to start from, by name or by file. The keys written here replace its keys; \
+         `params`, `style` and `view` merge entry by entry.",
+    ),
+    PARAMS,
+    key(
+        "maps",
+        Form::Either(&[
+            Form::List(&Form::Mapping(&MAP), 1, None),
+            Form::Names(&Form::Mapping(&MAP), 1),
+        ]),
+        "The maps: a list of them, or a mapping of names to maps.",
+    ),
+    key(
+        "vertices",
+        Form::Mapping(&VERTICES),
+        "In place of `maps`: one map towards each of some points.",
+    ),
+    key(
+        "interpolate",
+        Form::Mapping(&INTERPOLATION),
+        "In place of `maps`: those of a curve through points that looks the same in every part.",
+    ),
+    key(
+        "condensation",
+        Form::List(&Form::Mapping(&CONDENSATION), 1, None),
+        "Sets that are drawn at every level: a stem, a trunk.",
+    ),
+    key(
+        "initial",
+        Form::Mapping(&SET),
+        "What approximant 0 draws: the condensation sets if left out, or else the box of the \
+         limit set.",
+    ),
+    key(
+        "edges",
+        Form::Names(
+            &Form::Either(&[
+                Form::List(&Form::Text, 1, None),
+                Form::Names(&Form::Positive, 1),
+            ]),
+            1,
+        ),
+        "Which map may be applied after which: for every map a list of the maps that may follow it, \
+         by number from 1 or by name, or a mapping of these to weights. Any may follow any if left \
+         out.",
+    ),
+];
+
+const MAP: Shape = Shape {
+    what: "a map",
+    keys: &[&[
+        key(
+            "matrix",
+            Form::List(&Form::Point, 2, Some(2)),
+            "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].",
+        ),
+        key(
+            "scale",
+            Form::Either(&[Form::Number, Form::Point]),
+            "A factor, or one along x and one along y.",
+        ),
+        key(
+            "rotate",
+            Form::Either(&[Form::Number, Form::Point]),
+            "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.",
+        ),
+        key(
+            "times",
+            Form::Point,
+            "A complex factor s, as [real part, imaginary part]: z goes to s z.",
+        ),
+        key(
+            "conjugate",
+            Form::Flag(false),
+            "With `times`: z goes to s conj z.",
+        ),
+        key("shift", Form::Point, "What is added last: [x, y]."),
+        key(
+            "fixed",
+            Form::Point,
+            "In place of `shift`: the point that stays where it is.",
+        ),
+        key(
+            "weight",
+            Form::Positive,
+            "How often random iteration picks the map, relative to the others: above 0, for all maps \
+             or for none.",
+        ),
+    ]],
+    ways: &[
+        Way {
+            needs: &["matrix"],
+            excludes: &["scale", "rotate", "times", "conjugate"],
+        },
+        Way {
+            needs: &["scale"],
+            excludes: &["matrix", "times", "conjugate"],
+        },
+        Way {
+            needs: &["times"],
+            excludes: &["matrix", "scale", "rotate"],
+        },
+    ],
+    hint: "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}",
+};
+
+const VERTICES: Shape = Shape {
+    what: "vertices",
+    keys: &[&[
+        needed_key(
+            "points",
+            Form::List(&Form::Point, 1, None),
+            "The vertices: a map towards each.",
+        ),
+        needed_key(
+            "shrink",
+            Form::Number,
+            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it.",
+        ),
+    ]],
+    ways: &[],
+    hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
+};
+
+const INTERPOLATION: Shape = Shape {
+    what: "an interpolation",
+    keys: &[&[
+        needed_key(
+            "points",
+            Form::Either(&[Form::List(&Form::Point, 3, None), Form::Text]),
+            "The points that the curve runs through, from left to right; or the name of a file \
+             beside this one with a column of x and one of y.",
+        ),
+        key(
+            "scale",
+            Form::Either(&[Form::Number, Form::List(&Form::Number, 1, None)]),
+            "By how much heights shrink from the whole to its pieces, between -1 and 1: one factor, \
+             or one for each piece.",
+        ),
+        key(
+            "dimension",
+            Form::Number,
+            "In place of `scale`: the dimension of the curve, from 1 to less than 2.",
+        ),
+    ]],
+    ways: &[
+        Way {
+            needs: &["scale"],
+            excludes: &["dimension"],
+        },
+        Way {
+            needs: &["dimension"],
+            excludes: &["scale"],
+        },
+    ],
+    hint: "interpolate: {points: [[0, 0], [1, 1], [2, 0]], scale: 0.3}",
+};
+
+/// Reads a system with its parents in it; `complete` if all of them were found.
+pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Option<IfsDocument> {
+    let fields = reader.fields(node, &IFS)?;
+    let heading = read_heading(reader, &fields);
+    let condensation = fields.take("condensation").map_or(&[][..], |node| {
+        let list = reader.list(node, "a list of condensation sets", CONDENSATION.hint);
+        if matches!(node.value, Value::Sequence(_)) && list.is_empty() {
+            let message = "there is no condensation set in this list";
+            reader.error_with_hint(&node.place, message, CONDENSATION.hint);
+        }
+        list
+    });
+    let condensation: Vec<_> = condensation
+        .iter()
+        .filter_map(|node| {
+            let fields = reader.fields(node, &CONDENSATION)?;
+            Some(CondensationDocument {
+                weight: reader.optional_number(fields.take("weight")),
+                shape: read_set(reader, &fields),
+            })
+        })
+        .collect();
+    let initial = fields.take("initial").and_then(|node| {
+        let fields = reader.fields(node, &SET)?;
+        Some(read_set(reader, &fields))
+    });
+    let mut ifs = IfsDocument {
+        heading,
+        maps: read_maps(reader, &fields),
+        condensation,
+        initial,
+        edges: fields
+            .take("edges")
+            .map(|node| (read_edges(reader, node), first_line(&node.place))),
+    };
+    ifs.heading.complete = complete && !reader.names_are_missing;
+    Some(ifs)
+}
+
+fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
+    let ways = ["maps", "vertices", "interpolate"];
+    let mut there = ways.iter().filter(|way| fields.take(way).is_some());
+    let Some(way) = there.next() else {
+        let message = "the system has no maps";
+        let hint = "write `maps`, `vertices` or `interpolate`";
+        reader.error_with_hint(&first_line(fields.place), message, hint);
+        return None;
+    };
+    for other in there {
+        let message = format!("`{other}` stands in place of `{way}`");
+        let hint = "write one of them";
+        reader.error_with_hint(fields.place_of(other), message, hint);
+    }
+    let node = fields.take(way)?;
+    match *way {
+        "maps" => read_listed(reader, node),
+        "vertices" => read_vertices(reader, node),
+        _ => read_interpolation(reader, node).map(MapsDocument::Interpolated),
+    }
+}
+
+fn read_listed(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
+    let maps: Vec<MapDocument> = match &node.value {
+        Value::Sequence(maps) => maps
+            .iter()
+            .map(|node| read_map(reader, None, node))
+            .collect(),
+        Value::Mapping(maps) => {
+            let named = maps.iter();
+            named
+                .map(|(key, node)| read_map(reader, Some(written(key)), node))
+                .collect()
+        }
+        _ => {
+            let what = "a list of maps, or a mapping of names to maps";
+            reader.mismatch(node, what, MAP.hint);
+            return None;
+        }
+    };
+    if maps.is_empty() {
+        reader.error_with_hint(&node.place, "the system has no maps", MAP.hint);
+        return None;
+    }
+    Some(MapsDocument::Listed(maps))
+}
+
+fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> MapDocument {
+    let mut map = MapDocument {
+        name,
+        linear: None,
+        shift: None,
+        fixed: None,
+        weight: None,
+        place: node.place.clone(),
+    };
+    let Some(fields) = reader.fields(node, &MAP) else {
+        return map;
+    };
+    map.linear = read_linear(reader, &fields);
+    map.shift = reader.optional_point(fields.take("shift"));
+    map.fixed = reader.optional_point(fields.take("fixed"));
+    map.weight = reader.optional_number(fields.take("weight"));
+    if map.shift.is_some() && map.fixed.is_some() {
+        let message = "`fixed` stands in place of `shift`";
+        let hint = "write one of them";
+        reader.error_with_hint(fields.place_of("fixed"), message, hint);
+    }
+    map
+}
+
+fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocument> {
+    let matrix = fields.take("matrix");
+    let scale = fields.take("scale").map(|node| pair(reader, node));
+    let rotate = fields.take("rotate").map(|node| pair(reader, node));
+    let times = reader.optional_point(fields.take("times"));
+    let conjugate = reader.flag(fields, "conjugate");
+    let ways = [matrix.is_some(), scale.is_some(), times.is_some()];
+    let way = ways.iter().position(|there| *there);
+    let Some(way) = way.and_then(|way| MAP.ways.get(way)) else {
+        let message = match rotate {
+            Some(_) => "this map turns, but does not say by how much it shrinks",
+            None => "this map does not say what it does",
+        };
+        reader.error_with_hint(&first_line(fields.place), message, MAP.hint);
+        return None;
+    };
+    for other in way.excludes {
+        if fields.take(other).is_some() {
+            let message = format!("`{other}` does not go with `{}`", way.needs[0]);
+            reader.error_with_hint(fields.place_of(other), message, MAP.hint);
+        }
+    }
+    match (matrix, scale, times) {
+        (Some(node), ..) => read_matrix(reader, node).map(LinearDocument::Matrix),
+        (_, Some(scale), _) => Some(LinearDocument::Axes { scale, rotate }),
+        (.., Some(times)) => Some(LinearDocument::Complex { times, conjugate }),
+        _ => None,
+    }
+}
+
+fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
+    let hint = "matrix: [[a, b], [c, d]]";
+    let rows = reader.list(node, "a list of two rows", hint);
+    if let [first, second] = rows {
+        return Some([reader.point(first), reader.point(second)]);
+    }
+    if matches!(node.value, Value::Sequence(_)) {
+        let message = format!("a matrix has two rows, this one has {}", rows.len());
+        reader.error_with_hint(&node.place, message, hint);
+    }
+    None
+}
+
+fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
+    let fields = reader.fields(node, &VERTICES)?;
+    let points = read_points(reader, &fields, VERTICES.hint);
+    let shrink = fields.take("shrink").map(|node| reader.number(node));
+    if shrink.is_none() {
+        let message = "vertices need `shrink`: what is left of the way to one";
+        reader.error_with_hint(&first_line(&node.place), message, VERTICES.hint);
+    }
+    Some(MapsDocument::Vertices {
+        points: points?,
+        shrink: shrink?,
+    })
+}
+
+fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationDocument> {
+    let fields = reader.fields(node, &INTERPOLATION)?;
+    let points = read_points(reader, &fields, INTERPOLATION.hint);
+    let scale = fields.take("scale").map(|node| match &node.value {
+        Value::Sequence(scales) => {
+            Scales::Each(scales.iter().map(|node| reader.number(node)).collect())
+        }
+        _ => Scales::One(reader.number(node)),
+    });
+    let dimension = reader.optional_number(fields.take("dimension"));
+    if scale.is_some() == dimension.is_some() {
+        let message = "an interpolation needs `scale` or `dimension`, and not both";
+        reader.error_with_hint(&first_line(&node.place), message, INTERPOLATION.hint);
+        return None;
+    }
+    Some(InterpolationDocument {
+        points: points?,
+        scale,
+        dimension,
+        place: node.place.clone(),
+    })
+}
+
+/// A list of points, which must be there.
+fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
+    let Some(node) = fields.take("points") else {
+        let message = "there are no `points`";
+        reader.error_with_hint(&first_line(fields.place), message, hint);
+        return None;
+    };
+    let list = reader.list(node, "a list of points", hint);
+    if !matches!(node.value, Value::Sequence(_)) {
+        return None;
+    }
+    Some(list.iter().map(|node| reader.point(node)).collect())
+}
+
+fn read_edges(reader: &mut Reader, node: &Node) -> Vec<EdgeDocument> {
+    const HINT: &str = "edges: {1: [1, 2], 2: [1]}: 2 may follow 1, and so on";
+    let mut edges = Vec::new();
+    let Value::Mapping(entries) = &node.value else {
+        reader.mismatch(node, "a mapping of maps to those that may follow", HINT);
+        return edges;
+    };
+    for (key, node) in entries {
+        let from = || written(key);
+        match &node.value {
+            Value::Sequence(followers) => {
+                edges.extend(followers.iter().filter_map(|follower| {
+                    Some(EdgeDocument {
+                        from: from(),
+                        to: reader.name(follower)?,
+                        weight: None,
+                    })
+                }));
+            }
+            Value::Mapping(followers) => {
+                edges.extend(followers.iter().map(|(follower, weight)| EdgeDocument {
+                    from: from(),
+                    to: written(follower),
+                    weight: Some(reader.number(weight)),
+                }));
+            }
+            _ => reader.mismatch(node, "a list of the maps that may follow", HINT),
+        }
+    }
+    edges
+}

@@ -1,0 +1,209 @@
+//! Sets of the plane: condensation sets and initial sets.
+
+use crate::document::ifs::{FormDocument, ShapeDocument};
+use crate::document::node::{Node, Value};
+use crate::document::reader::{Fields, Reader};
+use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
+use crate::document::{Number, Point};
+
+use super::first_line;
+
+/// The keys of an initial set.
+pub(super) const SET: Shape = Shape {
+    what: "a set",
+    keys: &[&FORMS],
+    ways: &WAYS,
+    hint: HINT,
+};
+
+/// The keys of a condensation set.
+pub(super) const CONDENSATION: Shape = Shape {
+    what: "a condensation set",
+    keys: &[
+        &FORMS,
+        &[key(
+            "weight",
+            Form::Positive,
+            "How often random iteration draws a point anew from the set, relative to the weights of \
+             the maps; the mean of these if left out.",
+        )],
+    ],
+    ways: &WAYS,
+    hint: HINT,
+};
+
+const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
+                    {disk: {centre: [0, 0], radius: 1}}, ...";
+
+const FORMS: [Member; 6] = [
+    key("point", Form::Point, "A point: a dot as wide as a line."),
+    key(
+        "segment",
+        Form::List(&Form::Point, 2, Some(2)),
+        "A line from one point to another.",
+    ),
+    key(
+        "polyline",
+        Form::List(&Form::Point, 2, None),
+        "A line through points.",
+    ),
+    key(
+        "polygon",
+        Form::List(&Form::Point, 3, None),
+        "What a line through points and back to the first encloses.",
+    ),
+    key("disk", Form::Mapping(&DISK), "A disk."),
+    key("ellipse", Form::Mapping(&ELLIPSE), "An ellipse."),
+];
+
+const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
+    Way { needs, excludes }
+}
+
+const WAYS: [Way; 6] = [
+    alone(
+        &["point"],
+        &["segment", "polyline", "polygon", "disk", "ellipse"],
+    ),
+    alone(
+        &["segment"],
+        &["point", "polyline", "polygon", "disk", "ellipse"],
+    ),
+    alone(
+        &["polyline"],
+        &["point", "segment", "polygon", "disk", "ellipse"],
+    ),
+    alone(
+        &["polygon"],
+        &["point", "segment", "polyline", "disk", "ellipse"],
+    ),
+    alone(
+        &["disk"],
+        &["point", "segment", "polyline", "polygon", "ellipse"],
+    ),
+    alone(
+        &["ellipse"],
+        &["point", "segment", "polyline", "polygon", "disk"],
+    ),
+];
+
+const DISK: Shape = Shape {
+    what: "a disk",
+    keys: &[&[
+        key("centre", Form::Point, "Its centre; [0, 0] if left out."),
+        needed_key("radius", Form::Positive, "Its radius, above 0."),
+    ]],
+    ways: &[],
+    hint: "disk: {centre: [0, 0], radius: 1}",
+};
+
+const ELLIPSE: Shape = Shape {
+    what: "an ellipse",
+    keys: &[&[
+        key("centre", Form::Point, "Its centre; [0, 0] if left out."),
+        needed_key(
+            "axes",
+            Form::Point,
+            "Its half axes: from the centre to the right, and upwards.",
+        ),
+        key(
+            "rotate",
+            Form::Number,
+            "By how much it is turned, in degrees, counter-clockwise.",
+        ),
+    ]],
+    ways: &[],
+    hint: "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}",
+};
+
+/// Reads a set: the one of its keys that says what it is.
+pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocument {
+    let place = fields.place.clone();
+    let mut there = FORMS
+        .iter()
+        .filter_map(|form| Some((form.name, fields.take(form.name)?)));
+    let Some((name, node)) = there.next() else {
+        let message = "this set does not say what it is";
+        reader.error_with_hint(&first_line(&place), message, HINT);
+        return ShapeDocument { form: None, place };
+    };
+    for (other, _) in there {
+        let message = format!("this set is a {name} already");
+        reader.error_with_hint(fields.place_of(other), message, "write two sets");
+    }
+    let form = match name {
+        "point" => Some(FormDocument::Point(reader.point(node))),
+        "disk" => read_disk(reader, node),
+        "ellipse" => read_ellipse(reader, node),
+        _ => read_outline(reader, name, node),
+    };
+    ShapeDocument { form, place }
+}
+
+fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocument> {
+    let (least, most) = match name {
+        "segment" => (2, 2),
+        "polyline" => (2, usize::MAX),
+        _ => (3, usize::MAX),
+    };
+    let points = reader.list(node, "a list of points", HINT);
+    if !(least..=most).contains(&points.len()) {
+        if matches!(node.value, Value::Sequence(_)) {
+            let needs = match name {
+                "segment" => "two points",
+                "polyline" => "two points or more",
+                _ => "three points or more",
+            };
+            let message = format!("a {name} has {needs}, not {}", points.len());
+            reader.error_with_hint(&node.place, message, HINT);
+        }
+        return None;
+    }
+    Some(FormDocument::Outline {
+        points: points.iter().map(|point| reader.point(point)).collect(),
+        closed: name == "polygon",
+    })
+}
+
+fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
+    let fields = reader.fields(node, &DISK)?;
+    let Some(radius) = reader.optional_number(fields.take("radius")) else {
+        reader.error_with_hint(&first_line(&node.place), "a disk needs a radius", DISK.hint);
+        return None;
+    };
+    Some(FormDocument::Ellipse {
+        centre: read_centre(reader, &fields),
+        axes: [radius.clone(), radius],
+        rotate: None,
+    })
+}
+
+fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
+    let fields = reader.fields(node, &ELLIPSE)?;
+    let Some(axes) = fields.take("axes").map(|node| pair(reader, node)) else {
+        let message = "an ellipse needs its half axes";
+        reader.error_with_hint(&first_line(&node.place), message, ELLIPSE.hint);
+        return None;
+    };
+    Some(FormDocument::Ellipse {
+        centre: read_centre(reader, &fields),
+        axes,
+        rotate: reader.optional_number(fields.take("rotate")),
+    })
+}
+
+fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {
+    reader
+        .optional_point(fields.take("centre"))
+        .unwrap_or_else(|| Point::origin(fields.place))
+}
+
+/// Two numbers, or one that stands for both.
+pub(super) fn pair(reader: &mut Reader, node: &Node) -> [Number; 2] {
+    if let Value::Sequence(_) = &node.value {
+        let point = reader.point(node);
+        return [point.x, point.y];
+    }
+    let number = reader.number(node);
+    [number.clone(), number]
+}

@@ -1,0 +1,210 @@
+//! An iterated function system as a figure: what approximant 0 draws, its images under the maps
+//! with their numbers, and the condensation sets.
+
+use std::io::Write;
+use std::num::NonZero;
+
+use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::graph::Graph;
+use crate::ifs::{Ifs, System};
+use crate::render::{Drawing, RenderError, write_drawing};
+use crate::rule::{BaseElement, Piece};
+
+use super::super::text::Font;
+use super::block::{Block, Item, Outline};
+use super::ink::{self, Kind};
+use super::lines::outline;
+use super::page::{WORDS, lay_out, plural};
+use super::{Figure, Options};
+
+/// The sides of panels in pixels, at most.
+const MOST: DVec2 = DVec2::new(380.0, 380.0);
+const SMALL: f64 = 0.55;
+
+/// More maps than this are drawn without numbers.
+const MOST_NUMBERS: usize = 100;
+
+/// Draws a system and writes the figure; tells its width and height in pixels.
+///
+/// # Errors
+///
+/// If the picture is too large, or if `out` fails.
+pub fn write_system(
+    system: &System,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let graph = Graph::of_system(system);
+    let font = Font::new();
+    let ifs = system.ifs();
+    let plan = Plan::new(ifs, &graph);
+    let sets = ifs.condensation().len();
+    let mut columns = vec![
+        ("initial set", plan.initial()),
+        (plural(ifs.maps().len(), "map", "maps"), plan.images(&font)),
+    ];
+    if sets > 0 {
+        columns.push((
+            plural(sets, "condensation set", "condensation sets"),
+            plan.condensation(),
+        ));
+    }
+    let source = system.heading().description.source.as_deref();
+    let page = lay_out(
+        &font,
+        columns,
+        [&options.labels.title, source.unwrap_or_default()],
+        |_| Block::default(),
+        &edges(ifs),
+    );
+    let figure = Figure {
+        page,
+        size: options.size,
+        background: options.background,
+    };
+    // A figure is small.
+    let one = NonZero::<usize>::MIN;
+    write_drawing(&figure, options.format, &options.labels, one, out)?;
+    Ok(figure.size())
+}
+
+/// What of a recurrent system's digraph is said in words.
+fn edges(ifs: &Ifs) -> Vec<String> {
+    let Some(edges) = ifs.edges() else {
+        return Vec::new();
+    };
+    let name = |map: usize| {
+        let name = ifs.maps()[map].name.clone();
+        name.unwrap_or_else(|| (map + 1).to_string())
+    };
+    let mut after = vec![Vec::new(); ifs.maps().len()];
+    for (edge, _) in edges {
+        after[edge.from].push(name(edge.to));
+    }
+    let lines = after.iter().enumerate();
+    lines
+        .map(|(map, after)| format!("after {}: {}", name(map), after.join(", ")))
+        .collect()
+}
+
+/// What is drawn, and to what scale.
+struct Plan<'a> {
+    ifs: &'a Ifs,
+    graph: &'a Graph,
+    /// What the images are shown of: the initial set, or a box around it if that is a line.
+    shown: BaseElement,
+    bounds: Bounds,
+}
+
+impl<'a> Plan<'a> {
+    fn new(ifs: &'a Ifs, graph: &'a Graph) -> Self {
+        let initial = &graph.base_elements()[0];
+        let mut around = graph.limit_bounds().unwrap_or(Bounds::EMPTY);
+        initial.add_to(&mut around, &DAffine2::IDENTITY, 0.0);
+        let size = around.size();
+        let flat = size.min_element() < 0.02 * size.max_element();
+        let shown = if initial.is_closed() || flat {
+            initial.clone()
+        } else {
+            boxed(&around).unwrap_or_else(|| initial.clone())
+        };
+        let mut bounds = Bounds::EMPTY;
+        shown.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
+        for map in ifs.maps() {
+            shown.add_to(&mut bounds, &map.affine, 0.0);
+        }
+        for set in &graph.base_elements()[1..] {
+            set.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
+        }
+        Self {
+            ifs,
+            graph,
+            shown,
+            bounds,
+        }
+    }
+
+    /// The map from the plane to a panel, and the panel's size.
+    fn panel(&self, share: f64) -> (DAffine2, DVec2) {
+        let size = self.bounds.size();
+        let scale = (MOST * share / size.max(DVec2::splat(1e-300))).min_element();
+        let pad = DVec2::splat(8.0);
+        let map = DAffine2::from_translation(pad)
+            * DAffine2::from_scale(DVec2::new(scale, -scale))
+            * DAffine2::from_translation(-DVec2::new(self.bounds.min().x, self.bounds.max().y));
+        (map, size * scale + 2.0 * pad)
+    }
+
+    fn initial(&self) -> Block {
+        let (map, size) = self.panel(SMALL);
+        let initial = &self.graph.base_elements()[0];
+        let drawn = outline(initial).transformed(&map);
+        let mut items = Vec::new();
+        if self.shown != *initial {
+            let frame = outline(&self.shown).transformed(&map);
+            items.push(Item::Path(vec![frame], ink::side(), None));
+        }
+        items.push(Item::Path(
+            vec![drawn],
+            ink::base_element(initial.is_closed()),
+            None,
+        ));
+        Block { size, items }
+    }
+
+    fn images(&self, font: &Font) -> Block {
+        let (map, size) = self.panel(1.0);
+        let initial = &self.graph.base_elements()[0];
+        let whole = outline(&self.shown).transformed(&map);
+        let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
+        let images = |shape: &BaseElement| -> Vec<Outline> {
+            let maps = self.ifs.maps().iter();
+            maps.map(|it| outline(shape).transformed(&(map * it.affine)))
+                .collect()
+        };
+        items.push(Item::Path(
+            images(&self.shown),
+            Kind::Fertile.outline(self.shown.is_closed()),
+            None,
+        ));
+        if self.shown != *initial {
+            items.push(Item::Path(
+                images(initial),
+                Kind::Fertile.element(true),
+                None,
+            ));
+        }
+        if self.ifs.maps().len() <= MOST_NUMBERS {
+            for (number, it) in self.ifs.maps().iter().enumerate() {
+                let name = it.name.clone().unwrap_or_else(|| (number + 1).to_string());
+                let mut bounds = Bounds::EMPTY;
+                self.shown.add_to(&mut bounds, &(map * it.affine), 0.0);
+                let middle = (bounds.min() + bounds.max()) / 2.0;
+                let at = middle + DVec2::new(-font.width(&name, WORDS) / 2.0, 0.36 * WORDS);
+                items.push(Item::Text(name, WORDS, at, super::LABEL));
+            }
+        }
+        Block { size, items }
+    }
+
+    fn condensation(&self) -> Block {
+        let (map, size) = self.panel(SMALL);
+        let whole = outline(&self.shown).transformed(&map);
+        let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
+        for set in &self.graph.base_elements()[1..] {
+            let drawn = outline(set).transformed(&map);
+            items.push(Item::Path(
+                vec![drawn],
+                ink::base_element(set.is_closed()),
+                None,
+            ));
+        }
+        Block { size, items }
+    }
+}
+
+fn boxed(bounds: &Bounds) -> Option<BaseElement> {
+    let (min, max) = (bounds.min(), bounds.max());
+    let corners = [DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+    BaseElement::new(min, corners.map(Piece::Line).into(), true)
+}

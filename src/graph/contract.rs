@@ -1,0 +1,113 @@
+//! Whether maps contract that may not do so one by one, but one after the other.
+
+use crate::geometry::{DAffine2, DVec2};
+
+use super::{Graph, Instance, Replacement};
+
+/// More products than this are not tried.
+const MOST_PRODUCTS: usize = 100_000;
+
+/// Products are prolonged until they stretch by less than this; if that takes too many, by less
+/// than the next.
+const SHORT_ENOUGH: [f64; 3] = [0.5, 0.9, 0.999];
+
+impl Graph {
+    /// Whether fertile elements become smaller than any length, by the maps of instances alone or,
+    /// in systems, by their products.
+    #[must_use]
+    pub fn contracts(&self) -> bool {
+        self.longest_ratio() < 1.0 || self.reach_by_products(DVec2::ZERO, 0.0).is_some()
+    }
+
+    /// Where single maps do not contract but their products do: the radius about `centre`, in any
+    /// object's unit frame, of all that becomes of an object. `own` is the radius of all that
+    /// objects draw themselves and that kept instances do. `None` where there is no need to try, or
+    /// products are not found that contract.
+    ///
+    /// Every path of instances begins with a product that stretches by some ratio r < 1 at most. With
+    /// s the farthest that a beginning of such a product leads, all lies within s / (1 - r).
+    pub(super) fn reach_by_products(&self, centre: DVec2, own: f64) -> Option<f64> {
+        if !self.affine || self.longest_ratio() < 1.0 {
+            return None;
+        }
+        let reach = SHORT_ENOUGH.map(|enough| move || self.reach_to(centre, own, enough));
+        reach.into_iter().find_map(|reach| reach())
+    }
+
+    /// Points of what every object comes to in the limit, if it contracts: a point inside each of the
+    /// instances that take its place.
+    pub(super) fn limit_points(&self) -> Vec<Vec<DVec2>> {
+        /// As long a way leads to a point to the last digit, unless maps contract very little.
+        const MOST_STEPS: usize = 2_000;
+        let fertile = |object: usize| {
+            let children = self.children(object).map(|(_, instance)| instance);
+            children.filter(|instance| {
+                !matches!(self.objects[instance.object].replacement, Replacement::Kept)
+            })
+        };
+        let mut points = vec![self.middle; self.objects.len()];
+        for _ in 0..MOST_STEPS {
+            let next: Vec<DVec2> = (0..points.len())
+                .map(|object| match fertile(object).next() {
+                    Some(first) => first.frame.map.transform_point2(points[first.object]),
+                    None => points[object],
+                })
+                .collect();
+            if next == points {
+                break;
+            }
+            points = next;
+        }
+        let inside = |instance: &Instance| {
+            let point = points[instance.object];
+            instance.frame.map.transform_point2(point)
+        };
+        let all = 0..points.len();
+        all.map(|object| fertile(object).map(inside).collect())
+            .collect()
+    }
+
+    fn reach_to(&self, centre: DVec2, own: f64, enough: f64) -> Option<f64> {
+        let (mut far, mut longest, mut tried) = (own, 0.0f64, 0);
+        let mut open: Vec<(usize, DAffine2)> = self
+            .behaviours_by_number()
+            .map(|object| (object, DAffine2::IDENTITY))
+            .collect();
+        while let Some((object, product)) = open.pop() {
+            for (_, instance) in self.children(object) {
+                tried += 1;
+                if tried > MOST_PRODUCTS {
+                    return None;
+                }
+                let replacement = &self.objects[instance.object].replacement;
+                if matches!(replacement, Replacement::Kept) {
+                    continue;
+                }
+                let mut frame = instance.frame;
+                frame.map = product * frame.map;
+                let stretch = frame.stretch();
+                let away = (frame.map.transform_point2(centre) - centre).length();
+                far = far.max(away + stretch * own);
+                if stretch < enough {
+                    longest = longest.max(stretch);
+                } else {
+                    open.push((instance.object, frame.map));
+                }
+            }
+        }
+        Some(far / (1.0 - longest))
+    }
+
+    /// The number of the first object of every behaviour.
+    fn behaviours_by_number(&self) -> impl Iterator<Item = usize> {
+        let mut next = 0;
+        self.objects
+            .iter()
+            .enumerate()
+            .filter_map(move |(number, object)| {
+                let first = object.behaviour == next;
+                next += usize::from(first);
+                first.then_some(number)
+            })
+    }
+}

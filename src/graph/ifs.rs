@@ -1,0 +1,300 @@
+//! From an iterated function system to its graph.
+
+use std::sync::Arc;
+
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
+use crate::ifs::{Ifs, Shape, System};
+use crate::rule::{BaseElement, Piece};
+
+use super::{Chain, Graph, Instance, Object, Production, Replacement};
+
+/// The base element of what has its base element still to come, or none.
+const INITIAL: usize = 0;
+
+impl Graph {
+    /// Compiles a system to its graph, whose unit frame is the plane itself.
+    ///
+    /// There is an object for the whole, drawn as the initial set, and one for what stands inside
+    /// every map; in a recurrent system, inside f_j there are the images f_i of what stands inside
+    /// f_i, over the edges from i to j, for f_j is applied after f_i. So approximant 0 is the initial
+    /// set I, approximant 1 the union of all f_j(I), approximant 2 that of all f_j(f_i(I)), and so on.
+    /// Condensation sets are infertile. Where no initial set is given, the first condensation set is
+    /// it, and the others are drawn from the beginning.
+    #[must_use]
+    pub fn of_system(system: &System) -> Self {
+        Self::compile_system(system, false)
+    }
+
+    /// The same with objects that tell the map that is applied last. They are more.
+    #[must_use]
+    pub fn telling_last_maps(system: &System) -> Self {
+        Self::compile_system(system, true)
+    }
+
+    fn compile_system(system: &System, tells_last: bool) -> Self {
+        let ifs = system.ifs();
+        let mut graph = Compiler::new(system, tells_last).run();
+        graph.middle = middle(&graph);
+        let limit = graph.limit_bounds();
+        let initial = ifs
+            .initial()
+            .or_else(|| Some(&ifs.condensation().first()?.shape))
+            .map_or_else(|| filling(limit), outline);
+        let mut whole = limit.unwrap_or(Bounds::EMPTY);
+        if limit.is_none() {
+            initial.add_to(&mut whole, &DAffine2::IDENTITY, 0.0);
+        }
+        let mut base_elements = graph.base_elements.to_vec();
+        base_elements[INITIAL] = initial;
+        graph.base_elements = base_elements.into();
+        graph.middle = (whole.min() + whole.max()) / 2.0;
+        let size = whole.size().max_element();
+        graph.unit = if size > 0.0 { size } else { 1.0 };
+        graph
+    }
+}
+
+/// About the middle of what a graph comes to in the limit: that of the box of some points.
+fn middle(graph: &Graph) -> DVec2 {
+    let mut bounds = Bounds::EMPTY;
+    for point in &graph.limit_points()[0] {
+        bounds.add(*point);
+    }
+    let middle = (bounds.min() + bounds.max()) / 2.0;
+    if middle.is_finite() {
+        middle
+    } else {
+        DVec2::ZERO
+    }
+}
+
+/// A box, filled; the unit square if it is not known.
+fn filling(bounds: Option<Bounds>) -> BaseElement {
+    let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
+    let (min, max) = (bounds.min(), bounds.max());
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+    let size = bounds.size();
+    let shape = if size.x > 0.0 && size.y > 0.0 {
+        Shape::polygon(&corners)
+    } else {
+        Shape::polyline(&[min, max])
+    };
+    outline(&shape.unwrap_or(Shape::Point(min)))
+}
+
+/// A shape's outline; a point is the shortest line that there is, of which a pen makes a dot.
+fn outline(shape: &Shape) -> BaseElement {
+    match shape {
+        Shape::Outline(outline) => outline.clone(),
+        Shape::Point(point) => {
+            let next = DVec2::new(point.x.next_up(), point.y);
+            BaseElement::new(*point, vec![Piece::Line(next)], false)
+                .unwrap_or_else(BaseElement::line)
+        }
+    }
+}
+
+struct Compiler<'s> {
+    ifs: &'s Ifs,
+    chained: bool,
+    /// Whether there are objects for every map that may be applied last.
+    tells_last: bool,
+    /// The maps that may be applied before each.
+    before: Vec<Vec<usize>>,
+}
+
+impl<'s> Compiler<'s> {
+    fn new(system: &'s System, tells_last: bool) -> Self {
+        let ifs = system.ifs();
+        let count = ifs.maps().len();
+        let mut before = vec![Vec::new(); count];
+        match ifs.edges() {
+            Some(edges) => edges.for_each(|(edge, _)| before[edge.to].push(edge.from)),
+            None => before = vec![(0..count).collect(); count],
+        }
+        before.iter_mut().for_each(|maps| maps.sort_unstable());
+        Self {
+            ifs,
+            chained: system.chained,
+            tells_last,
+            before,
+        }
+    }
+
+    /// The number of branches, each with objects of its own.
+    fn branches(&self) -> usize {
+        if self.tells_last {
+            self.ifs.maps().len()
+        } else {
+            1
+        }
+    }
+
+    /// The objects of a branch: one inside every map, and the condensation sets inside every map.
+    fn branch(&self) -> usize {
+        self.ifs.maps().len() * (1 + self.ifs.condensation().len())
+    }
+
+    /// The object inside a map; of the whole there is one, the first.
+    fn inside(&self, branch: usize, map: usize) -> usize {
+        1 + branch * self.branch() + map
+    }
+
+    /// A condensation set inside a map of a branch, or inside none.
+    fn condensed(&self, place: Option<(usize, usize)>, set: usize) -> usize {
+        let (maps, sets) = (self.ifs.maps().len(), self.ifs.condensation().len());
+        match place {
+            Some((branch, map)) => self.inside(branch, maps + map * sets + set),
+            None => self.inside(self.branches(), set),
+        }
+    }
+
+    fn run(&self) -> Graph {
+        let maps = self.ifs.maps().len();
+        let all: Vec<usize> = (0..maps).collect();
+        let whole = self.production(None, &all);
+        let mut objects = vec![Object {
+            replacement: Replacement::Fixed(Arc::new(whole)),
+            ..self.object(INITIAL, None, None)
+        }];
+        for branch in 0..self.branches() {
+            let last_map = self.tells_last.then_some(branch);
+            for map in 0..maps {
+                let production = self.production(Some((branch, map)), &self.before[map]);
+                objects.push(Object {
+                    replacement: Replacement::Fixed(Arc::new(production)),
+                    ..self.object(INITIAL, Some(map), last_map)
+                });
+            }
+            for map in 0..maps {
+                objects.extend(self.condensation(Some(map), last_map));
+            }
+        }
+        objects.extend(self.condensation(None, None));
+        self.number_behaviours(&mut objects);
+        let provisional = BaseElement::line();
+        let sets = self.ifs.condensation().iter();
+        let sets = sets.map(|set| outline(&set.shape));
+        let first = usize::from(self.ifs.initial().is_none());
+        let drawn = (first..self.ifs.condensation().len())
+            .filter(|_| first == 1)
+            .map(|set| self.instance(self.condensed(None, set), &DAffine2::IDENTITY, 0));
+        let root = self.instance(0, &DAffine2::IDENTITY, 0);
+        Graph {
+            rule: None,
+            base_elements: std::iter::once(provisional).chain(sets).collect(),
+            origins: maps,
+            objects,
+            initiator: Chain {
+                instances: std::iter::once(root).chain(drawn).collect(),
+                meets_frame: [false; 2],
+            },
+            depth: None,
+            regular: true,
+            counts_index: false,
+            draws: false,
+            seeds: false,
+            affine: true,
+            unit: 1.0,
+            middle: DVec2::ZERO,
+        }
+    }
+
+    fn object(&self, base_element: usize, map: Option<usize>, last_map: Option<usize>) -> Object {
+        Object {
+            base_element,
+            visible: true,
+            origin: map,
+            last_map,
+            behaviour: 0,
+            replacement: Replacement::Kept,
+        }
+    }
+
+    fn condensation(
+        &self,
+        map: Option<usize>,
+        last_map: Option<usize>,
+    ) -> impl Iterator<Item = Object> + '_ {
+        let sets = 1..=self.ifs.condensation().len();
+        sets.map(move |base_element| self.object(base_element, map, last_map))
+    }
+
+    /// Objects that are replaced by the same have one behaviour.
+    fn number_behaviours(&self, objects: &mut [Object]) {
+        let maps = self.ifs.maps().len();
+        let mut numbers: Vec<(usize, usize)> = Vec::new();
+        for (number, object) in objects.iter_mut().enumerate() {
+            // The whole is replaced as what stands inside a map is without a digraph.
+            let key = match (&object.replacement, object.origin) {
+                (Replacement::Kept, _) => usize::MAX,
+                (_, Some(map)) if self.ifs.is_recurrent() => map,
+                _ => maps,
+            };
+            let known = numbers.iter().find(|(known, _)| *known == key);
+            object.behaviour = match known {
+                Some((_, behaviour)) => *behaviour,
+                None => {
+                    let next = numbers.len();
+                    numbers.push((key, next));
+                    next
+                }
+            };
+            debug_assert!(number > 0 || object.behaviour == 0);
+        }
+    }
+
+    /// What stands in a place, the whole or inside a map of a branch: images under some maps, and the
+    /// condensation sets.
+    fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Production {
+        let sets = self.ifs.condensation().len();
+        let drawn_as_first = self.ifs.initial().is_none();
+        let mut instances = Vec::new();
+        // What stands inside the outermost map belongs to its branch.
+        let branch = |map: usize| match place {
+            Some((branch, _)) => branch,
+            None if self.tells_last => map,
+            None => 0,
+        };
+        for (number, &map) in maps.iter().enumerate() {
+            let affine = self.ifs.maps()[map].affine;
+            let mut instance = self.instance(self.inside(branch(map), map), &affine, number);
+            instance.joined = self.chained && number > 0;
+            instances.push(instance);
+        }
+        let own = if drawn_as_first { sets.min(1) } else { sets };
+        for set in 0..own {
+            let object = self.condensed(place, set);
+            instances.push(self.instance(object, &DAffine2::IDENTITY, instances.len()));
+        }
+        // The others stand inside the maps already when what is drawn as the first one does.
+        for set in own..sets {
+            for &map in maps {
+                let object = self.condensed(Some((branch(map), map)), set);
+                let affine = self.ifs.maps()[map].affine;
+                instances.push(self.instance(object, &affine, instances.len()));
+            }
+        }
+        Production {
+            body: Chain {
+                instances,
+                meets_frame: [self.chained; 2],
+            },
+            seeds: Vec::new(),
+        }
+    }
+
+    fn instance(&self, object: usize, affine: &DAffine2, position: usize) -> Instance {
+        let frame = Frame {
+            map: *affine,
+            direction: Direction::Normal,
+        };
+        Instance {
+            length: frame.stretch(),
+            frame,
+            joined: false,
+            position: u32::try_from(position).unwrap_or(u32::MAX),
+            object,
+        }
+    }
+}

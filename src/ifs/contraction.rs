@@ -1,0 +1,282 @@
+//! Whether the maps of a system contract when they are applied one after the other.
+
+use super::Ifs;
+use super::norm::{in_best_coordinates, spectral_radius, stretch};
+use crate::geometry::DMat2;
+
+/// No more products than this are formed unless asked for.
+const MOST_PRODUCTS: usize = 100_000;
+
+/// What is as close to 1 as this is 1.
+const ROUNDING: f64 = 1e-12;
+
+/// Products are followed no longer that cannot raise the lower bound by this share of it.
+const SHARE: f64 = 1e-3;
+
+/// Whether a system contracts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It does: there is one attractor.
+    Contracts,
+    /// It does not: applied over and over, the product [`Contraction::word`] does not shrink.
+    Diverges,
+    /// Products of up to [`Contraction::length`] maps do not tell.
+    Undecided,
+}
+
+/// Bounds of the joint spectral radius of the maps' linear parts: the least factor such that long
+/// products, as far as the digraph admits them, shrink by it with every map. It is below 1 if and
+/// only if the system contracts, whether or not its maps do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contraction {
+    /// What the bounds say, to within 1e-12.
+    pub verdict: Verdict,
+    /// The radius is not less: that of [`Contraction::word`], to the power 1 / its length.
+    pub lower: f64,
+    /// The radius is not more: in a norm that was found, every long product falls into pieces, each of
+    /// which shrinks by this factor with every map.
+    pub upper: f64,
+    /// The product that gives the lower bound, in the order in which its maps are applied; the first
+    /// map may follow the last. Where the system diverges, no shorter product does so. Empty where all
+    /// products that were formed and can be repeated are nilpotent.
+    pub word: Vec<usize>,
+    /// All products of up to so many maps were looked at, or need not be.
+    pub length: u32,
+}
+
+impl Ifs {
+    /// Whether the system contracts, from products of up to 100 000 words; see
+    /// [`Ifs::contraction_within`].
+    #[must_use]
+    pub fn contraction(&self) -> Contraction {
+        self.contraction_within(MOST_PRODUCTS)
+    }
+
+    /// Whether the system contracts, from no more than so many products (and those of single maps).
+    ///
+    /// Branch and bound (Gripenberg, "Computing the joint spectral radius", 1996), restricted to the
+    /// words that the digraph admits, in an ellipsoidal norm in which the maps stretch little: the
+    /// spectral radius of a product that can be repeated bounds from below, norms from above, and a
+    /// product of which some beginning shrinks below the lower bound is not followed.
+    #[must_use]
+    pub fn contraction_within(&self, products: usize) -> Contraction {
+        let linear: Vec<DMat2> = self.maps().iter().map(|map| map.affine.matrix2).collect();
+        let mut successors = self.successors();
+        for list in successors.iter_mut().flatten() {
+            list.sort_unstable();
+        }
+        let search = Search {
+            all: (0..linear.len()).collect(),
+            matrices: [in_best_coordinates(&linear), linear],
+            successors,
+        };
+        search.run(products)
+    }
+}
+
+struct Search {
+    /// In the coordinates of the norm and in the given ones.
+    matrices: [Vec<DMat2>; 2],
+    all: Vec<usize>,
+    /// In ascending order.
+    successors: Option<Vec<Vec<usize>>>,
+}
+
+/// A product that is followed.
+#[derive(Clone, Copy)]
+struct Product {
+    /// In the coordinates of the norm and in the given ones, where eigenvalues keep more digits; both
+    /// to be multiplied by 2 to the power `exponent`.
+    matrices: [DMat2; 2],
+    exponent: i32,
+    /// The least norm to the power 1 / length of all its beginnings.
+    factor: f64,
+    first: usize,
+    last: usize,
+    /// The product that is one map shorter, among those that were ever followed.
+    beginning: Option<usize>,
+}
+
+impl Product {
+    /// A size of the scaled matrix to the power 1 / length.
+    fn root(&self, size: f64, length: u32) -> f64 {
+        if length == 1 {
+            return libm::scalbn(size, self.exponent);
+        }
+        let logarithm = libm::log(size) + f64::from(self.exponent) * std::f64::consts::LN_2;
+        libm::exp(logarithm / f64::from(length))
+    }
+}
+
+/// The closed product with the largest radius so far.
+#[derive(Default)]
+struct Best {
+    factor: f64,
+    last: usize,
+    beginning: Option<usize>,
+}
+
+impl Search {
+    fn run(&self, budget: usize) -> Contraction {
+        let mut formed = 0;
+        let mut length = 0;
+        let mut best = Best::default();
+        // Of the products that are followed no longer, the largest factor.
+        let mut dropped: f64 = 0.0;
+        let mut upper = f64::INFINITY;
+        let mut followed: Vec<Product> = Vec::new();
+        let mut level = 0..0;
+        'lengths: loop {
+            let longer = length + 1;
+            let mut next = Vec::new();
+            let beginnings: Vec<Option<usize>> = match longer {
+                1 => vec![None],
+                _ => level.clone().map(Some).collect(),
+            };
+            for beginning in beginnings {
+                let before = beginning.map(|index| followed[index]);
+                for &map in self.successors(before.map(|product| product.last)) {
+                    if formed >= budget && longer > 1 {
+                        break 'lengths;
+                    }
+                    formed += 1;
+                    let Some(product) = self.extended(before, beginning, map, longer) else {
+                        continue;
+                    };
+                    if self.may_follow(map, product.first) {
+                        best.try_product(&product, longer);
+                    }
+                    next.push(product);
+                }
+            }
+            length = longer;
+            let bound = best.bound();
+            let (kept, short): (Vec<Product>, Vec<Product>) =
+                next.into_iter().partition(|product| product.factor > bound);
+            dropped = largest(dropped, &short);
+            upper = largest(dropped, &kept);
+            if kept.is_empty() || best.diverges() {
+                break;
+            }
+            level = followed.len()..followed.len() + kept.len();
+            followed.extend(kept);
+        }
+        let upper = upper.max(best.factor);
+        let verdict = if best.diverges() {
+            Verdict::Diverges
+        } else if upper < 1.0 - ROUNDING / 2.0 {
+            Verdict::Contracts
+        } else {
+            Verdict::Undecided
+        };
+        Contraction {
+            verdict,
+            lower: best.factor,
+            upper,
+            word: best.word(&followed),
+            length,
+        }
+    }
+
+    fn successors(&self, last: Option<usize>) -> &[usize] {
+        match (&self.successors, last) {
+            (Some(successors), Some(last)) => &successors[last],
+            _ => &self.all,
+        }
+    }
+
+    fn may_follow(&self, last: usize, next: usize) -> bool {
+        let successors = self.successors.as_ref();
+        successors.is_none_or(|lists| lists[last].binary_search(&next).is_ok())
+    }
+
+    /// A product with one map more, `None` if nothing is left of it.
+    fn extended(
+        &self,
+        before: Option<Product>,
+        beginning: Option<usize>,
+        map: usize,
+        length: u32,
+    ) -> Option<Product> {
+        let before = before.unwrap_or(Product {
+            matrices: [DMat2::IDENTITY; 2],
+            exponent: 0,
+            factor: f64::INFINITY,
+            first: map,
+            last: map,
+            beginning: None,
+        });
+        let [normed, given] = [0, 1].map(|of| self.matrices[of][map] * before.matrices[of]);
+        let size = stretch(normed);
+        if size < f64::MIN_POSITIVE {
+            return None;
+        }
+        // Long products leave the range of a double; powers of two take no digits.
+        let exponent = if size.is_finite() {
+            libm::ilogb(size)
+        } else {
+            0
+        };
+        let scale = libm::scalbn(1.0, -exponent);
+        let mut product = Product {
+            matrices: [normed * scale, given * scale],
+            exponent: before.exponent + exponent,
+            last: map,
+            beginning,
+            ..before
+        };
+        product.factor = product.root(size * scale, length).min(before.factor);
+        Some(product)
+    }
+}
+
+fn largest(least: f64, products: &[Product]) -> f64 {
+    products
+        .iter()
+        .map(|product| product.factor)
+        .fold(least, f64::max)
+}
+
+impl Best {
+    fn try_product(&mut self, product: &Product, length: u32) {
+        let factor = product.root(spectral_radius(product.matrices[1]), length);
+        // The first of several that are equal but for rounding.
+        if factor > self.factor * (1.0 + ROUNDING) {
+            *self = Self {
+                factor,
+                last: product.last,
+                beginning: product.beginning,
+            };
+        }
+    }
+
+    fn diverges(&self) -> bool {
+        self.factor >= 1.0 - ROUNDING
+    }
+
+    /// Products with a smaller factor are followed no longer. Any that may diverge are.
+    fn bound(&self) -> f64 {
+        let bound = self.factor * (1.0 + SHARE);
+        if self.diverges() {
+            bound
+        } else {
+            bound.min(1.0 - ROUNDING)
+        }
+    }
+
+    /// The least of the words that are this one when repeated.
+    fn word(&self, followed: &[Product]) -> Vec<usize> {
+        if self.factor == 0.0 {
+            return Vec::new();
+        }
+        let mut word = vec![self.last];
+        let mut beginning = self.beginning;
+        while let Some(index) = beginning {
+            word.push(followed[index].last);
+            beginning = followed[index].beginning;
+        }
+        word.reverse();
+        let turned = (0..word.len()).map(|by| [&word[by..], &word[..by]].concat());
+        turned.min().unwrap_or_default()
+    }
+}

@@ -1,0 +1,168 @@
+use std::collections::HashMap;
+
+use super::{Definition, Edge, Shape};
+
+/// What a weight belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighted {
+    /// The map of this number.
+    Map(usize),
+    /// The edge of this number.
+    Edge(usize),
+    /// The condensation set of this number.
+    Condensation(usize),
+}
+
+impl std::fmt::Display for Weighted {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Map(number) => write!(f, "map {}", number + 1),
+            Self::Edge(number) => write!(f, "edge {}", number + 1),
+            Self::Condensation(number) => write!(f, "condensation set {}", number + 1),
+        }
+    }
+}
+
+/// What makes the parts of a system no system. Numbers in values count from 0, in messages from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum IfsError {
+    /// There are no maps.
+    #[error("a system needs at least one map")]
+    NoMaps,
+    /// A map has a number that is not finite.
+    #[error("map {} is not finite", .map + 1)]
+    MapNotFinite {
+        /// The map.
+        map: usize,
+    },
+    /// A weight is zero, negative or not finite.
+    #[error("{of} has the weight {weight}; weights are positive numbers")]
+    Weight {
+        /// What it belongs to.
+        of: Weighted,
+        /// The weight.
+        weight: f64,
+    },
+    /// A map has no weight though others do.
+    #[error("map {} has no weight; all maps have one, or none", .map + 1)]
+    WeightMissing {
+        /// The map.
+        map: usize,
+    },
+    /// An edge starts or ends at a map that does not exist.
+    #[error("edge {} names map {}, but there are only {maps}", .edge + 1, .map + 1)]
+    NoSuchMap {
+        /// The edge.
+        edge: usize,
+        /// The number that it names.
+        map: usize,
+        /// How many maps there are.
+        maps: usize,
+    },
+    /// An edge is listed twice.
+    #[error("edge {} is the same as edge {}", .edge + 1, .first + 1)]
+    EdgeTwice {
+        /// The second.
+        edge: usize,
+        /// The first.
+        first: usize,
+    },
+    /// No edge leads to a map.
+    #[error("no edge leads to map {}, so it is never applied", .map + 1)]
+    NothingEnters {
+        /// The map.
+        map: usize,
+    },
+    /// No edge leads away from a map.
+    #[error("no edge leads away from map {}, so nothing can follow it", .map + 1)]
+    NothingLeaves {
+        /// The map.
+        map: usize,
+    },
+    /// A condensation set is not finite, or closed and without an area.
+    #[error("condensation set {} has no extent", .condensation + 1)]
+    NoExtent {
+        /// The condensation set.
+        condensation: usize,
+    },
+    /// The initial set is a point that is not finite.
+    #[error("the initial set is not finite")]
+    InitialNotFinite,
+}
+
+/// All that is wrong with a definition.
+pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
+    let mut errors = Vec::new();
+    let maps = &definition.maps;
+    if maps.is_empty() {
+        errors.push(IfsError::NoMaps);
+    }
+    let some_weigh = maps.iter().any(|map| map.weight.is_some());
+    for (number, map) in maps.iter().enumerate() {
+        if !map.affine.is_finite() {
+            errors.push(IfsError::MapNotFinite { map: number });
+        }
+        if some_weigh && map.weight.is_none() {
+            errors.push(IfsError::WeightMissing { map: number });
+        }
+        errors.extend(check_weight(map.weight, Weighted::Map(number)));
+    }
+    if let Some(edges) = &definition.edges {
+        errors.extend(check_edges(edges, maps.len()));
+    }
+    for (number, set) in definition.condensation.iter().enumerate() {
+        if set.shape.moments().is_none() {
+            errors.push(IfsError::NoExtent {
+                condensation: number,
+            });
+        }
+        errors.extend(check_weight(set.weight, Weighted::Condensation(number)));
+    }
+    if let Some(Shape::Point(point)) = definition.initial
+        && !point.is_finite()
+    {
+        errors.push(IfsError::InitialNotFinite);
+    }
+    errors
+}
+
+fn check_weight(weight: Option<f64>, of: Weighted) -> Option<IfsError> {
+    let weight = weight?;
+    let good = weight > 0.0 && weight.is_finite();
+    (!good).then_some(IfsError::Weight { of, weight })
+}
+
+fn check_edges(edges: &[Edge], maps: usize) -> Vec<IfsError> {
+    let mut errors = Vec::new();
+    let (mut entered, mut left) = (vec![false; maps], vec![false; maps]);
+    let mut known = HashMap::new();
+    for (number, edge) in edges.iter().enumerate() {
+        for (map, met) in [(edge.from, &mut left), (edge.to, &mut entered)] {
+            match met.get_mut(map) {
+                Some(met) => *met = true,
+                None => errors.push(IfsError::NoSuchMap {
+                    edge: number,
+                    map,
+                    maps,
+                }),
+            }
+        }
+        let first = *known.entry((edge.from, edge.to)).or_insert(number);
+        if first != number {
+            errors.push(IfsError::EdgeTwice {
+                edge: number,
+                first,
+            });
+        }
+        errors.extend(check_weight(edge.weight, Weighted::Edge(number)));
+    }
+    for map in 0..maps {
+        if !entered[map] {
+            errors.push(IfsError::NothingEnters { map });
+        }
+        if !left[map] {
+            errors.push(IfsError::NothingLeaves { map });
+        }
+    }
+    errors
+}

@@ -1,0 +1,225 @@
+//! The moments of the measure that random iteration draws.
+
+use super::linear::Equations;
+use super::moments::square;
+use super::walk::Step;
+use super::{Choice, Ifs, Moments};
+use crate::geometry::{DAffine2, DMat2, DVec2};
+
+/// A part of the measure: where the points stand that one map has just moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// How much of its time the walk spends there.
+    pub weight: f64,
+    /// Its own moments; `None` if the walk leaves it for ever.
+    pub moments: Option<Moments>,
+}
+
+/// The P-balanced measure (Demko, Hodges & Naylor 1985, section 3.1): how much of its time the walk
+/// of random iteration spends where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// The moments of the whole.
+    pub moments: Moments,
+    /// Its parts, one for every map.
+    pub by_map: Vec<Part>,
+}
+
+/// Correlations above 1 by no more than this share come from rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Ifs {
+    /// Mean and covariance of the P-balanced measure, from the equations that they solve: without a
+    /// digraph the mean m = Σ p_i (A_i m + t_i), second moments likewise.
+    ///
+    /// `None` if [there is no one measure](super::Walk::stationary) or its second moments are
+    /// infinite. They are finite where the system contracts, and wherever the expected square of a
+    /// product of maps goes to zero. The work grows with the third power of the number of states of
+    /// the [walk](Ifs::walk).
+    #[must_use]
+    pub fn measure(&self) -> Option<Measure> {
+        let walk = self.walk();
+        let drawn = self.condensation().iter().map(|set| set.shape.moments());
+        let mut flow = Flow {
+            maps: self.maps().iter().map(|map| map.affine).collect(),
+            drawn: drawn.collect::<Option<_>>()?,
+            states: walk.states(),
+            stationary: walk.stationary()?,
+        };
+        // About the mean, lest distant attractors lose digits.
+        let centre: DVec2 = flow.first_moments()?.iter().sum();
+        flow.centre(centre);
+        let first = flow.first_moments()?;
+        let second = flow.second_moments(&first)?;
+        let mean: DVec2 = first.iter().sum();
+        let moments = Moments {
+            mean: mean + centre,
+            covariance: second.iter().sum::<DMat2>() - square(mean),
+        };
+        let mut by_map = flow.parts(&first, &second);
+        for moments in by_map.iter_mut().filter_map(|part| part.moments.as_mut()) {
+            moments.mean += centre;
+        }
+        Some(Measure { moments, by_map })
+    }
+}
+
+/// What flows from state to state in a step of the walk. Moments of a state are those of the points
+/// that are in it, times its stationary weight.
+struct Flow<'a> {
+    maps: Vec<DAffine2>,
+    drawn: Vec<Moments>,
+    states: &'a [Vec<Step>],
+    stationary: Vec<f64>,
+}
+
+impl Flow<'_> {
+    fn steps(&self) -> impl Iterator<Item = (usize, &Step)> {
+        let states = self.states.iter().enumerate();
+        states.flat_map(|(from, steps)| steps.iter().map(move |step| (from, step)))
+    }
+
+    /// Moves the origin to a point.
+    fn centre(&mut self, centre: DVec2) {
+        for map in &mut self.maps {
+            map.translation = map.transform_point2(centre) - centre;
+        }
+        for moments in &mut self.drawn {
+            moments.mean -= centre;
+        }
+    }
+
+    /// The first moments of all states.
+    fn first_moments(&self) -> Option<Vec<DVec2>> {
+        let mut equations = Equations::new(2 * self.states.len(), 1);
+        for row in 0..2 * self.states.len() {
+            equations.add(row, row, 1.0);
+        }
+        for (from, step) in self.steps() {
+            let (linear, constant) = match step.choice {
+                Choice::Map(map) => (self.maps[map].matrix2, self.maps[map].translation),
+                Choice::Condensation(set) => (DMat2::ZERO, self.drawn[set].mean),
+            };
+            let flow = step.probability * self.stationary[from];
+            for row in 0..2 {
+                for column in 0..2 {
+                    let coefficient = -step.probability * linear.col(column)[row];
+                    equations.add(2 * step.to + row, 2 * from + column, coefficient);
+                }
+                equations.add_constant(2 * step.to + row, 0, flow * constant[row]);
+            }
+        }
+        let solution = equations.solve()?.pop()?;
+        Some(solution.chunks_exact(2).map(DVec2::from_slice).collect())
+    }
+
+    /// The second moments of all states from the first; `None` if they are infinite.
+    ///
+    /// A map from positive matrices to such has a spectral radius below 1 if and only if the
+    /// fixed point is positive that it has with the identity added, so these equations are solved
+    /// too.
+    fn second_moments(&self, first: &[DVec2]) -> Option<Vec<DMat2>> {
+        let mut equations = Equations::new(3 * self.states.len(), 2);
+        for state in 0..self.states.len() {
+            for entry in 0..3 {
+                equations.add(3 * state + entry, 3 * state + entry, 1.0);
+            }
+            add_constant(&mut equations, state, 1, DMat2::IDENTITY);
+        }
+        for (from, step) in self.steps() {
+            if let Choice::Map(map) = step.choice {
+                let linear = self.maps[map].matrix2;
+                for (column, unit) in UNITS.into_iter().enumerate() {
+                    let image = linear * unit * linear.transpose() * -step.probability;
+                    for (row, coefficient) in entries(image).into_iter().enumerate() {
+                        equations.add(3 * step.to + row, 3 * from + column, coefficient);
+                    }
+                }
+            }
+            let moved = self.moved(step, self.stationary[from], first[from], DMat2::ZERO);
+            add_constant(&mut equations, step.to, 0, moved.1);
+        }
+        let [second, test] = &equations.solve()?[..] else {
+            return None;
+        };
+        let finite = test.chunks_exact(3).all(|entries| {
+            let &[xx, xy, yy] = entries else {
+                return false;
+            };
+            xx > 0.0 && yy > 0.0 && xy * xy <= (1.0 + ROUNDING) * xx * yy
+        });
+        let matrix = |entries: &[f64]| {
+            DMat2::from_cols_array(&[entries[0], entries[1], entries[1], entries[2]])
+        };
+        finite.then(|| second.chunks_exact(3).map(matrix).collect())
+    }
+
+    /// First and second moments of what a step brings, from weight and moments of its state.
+    fn moved(&self, step: &Step, weight: f64, first: DVec2, second: DMat2) -> (DVec2, DMat2) {
+        let (first, second) = match step.choice {
+            Choice::Map(map) => {
+                let DAffine2 {
+                    matrix2: linear,
+                    translation,
+                } = self.maps[map];
+                let image = linear * first;
+                let mixed = outer(image, translation) + outer(translation, image);
+                let second = linear * second * linear.transpose() + mixed;
+                (
+                    image + weight * translation,
+                    second + square(translation) * weight,
+                )
+            }
+            Choice::Condensation(set) => {
+                let Moments { mean, covariance } = self.drawn[set];
+                (weight * mean, (covariance + square(mean)) * weight)
+            }
+        };
+        (step.probability * first, second * step.probability)
+    }
+
+    /// Where the points stand that each map has just moved.
+    fn parts(&self, first: &[DVec2], second: &[DMat2]) -> Vec<Part> {
+        let mut sums = vec![(0.0, DVec2::ZERO, DMat2::ZERO); self.maps.len()];
+        for (from, step) in self.steps() {
+            if let Choice::Map(map) = step.choice {
+                let weight = self.stationary[from];
+                let moved = self.moved(step, weight, first[from], second[from]);
+                sums[map].0 += step.probability * weight;
+                sums[map].1 += moved.0;
+                sums[map].2 += moved.1;
+            }
+        }
+        let parts = sums.into_iter().map(|(weight, first, second)| Part {
+            weight,
+            moments: (weight > 0.0).then(|| Moments {
+                mean: first / weight,
+                covariance: second * (1.0 / weight) - square(first / weight),
+            }),
+        });
+        parts.collect()
+    }
+}
+
+/// The symmetric matrices whose entries xx, xy, yy are 1, the others 0.
+const UNITS: [DMat2; 3] = [
+    DMat2::from_cols(DVec2::X, DVec2::ZERO),
+    DMat2::from_cols(DVec2::Y, DVec2::X),
+    DMat2::from_cols(DVec2::ZERO, DVec2::Y),
+];
+
+/// The entries xx, xy and yy of a symmetric matrix.
+fn entries(matrix: DMat2) -> [f64; 3] {
+    [matrix.x_axis.x, matrix.x_axis.y, matrix.y_axis.y]
+}
+
+fn add_constant(equations: &mut Equations, state: usize, side: usize, matrix: DMat2) {
+    for (entry, constant) in entries(matrix).into_iter().enumerate() {
+        equations.add_constant(3 * state + entry, side, constant);
+    }
+}
+
+/// The matrix v wᵀ.
+fn outer(v: DVec2, w: DVec2) -> DMat2 {
+    DMat2::from_cols(v * w.x, v * w.y)
+}

@@ -1,0 +1,108 @@
+//! Norms of matrices of the plane.
+
+use crate::geometry::{DMat2, DVec2};
+
+/// The largest of the eigenvalues' moduli.
+pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
+    let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
+    let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
+    let (middle, half) = (f64::midpoint(a, d), a / 2.0 - d / 2.0);
+    let discriminant = half * half + b * c;
+    if discriminant >= 0.0 {
+        middle.abs() + discriminant.sqrt()
+    } else {
+        libm::hypot(middle, (-discriminant).sqrt())
+    }
+}
+
+/// The largest singular value: how much a matrix lengthens a vector at most.
+pub(super) fn stretch(matrix: DMat2) -> f64 {
+    let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
+    let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
+    (libm::hypot(a + d, c - b) + libm::hypot(a - d, c + b)) / 2.0
+}
+
+/// The matrices in coordinates in which the largest stretch is about as small as it can be: where
+/// the unit disk is the ellipse that all of them shrink best.
+///
+/// The ellipses are a half-plane, by the shear and the ratio of their axes, and the ellipses that all
+/// matrices stretch no more than by a given factor are a convex set. So steps downhill lead to the
+/// least stretch; they are taken in directions that turn by the golden angle, which find the way out of
+/// an edge of the function. How well they do so makes no bound wrong, only wider.
+pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
+    const DIRECTIONS: u32 = 8;
+    const GOLDEN: f64 = 2.399_963_229_728_653;
+    let least = matrices
+        .iter()
+        .map(|&m| spectral_radius(m))
+        .fold(0.0, f64::max);
+    let (mut best, mut size, mut turn) = (Coordinates::GIVEN, 1.0, 0.0);
+    let mut stretch = best.stretch(matrices);
+    while size > 1e-6 && stretch > least * (1.0 + 1e-9) {
+        let around = (0..DIRECTIONS).map(|number| {
+            let angle = turn + f64::from(number) * (std::f64::consts::TAU / f64::from(DIRECTIONS));
+            let step = size * DVec2::new(libm::cos(angle), libm::sin(angle));
+            let tried = best.stepped(step);
+            (tried.stretch(matrices), tried)
+        });
+        let found = around.min_by(|a, b| a.0.total_cmp(&b.0));
+        match found {
+            Some((less, coordinates))
+                if less < stretch * (1.0 - 1e-9) && !coordinates.is_flat() =>
+            {
+                (best, stretch, size) = (coordinates, less, size * 1.5);
+            }
+            _ => size *= 0.7,
+        }
+        turn += GOLDEN;
+    }
+    matrices
+        .iter()
+        .map(|&matrix| best.applied(matrix))
+        .collect()
+}
+
+/// Coordinates (x + shear y, ratio y).
+#[derive(Clone, Copy)]
+struct Coordinates {
+    shear: f64,
+    ratio: f64,
+}
+
+impl Coordinates {
+    const GIVEN: Self = Self {
+        shear: 0.0,
+        ratio: 1.0,
+    };
+
+    /// A step in the hyperbolic geometry of the half-plane.
+    fn stepped(&self, step: DVec2) -> Self {
+        Self {
+            shear: self.shear + step.x * self.ratio,
+            ratio: self.ratio * libm::exp(step.y),
+        }
+    }
+
+    /// Whether products would leave the range of a double.
+    fn is_flat(&self) -> bool {
+        !(1e-100..1e100).contains(&self.ratio) || self.shear.abs() > 1e100
+    }
+
+    fn applied(&self, matrix: DMat2) -> DMat2 {
+        let there = DMat2::from_cols(DVec2::X, DVec2::new(self.shear, self.ratio));
+        let back = DVec2::new(-self.shear, 1.0) / self.ratio;
+        there * matrix * DMat2::from_cols(DVec2::X, back)
+    }
+
+    fn stretch(&self, matrices: &[DMat2]) -> f64 {
+        let stretches = matrices.iter().map(|&matrix| stretch(self.applied(matrix)));
+        let numbers = stretches.map(|stretch| {
+            if stretch.is_nan() {
+                f64::INFINITY
+            } else {
+                stretch
+            }
+        });
+        numbers.fold(0.0, f64::max)
+    }
+}

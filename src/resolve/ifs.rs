@@ -1,0 +1,305 @@
+//! Iterated function systems.
+
+use crate::diagnostic::{Diagnostic, Place, did_you_mean};
+use crate::document::{
+    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Number, Point, Written,
+};
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::heading::Heading;
+use crate::ifs::{
+    Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, Shape, System, Verdict,
+    Weighted, about, axes, complex, complex_conjugate, hull, toward,
+};
+
+use super::Resolver;
+
+/// What is known while a system is resolved: nothing but what is known of any file.
+#[derive(Default)]
+pub(super) struct OfIfs;
+
+/// Maps, the initial set that goes with them, and whether they make a line of a line.
+pub(super) struct Maps {
+    pub(super) maps: Vec<Map>,
+    pub(super) initial: Option<Shape>,
+    pub(super) chained: bool,
+}
+
+impl Resolver<OfIfs> {
+    /// The system; `None` if something is wrong, which is said.
+    pub(super) fn system(&mut self, document: &IfsDocument, heading: Heading) -> Option<System> {
+        let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
+        let condensation: Vec<_> = document
+            .condensation
+            .iter()
+            .map(|set| {
+                let weight = set.weight.as_ref().map(|weight| self.constant(weight));
+                let shape = self.set(&set.shape);
+                let weight = match weight {
+                    None => None,
+                    Some(weight) => Some(weight?),
+                };
+                Some(Condensation {
+                    shape: shape?,
+                    weight,
+                })
+            })
+            .collect();
+        let initial = document.initial.as_ref().map(|set| self.set(set));
+        let names = maps.as_ref().map(|maps| {
+            let names = maps.maps.iter().map(|map| map.name.as_deref());
+            names.collect::<Vec<_>>()
+        });
+        let edges = match (&document.edges, names) {
+            (Some((edges, _)), Some(names)) => {
+                let edges: Vec<_> = edges.iter().map(|edge| self.edge(edge, &names)).collect();
+                Some(edges.into_iter().collect::<Option<Vec<_>>>()?)
+            }
+            _ => None,
+        };
+        let maps = maps?;
+        let condensation = condensation.into_iter().collect::<Option<Vec<_>>>()?;
+        // What goes with the maps is drawn where nothing else is said to be.
+        let default = maps.initial.filter(|_| condensation.is_empty());
+        let initial = match initial {
+            None => default,
+            Some(initial) => Some(initial?),
+        };
+        let chained = maps.chained && document.initial.is_none() && condensation.is_empty();
+        let definition = Definition {
+            maps: maps.maps,
+            edges,
+            condensation,
+            initial,
+        };
+        let ifs = match Ifs::new(definition) {
+            Ok(ifs) => ifs,
+            Err(errors) => {
+                for error in errors {
+                    self.refuse(document, &error);
+                }
+                return None;
+            }
+        };
+        let contraction = ifs.contraction();
+        self.check_contraction(document, &ifs, &contraction)?;
+        Some(System {
+            heading,
+            ifs,
+            chained,
+            contraction,
+        })
+    }
+
+    fn maps(&mut self, document: &MapsDocument) -> Option<Maps> {
+        match document {
+            MapsDocument::Listed(maps) => {
+                let maps: Vec<_> = maps.iter().map(|map| self.map(map)).collect();
+                Some(Maps {
+                    maps: maps.into_iter().collect::<Option<_>>()?,
+                    initial: None,
+                    chained: false,
+                })
+            }
+            MapsDocument::Vertices { points, shrink } => {
+                let factor = self.constant(shrink);
+                let points = self.points(points);
+                let (factor, points) = (factor?, points?);
+                let maps = points.iter().map(|&point| Map::new(toward(point, factor)));
+                Some(Maps {
+                    maps: maps.collect(),
+                    initial: Some(hull(&points)),
+                    chained: false,
+                })
+            }
+            MapsDocument::Interpolated(document) => self.interpolation(document),
+        }
+    }
+
+    /// Points, if all of them are known.
+    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
+        let points: Vec<_> = points
+            .iter()
+            .map(|point| self.constant_point(point))
+            .collect();
+        points.into_iter().collect()
+    }
+
+    pub(super) fn numbers<const N: usize>(&mut self, numbers: &[Number; N]) -> Option<[f64; N]> {
+        let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
+        let values: Option<Vec<_>> = values.into_iter().collect();
+        values?.try_into().ok()
+    }
+
+    fn map(&mut self, document: &MapDocument) -> Option<Map> {
+        let linear = document.linear.as_ref().and_then(|it| self.linear(it));
+        let shift = document.shift.as_ref().map(|it| self.constant_point(it));
+        let fixed = document.fixed.as_ref().map(|it| self.constant_point(it));
+        let weight = document.weight.as_ref().map(|it| self.constant(it));
+        let linear = linear?;
+        let affine = match (shift, fixed) {
+            (_, Some(fixed)) => about(linear, fixed?),
+            (Some(shift), None) => DAffine2::from_mat2_translation(linear, shift?),
+            (None, None) => DAffine2::from_mat2_translation(linear, DVec2::ZERO),
+        };
+        Some(Map {
+            name: document.name.as_ref().map(|name| name.value.clone()),
+            affine,
+            weight: match weight {
+                None => None,
+                Some(weight) => Some(weight?),
+            },
+        })
+    }
+
+    fn linear(&mut self, document: &LinearDocument) -> Option<DMat2> {
+        match document {
+            LinearDocument::Matrix([first, second]) => {
+                let (first, second) = (self.constant_point(first), self.constant_point(second));
+                // Rows are written, columns are kept.
+                Some(DMat2::from_cols(first?, second?).transpose())
+            }
+            LinearDocument::Axes { scale, rotate } => {
+                let scale = self.numbers(scale);
+                let rotate = match rotate {
+                    Some(rotate) => self.numbers(rotate),
+                    None => Some([0.0; 2]),
+                };
+                Some(axes(scale?.into(), rotate?.into()))
+            }
+            LinearDocument::Complex { times, conjugate } => {
+                let map = if *conjugate {
+                    complex_conjugate
+                } else {
+                    complex
+                };
+                Some(map(self.constant_point(times)?, DVec2::ZERO).matrix2)
+            }
+        }
+    }
+
+    fn edge(&mut self, edge: &EdgeDocument, names: &[Option<&str>]) -> Option<Edge> {
+        let from = self.map_called(&edge.from, names);
+        let to = self.map_called(&edge.to, names);
+        let weight = edge.weight.as_ref().map(|weight| self.constant(weight));
+        Some(Edge {
+            from: from?,
+            to: to?,
+            weight: match weight {
+                None => None,
+                Some(weight) => Some(weight?),
+            },
+        })
+    }
+
+    /// The map of a name, or of a number from 1.
+    fn map_called(&mut self, called: &Written<String>, names: &[Option<&str>]) -> Option<usize> {
+        let name = called.value.as_str();
+        let named = names.iter().position(|known| *known == Some(name));
+        let number = name.parse::<usize>().ok();
+        let numbered = number.and_then(|number| number.checked_sub(1));
+        let found = named.or(numbered.filter(|&number| number < names.len()));
+        if found.is_none() {
+            let s = if names.len() == 1 { "" } else { "s" };
+            let message = format!("there is no map '{name}'");
+            let hint = did_you_mean(name, names.iter().copied().flatten())
+                .unwrap_or_else(|| format!("there are {} map{s}, numbered from 1", names.len()));
+            self.error_with_hint(&called.place, message, hint);
+        }
+        found
+    }
+
+    /// Says what is wrong with the parts of a system, where it is written.
+    fn refuse(&mut self, document: &IfsDocument, error: &IfsError) {
+        let edges = document.edges.as_ref();
+        let edge = |number: usize| edges.and_then(|(edges, _)| edges.get(number));
+        let condensation = |number: usize| document.condensation.get(number);
+        let weight = match *error {
+            IfsError::Weight { of, .. } => match of {
+                Weighted::Map(map) => listed(document, map).and_then(|map| map.weight.as_ref()),
+                Weighted::Edge(number) => edge(number).and_then(|edge| edge.weight.as_ref()),
+                Weighted::Condensation(set) => {
+                    condensation(set).and_then(|set| set.weight.as_ref())
+                }
+            },
+            _ => None,
+        };
+        let place = match *error {
+            IfsError::MapNotFinite { map } | IfsError::WeightMissing { map } => {
+                listed(document, map).map(|map| first_line(&map.place))
+            }
+            IfsError::Weight { .. } => weight.map(|weight| weight.place.clone()),
+            IfsError::EdgeTwice { edge: number, .. } | IfsError::NoSuchMap { edge: number, .. } => {
+                edge(number).map(|edge| edge.to.place.clone())
+            }
+            IfsError::NothingEnters { .. } | IfsError::NothingLeaves { .. } => {
+                edges.map(|(_, place)| place.clone())
+            }
+            IfsError::NoExtent { condensation: set } => {
+                condensation(set).map(|set| set.shape.place.clone())
+            }
+            IfsError::InitialNotFinite => document.initial.as_ref().map(|set| set.place.clone()),
+            IfsError::NoMaps => None,
+        };
+        let place = place.unwrap_or_else(|| first_line(&document.heading.place));
+        self.error(&place, error.to_string());
+    }
+
+    /// Refuses a system that does not contract, and says where that is not known.
+    fn check_contraction(
+        &mut self,
+        document: &IfsDocument,
+        ifs: &Ifs,
+        contraction: &Contraction,
+    ) -> Option<()> {
+        let first = contraction.word.first().copied();
+        let place = first
+            .and_then(|map| listed(document, map))
+            .map_or(&document.heading.place, |map| &map.place);
+        let place = first_line(place);
+        match contraction.verdict {
+            Verdict::Contracts => Some(()),
+            Verdict::Diverges => {
+                let length = f64::from(u32::try_from(contraction.word.len()).unwrap_or(u32::MAX));
+                let factor = libm::pow(contraction.lower, length);
+                let (does, it, s) = match contraction.word.len() {
+                    1 => ("does", "it", "s"),
+                    _ => ("do", "they", ""),
+                };
+                let grows = if factor > 1.0 + 1e-9 {
+                    format!("grow{s} by the factor {factor:.6}")
+                } else {
+                    format!("never get{s} smaller")
+                };
+                let name = ifs.product_name(&contraction.word);
+                let message = format!("{name} {does} not contract: over and over, {it} {grows}");
+                let hint = "a system needs maps that contract: all of their products must shrink";
+                self.error_with_hint(&place, message, hint);
+                None
+            }
+            Verdict::Undecided => {
+                let message = format!(
+                    "products of up to {} maps do not tell whether the system contracts",
+                    contraction.length
+                );
+                let hint = "it can be grown by a number of steps, but its limit is not known";
+                self.diagnostics
+                    .push(Diagnostic::warning(message).at(&place).hint(hint));
+                Some(())
+            }
+        }
+    }
+}
+
+/// A map where it is listed.
+fn listed(document: &IfsDocument, map: usize) -> Option<&MapDocument> {
+    match &document.maps {
+        Some(MapsDocument::Listed(maps)) => maps.get(map),
+        _ => None,
+    }
+}
+
+/// The first line of a place.
+fn first_line(place: &Place) -> Place {
+    let end = place.text().find(['\n', '\r']);
+    place.within(0..end.unwrap_or(usize::MAX))
+}

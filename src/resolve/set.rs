@@ -1,0 +1,61 @@
+//! Sets of the plane.
+
+use crate::document::{FormDocument, ShapeDocument};
+use crate::ifs::Shape;
+
+use super::Resolver;
+use super::ifs::OfIfs;
+
+impl Resolver<OfIfs> {
+    /// A set; `None` if something is wrong, which is said.
+    pub(super) fn set(&mut self, document: &ShapeDocument) -> Option<Shape> {
+        let before = self.mistakes;
+        let shape = match document.form.as_ref()? {
+            FormDocument::Point(point) => Some(Shape::Point(self.constant_point(point)?)),
+            FormDocument::Outline { points, closed } => {
+                let written = points;
+                let points = self.points(points)?;
+                let returns = points.first() == points.last();
+                if let (true, Some(last)) = (returns && points.len() > 2, written.last()) {
+                    let message = "the last point is the first one again";
+                    let hint = if *closed {
+                        "leave it out: a polygon goes back to its first point"
+                    } else {
+                        "write `polygon` without it"
+                    };
+                    self.error_with_hint(&last.place, message, hint);
+                }
+                if *closed {
+                    Shape::polygon(&points)
+                } else {
+                    Shape::polyline(&points)
+                }
+            }
+            FormDocument::Ellipse {
+                centre,
+                axes,
+                rotate,
+            } => {
+                let centre = self.constant_point(centre);
+                let values = self.numbers(axes);
+                let angle = match rotate {
+                    Some(rotate) => self.constant(rotate),
+                    None => Some(0.0),
+                };
+                let values = values?;
+                if let Some(index) = values.iter().position(|axis| *axis <= 0.0) {
+                    let message = format!("{} is no radius: it must be above 0", values[index]);
+                    self.error(&axes[index].place, message);
+                }
+                Shape::ellipse(centre?, values.into(), angle?)
+            }
+        };
+        // A closed shape without an area is told by its moments.
+        let shape = shape.filter(|shape| shape.moments().is_some());
+        if shape.is_none() && self.mistakes == before {
+            let hint = "its points must not all be the same, or on one line for a polygon";
+            self.error_with_hint(&document.place, "this set has no extent", hint);
+        }
+        shape
+    }
+}

@@ -1,0 +1,458 @@
+//! Iterated function systems from the file to the elements: held against the reference's maps, fixed
+//! points and dimensions, and against images that are worked out here, without a graph.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::diagnostic::{Diagnostics, Source};
+use kfrac::document::Document;
+use kfrac::export;
+use kfrac::geometry::{Bounds, DAffine2, DVec2};
+use kfrac::graph::Graph;
+use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::ifs::System;
+use kfrac::measure::similarity_dimension;
+use kfrac::model::Model;
+use kfrac::render::{self, Detail, Format, Options, Size};
+use kfrac::style::{ColorBy, Colour, Palette};
+
+fn read(source: &Arc<Source>) -> Result<(Arc<System>, Diagnostics), Diagnostics> {
+    let (model, doubts) = Document::read(source, &Catalogue::embedded())?.resolve(&[])?;
+    let Model::Ifs(system) = model else {
+        panic!("this is no system")
+    };
+    Ok((system, doubts))
+}
+
+/// A system that is written in a test.
+#[track_caller]
+fn system(text: &str) -> Arc<System> {
+    let source = Source::new("test.yaml", format!("kind: ifs\n{text}"));
+    let (system, doubts) = read(&source).unwrap_or_else(|errors| panic!("{errors}\n{text}"));
+    assert!(doubts.is_empty(), "{doubts}");
+    system
+}
+
+/// All systems of the library, by name.
+fn library() -> Vec<(String, Arc<System>)> {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries().into_iter();
+    let entries = entries.filter(|entry| entry.shelf == Shelf::Ifs);
+    let systems = entries.map(|entry| {
+        let (system, doubts) = read(&catalogue.open(&entry).unwrap()).unwrap();
+        assert!(doubts.is_empty(), "{doubts}");
+        (entry.name, system)
+    });
+    systems.collect()
+}
+
+fn named(name: &str) -> Arc<System> {
+    let (_, system) = library().into_iter().find(|(own, _)| own == name).unwrap();
+    system
+}
+
+/// The elements of an approximant.
+fn elements(graph: &Graph, steps: u32) -> Vec<Element> {
+    struct All(Vec<Element>);
+    impl Visitor for All {
+        type Error = Infallible;
+        fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+            Ok(())
+        }
+        fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+            self.0.push(*element);
+            Ok(())
+        }
+        fn end(&mut self, _: bool) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+    let mut all = All(Vec::new());
+    walk(graph, &Growth::steps(steps), &mut all).unwrap();
+    all.0
+}
+
+fn maps(system: &System) -> Vec<DAffine2> {
+    system.ifs().maps().iter().map(|map| map.affine).collect()
+}
+
+/// All products of so many maps that the digraph admits, the map that is applied last first.
+fn products(system: &System, length: u32) -> Vec<(usize, DAffine2)> {
+    let maps = maps(system);
+    let follows = |from: usize, to: usize| match system.ifs().edges() {
+        Some(mut edges) => edges.any(|(edge, _)| (edge.from, edge.to) == (from, to)),
+        None => true,
+    };
+    // Each with the map that was applied last.
+    let mut all: Vec<(usize, DAffine2)> = maps.iter().copied().enumerate().collect();
+    for _ in 1..length {
+        all = all
+            .iter()
+            .flat_map(|&(last, product)| {
+                let next = (0..maps.len()).filter(move |&to| follows(last, to));
+                let maps = &maps;
+                next.map(move |to| (to, maps[to] * product))
+            })
+            .collect();
+    }
+    all
+}
+
+#[track_caller]
+fn assert_close(what: &str, value: f64, expected: f64, tolerance: f64) {
+    let off = (value - expected).abs();
+    assert!(off <= tolerance, "{what}: {value}, not {expected}");
+}
+
+#[derive(serde::Deserialize)]
+struct Entry {
+    maps: Vec<[f64; 6]>,
+    fixed_points: Option<Vec<[f64; 2]>>,
+    dimension: Option<f64>,
+}
+
+#[test]
+fn the_library_is_held_against_the_reference() {
+    let reference: BTreeMap<String, Entry> =
+        serde_json::from_str(include_str!("systems/reference.json")).unwrap();
+    assert_eq!(reference.len(), 30);
+    for (name, entry) in &reference {
+        let system = named(name);
+        let graph = Graph::of_system(&system);
+        assert_eq!(system.ifs().maps().len(), entry.maps.len(), "{name}");
+        for (map, expected) in maps(&system).iter().zip(&entry.maps) {
+            let [a, b, c, d, e, f] = *expected;
+            let size = 1e-12 * (1.0 + map.translation.length());
+            // What lies on a line is there given along the line only.
+            let line = entry
+                .maps
+                .iter()
+                .all(|map| map[5] == 0.0 && map[0] == map[3]);
+            let own = map.to_cols_array();
+            for (value, expected) in own.into_iter().zip([a, b, c, d, e, f]) {
+                assert_close(name, value, expected, size);
+            }
+            assert!(!line || map.translation.y == 0.0, "{name}");
+        }
+        if let Some(points) = &entry.fixed_points {
+            for (point, expected) in system.ifs().fixed_points().iter().zip(points) {
+                let off = (point.unwrap() - DVec2::from(*expected)).length();
+                assert!(off <= 1e-11 * point.unwrap().length().max(1.0), "{name}");
+            }
+        }
+        let own = similarity_dimension(&graph);
+        match entry.dimension {
+            Some(dimension) => assert_close(name, own.value.unwrap(), dimension, 1e-12),
+            None => assert_eq!(own.value, None, "{name}"),
+        }
+        if let Some(published) = system.heading().dimension {
+            assert_close(name, own.value.unwrap(), published, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn approximants_are_the_images_under_all_products() {
+    for (name, system) in library() {
+        if !system.ifs().condensation().is_empty() || system.ifs().maps().len() > 6 {
+            continue;
+        }
+        let graph = Graph::of_system(&system);
+        assert_eq!(elements(&graph, 0).len(), 1, "{name}");
+        for steps in 1..=3 {
+            let key = |map: &DAffine2| map.to_cols_array().map(|value| (value * 1e9).round());
+            let mut own: Vec<_> = elements(&graph, steps)
+                .iter()
+                .map(|element| key(&element.frame.map))
+                .collect();
+            let mut expected: Vec<_> = products(&system, steps)
+                .iter()
+                .map(|(_, product)| key(product))
+                .collect();
+            let order = |a: &[f64; 6], b: &[f64; 6]| a.partial_cmp(b).unwrap();
+            own.sort_by(order);
+            expected.sort_by(order);
+            assert_eq!(own, expected, "{name} at {steps}");
+        }
+    }
+}
+
+/// An edge from 1 to 2 says that map 2 may be applied after map 1.
+#[test]
+fn an_edge_leads_from_what_is_applied_before() {
+    let system = system(
+        "maps:\n  - {scale: 1/2}\n  - {scale: 1/2, shift: [1/2, 0]}\n  \
+         - {scale: 1/2, shift: [0, 1/2]}\nedges: {1: [1, 2], 2: [3], 3: [1]}\n",
+    );
+    let graph = Graph::of_system(&system);
+    let maps = maps(&system);
+    let all: Vec<DAffine2> = elements(&graph, 2)
+        .iter()
+        .map(|element| element.frame.map)
+        .collect();
+    assert_eq!(all.len(), 4);
+    for [first, then] in [[0, 0], [0, 1], [1, 2], [2, 0]] {
+        assert!(all.contains(&(maps[then] * maps[first])), "{first} {then}");
+    }
+    assert!(!all.contains(&(maps[0] * maps[1])));
+}
+
+/// Boxes of limit sets that are known in closed form.
+#[test]
+fn limit_sets_have_their_boxes() {
+    let third = 3f64.sqrt() / 6.0;
+    for (name, expected) in [
+        ("koch-ifs", [0.0, 0.0, 1.0, third]),
+        ("cantor", [0.0, 0.0, 1.0, 0.0]),
+        ("cantor-about-zero", [-1.5, 0.0, 1.5, 0.0]),
+        ("gasket", [0.0, 0.0, 1.0, 3.0 * third]),
+        ("pound-sign", [-1.0, -1.0, 1.0, 1.0]),
+        ("square-filled", [0.0, 0.0, 1.0, 1.0]),
+        ("parabola", [0.0, 0.0, 1.0, 0.5]),
+        ("blancmange", [0.0, 0.0, 1.0, 2.0 / 3.0]),
+        ("snowflake-tiles", [-3.0 * third, -1.0, 3.0 * third, 1.0]),
+        ("levy-ifs", [-0.5, -0.25, 1.5, 1.0]),
+    ] {
+        let bounds = Graph::of_system(&named(name)).limit_bounds().unwrap();
+        let own = [
+            bounds.min().x,
+            bounds.min().y,
+            bounds.max().x,
+            bounds.max().y,
+        ];
+        for (value, expected) in own.into_iter().zip(expected) {
+            assert_close(name, value, expected, 1e-12);
+        }
+    }
+}
+
+/// Images of a point of the limit set, under as many products as there is time for.
+#[test]
+fn limit_boxes_hold_the_orbits_and_no_more() {
+    for (name, system) in library() {
+        if !system.ifs().condensation().is_empty() || system.ifs().is_recurrent() {
+            continue;
+        }
+        let bounds = Graph::of_system(&system).limit_bounds().unwrap();
+        let start = system.ifs().fixed_points()[0].unwrap();
+        let mut points = vec![start];
+        let maps = maps(&system);
+        while points.len() * maps.len() <= 50_000 {
+            points = points
+                .iter()
+                .flat_map(|&point| maps.iter().map(move |map| map.transform_point2(point)))
+                .collect();
+        }
+        let mut orbit = Bounds::EMPTY;
+        points.iter().for_each(|point| orbit.add(*point));
+        let size = bounds.size().max_element();
+        let slack = 1e-9 * size;
+        assert!(
+            (orbit.min() - bounds.min()).min_element() >= -slack
+                && (bounds.max() - orbit.max()).min_element() >= -slack,
+            "{name}: {bounds:?} does not hold {orbit:?}"
+        );
+        let off = (orbit.min() - bounds.min()).max(bounds.max() - orbit.max());
+        assert!(
+            off.max_element() <= 0.35 * size,
+            "{name}: {bounds:?} is larger than {orbit:?}"
+        );
+    }
+}
+
+/// Neither map contracts, but all their products do.
+#[test]
+fn products_may_contract_where_maps_do_not() {
+    let text = "maps:\n  - {matrix: [[0, 2], [0, 0]], shift: [1, 0]}\n  \
+                - {matrix: [[0, 0], [0.3, 0]], shift: [0, 1]}\n";
+    let system = system(text);
+    let graph = Graph::of_system(&system);
+    assert!(graph.contracts() && graph.shrinks());
+    let bounds = graph.limit_bounds().unwrap();
+    // x = 1 + 2 y and y = 1 + 0.3 x where both are largest.
+    assert!((bounds.min() - DVec2::ZERO).length() < 1e-12);
+    assert!((bounds.max() - DVec2::new(7.5, 3.25)).length() < 1e-12);
+    let options = Options {
+        detail: Some(Detail {
+            pixels: 1.0,
+            decides_steps: true,
+        }),
+        ..Options::default()
+    };
+    let picture = render::write(&graph, &Growth::steps(1000), &options, &mut Vec::new()).unwrap();
+    assert!(picture.steps > 5 && picture.steps < 1000);
+}
+
+#[test]
+fn condensation_sets_are_drawn_at_every_level() {
+    let system = named("cantor-gaps");
+    let graph = Graph::of_system(&system);
+    let middle = DVec2::new(0.5, 0.0);
+    for steps in 0..5 {
+        let mut points: Vec<f64> = elements(&graph, steps)
+            .iter()
+            .map(|element| element.frame.map.transform_point2(middle).x)
+            .collect();
+        points.sort_by(f64::total_cmp);
+        assert_eq!(points.len(), (1 << (steps + 1)) - 1);
+        if steps == 2 {
+            let expected = [1.0, 3.0, 5.0, 9.0, 13.0, 15.0, 17.0];
+            for (point, expected) in points.iter().zip(expected) {
+                assert_close("a middle", *point, expected / 18.0, 1e-15);
+            }
+        }
+    }
+    // Of two sets without an initial set, both are there from the beginning.
+    let graph = Graph::of_system(&named("tree-libeskind-hadas"));
+    let counts = [0, 1, 2].map(|steps| elements(&graph, steps).len());
+    assert_eq!(counts, [2, 8, 26]);
+}
+
+#[test]
+fn elements_tell_their_first_and_last_maps() {
+    let system = named("gasket");
+    let graph = Graph::telling_last_maps(&system);
+    for (number, element) in elements(&graph, 4).iter().enumerate() {
+        let object = &graph.objects()[element.object];
+        assert_eq!(object.last_map, Some(number / 27));
+        assert_eq!(object.origin, Some(number % 3));
+    }
+    let plain = Graph::of_system(&system);
+    let frames = |graph: &Graph| -> Vec<_> {
+        let all = elements(graph, 4);
+        all.iter().map(|element| element.frame).collect()
+    };
+    assert_eq!(frames(&plain), frames(&graph));
+    assert_eq!(plain.bounds(4), graph.bounds(4));
+}
+
+#[test]
+fn maps_are_left_out() {
+    let system = named("pound-sign");
+    let left = system.omitting(&[1]).unwrap();
+    assert_eq!(left.ifs().maps().len(), 3);
+    assert_eq!(elements(&Graph::of_system(&left), 2).len(), 6);
+    assert!(system.omitting(&[0, 1, 2]).is_err());
+    assert!(system.omitting(&[0, 1, 2, 3]).is_err());
+}
+
+#[test]
+fn tables_have_the_maps_of_elements() {
+    let system = system("maps: [{matrix: [[1/2, 1/4], [0, 1/8]], shift: [1, 2]}]\n");
+    let graph = Graph::of_system(&system);
+    let table = |format| {
+        let mut bytes = Vec::new();
+        let one = std::num::NonZero::<usize>::MIN;
+        export::write(&graph, &Growth::steps(1), format, one, &mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    assert_eq!(
+        table(export::Format::Csv),
+        "fractal,age,index,x0,y0,x1,y1,fertile,direction,visible,a,b,c,d,e,f\n\
+         0,1,1,1,2,1.5,2,true,1,true,0.5,0,0.25,0.125,1,2\n"
+    );
+    assert!(
+        table(export::Format::JsonLines).ends_with(
+            "\"visible\":true,\"a\":0.5,\"b\":0,\"c\":0.25,\"d\":0.125,\"e\":1,\"f\":2}\n"
+        )
+    );
+}
+
+/// Where colours tell ranks, nothing is left out of the walk; the picture is the same.
+#[test]
+fn what_is_left_out_beside_a_window_is_not_seen() {
+    for (name, window, steps) in [
+        ("barnsley-fern", [0.5, 7.0, 1.0, 1.0], 9),
+        ("tree-libeskind-hadas", [0.0, 60.0, 20.0, 20.0], 7),
+        ("maple-leaf", [-1.0, -1.0, 1.0, 1.0], 6),
+        ("barnsley-fern-four", [-0.5, 0.0, 1.0, 3.0], 7),
+    ] {
+        let system = named(name);
+        let graph = Graph::of_system(&system);
+        let picture = |color_by| {
+            let mut options = Options::of(system.heading());
+            options.format = Format::Png;
+            options.size = Size::Long(120);
+            options.view.window = Some(window);
+            options.style.stroke = Some(Colour::BLACK);
+            options.style.fill = None;
+            options.style.color_by = color_by;
+            options.style.palette = Palette::of_colours("black", &[Colour::BLACK]);
+            let mut bytes = Vec::new();
+            let wrote = render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
+            (bytes, wrote.elements)
+        };
+        let (culled, few) = picture(ColorBy::None);
+        let (whole, all) = picture(ColorBy::Fractal);
+        assert!(few < all, "{name}: {few} of {all}");
+        assert!(culled == whole, "{name}");
+    }
+}
+
+#[test]
+fn points_may_be_in_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("data.csv"),
+        "x,y\n0, 0\n\n1;2\n# no\n3\t1\n",
+    )
+    .unwrap();
+    let path = folder.path().join("curve.yaml");
+    let text = "kind: ifs\ninterpolate: {points: data.csv, scale: 0.3}\n";
+    std::fs::write(&path, text).unwrap();
+    let source = Catalogue::embedded().rule(&path).unwrap();
+    let (system, _) = read(&source).unwrap();
+    let graph = Graph::of_system(&system);
+    let [first, second] = elements(&graph, 1)[..] else {
+        panic!("two points make two pieces")
+    };
+    let ends = [DVec2::ZERO, DVec2::new(3.0, 1.0)];
+    let of = |element: Element| ends.map(|end| element.frame.map.transform_point2(end));
+    assert!((of(first)[1] - DVec2::new(1.0, 2.0)).length() < 1e-15);
+    assert!((of(second)[0] - DVec2::new(1.0, 2.0)).length() < 1e-15);
+    assert!(second.joined);
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    assert!(
+        document.to_yaml().contains("[1, 2]"),
+        "{}",
+        document.to_yaml()
+    );
+}
+
+/// What is written in several ways is one map.
+#[test]
+fn maps_may_be_written_in_several_ways() {
+    let system = system(
+        "maps:\n  - {matrix: [[0, -1/2], [1/2, 0]], shift: [1, 0]}\n  \
+         - {scale: 1/2, rotate: 90, shift: [1, 0]}\n  \
+         - {times: [0, 1/2], shift: [1, 0]}\n  \
+         - {scale: [1/2, -1/2], rotate: [90, -90], shift: [1, 0]}\n  \
+         - {scale: 1/2, rotate: 90, fixed: [0.8, 0.4]}\n",
+    );
+    let maps = maps(&system);
+    for (number, map) in maps.iter().enumerate() {
+        assert!(map.abs_diff_eq(maps[0], 1e-15), "{number}: {map:?}");
+    }
+    let mirrored = self::system("maps: [{times: [0, 1/2], conjugate: true}]\n");
+    let image = self::maps(&mirrored)[0].transform_point2(DVec2::new(1.0, 2.0));
+    assert_eq!(image, DVec2::new(1.0, 0.5));
+}
+
+/// The best norm for these maps has a square for its unit disk, which only long products tell from an
+/// ellipse.
+#[test]
+fn what_is_not_decided_is_said() {
+    let text = "kind: ifs\nparams: {s: 0.99}\nmaps:\n  - {matrix: [[s, s], [0, 0]]}\n  \
+                - {matrix: [[s, -s], [0, 0]], shift: [1, 0]}\n  \
+                - {matrix: [[0, 0], [s, s]]}\n  - {matrix: [[0, 0], [s, -s]]}\n";
+    let (system, said) = read(&Source::new("test.yaml", text)).unwrap();
+    assert!(said.to_string().contains("do not tell"), "{said}");
+    let graph = Graph::of_system(&system);
+    assert!(!graph.shrinks());
+    assert_eq!(graph.limit_bounds(), None);
+    assert_eq!(elements(&graph, 2).len(), 16);
+}
