@@ -113,7 +113,9 @@ impl<'a> Estimator<'a> {
             ColorBy::Fractal => fractals,
             ColorBy::Index => 64.0,
             ColorBy::Step | ColorBy::Age => f64::from(step) + 1.0,
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => 1.0 + self.graph.origins() as f64,
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+                1.0 + self.graph.origins() as f64
+            }
             ColorBy::Direction => 4.0,
         };
         classes.min(64.0)

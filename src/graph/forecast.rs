@@ -328,7 +328,8 @@ impl<'g> Forecast<'g> {
             elements: self.elements(),
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
-            length: (plain && self.graph.is_similar()).then(|| all().map(|(_, tally)| tally.sums.length).sum()),
+            length: (plain && self.graph.is_similar())
+                .then(|| all().map(|(_, tally)| tally.sums.length).sum()),
             area: match self.outlines {
                 Outlines::ClosedElements if plain => {
                     Some(all().map(|(_, tally)| tally.sums.area).sum())

@@ -54,15 +54,10 @@ impl Graph {
 }
 
 /// A box, filled; the unit square if it is not known.
-fn filling(bounds: Option<Bounds>) -> BaseElement {
+pub(super) fn filling(bounds: Option<Bounds>) -> BaseElement {
     let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
     let (min, max) = (bounds.min(), bounds.max());
-    let corners = [
-        min,
-        DVec2::new(max.x, min.y),
-        max,
-        DVec2::new(min.x, max.y),
-    ];
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
     let size = bounds.size();
     let shape = if size.x > 0.0 && size.y > 0.0 {
         Shape::polygon(&corners)
@@ -73,7 +68,7 @@ fn filling(bounds: Option<Bounds>) -> BaseElement {
 }
 
 /// A shape's outline; a point is the shortest line that there is, of which a pen makes a dot.
-fn outline(shape: &Shape) -> BaseElement {
+pub(super) fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
         Shape::Point(point) => {
@@ -197,6 +192,7 @@ impl<'s> Compiler<'s> {
             visible: true,
             origin: map,
             last_map,
+            tint: None,
             behaviour: 0,
             replacement: Replacement::Kept,
         }
@@ -257,7 +253,11 @@ impl<'s> Compiler<'s> {
             for &map in maps {
                 let branch = self.tells_last.then(|| into(map));
                 let affine = self.ifs.maps()[map].affine;
-                instances.push(self.instance(self.condensed(branch, set), &affine, instances.len()));
+                instances.push(self.instance(
+                    self.condensed(branch, set),
+                    &affine,
+                    instances.len(),
+                ));
             }
         }
         Production {

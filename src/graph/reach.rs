@@ -27,7 +27,8 @@ impl Graph {
     #[must_use]
     pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
-        let away = |instance: &Instance| instance.frame.map.transform_point2(self.middle) - self.middle;
+        let away =
+            |instance: &Instance| instance.frame.map.transform_point2(self.middle) - self.middle;
         let ratio = self.longest_ratio();
         let spread = self.instances().map(|(_, instance)| {
             let far = away(instance).length();

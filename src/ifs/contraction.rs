@@ -65,8 +65,21 @@ impl Ifs {
         for list in successors.iter_mut().flatten() {
             list.sort_unstable();
         }
+        Contraction::within(&linear, successors, products)
+    }
+}
+
+impl Contraction {
+    /// Whether linear maps contract, of which each may be followed by some: by any, if there are no
+    /// lists.
+    pub(crate) fn of(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>) -> Self {
+        Self::within(linear, successors, MOST_PRODUCTS)
+    }
+
+    /// The same from no more than so many products. The lists are in ascending order.
+    fn within(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>, products: usize) -> Self {
         let search = Search {
-            matrices: in_best_coordinates(&linear),
+            matrices: in_best_coordinates(linear),
             all: (0..linear.len()).collect(),
             successors,
         };

@@ -40,7 +40,10 @@ impl Ifs {
     /// `map 2`, or its name.
     pub(crate) fn map_name(&self, map: usize) -> String {
         let name = self.maps().get(map).and_then(|map| map.name.as_ref());
-        name.map_or_else(|| format!("map {}", map + 1), |name| format!("map '{name}'"))
+        name.map_or_else(
+            || format!("map {}", map + 1),
+            |name| format!("map '{name}'"),
+        )
     }
 
     /// `map 2, then map 1`: maps one after the other.

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
 use crate::document::{
-    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Number, Point, Written,
+    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Written,
 };
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::heading::Heading;
@@ -115,21 +115,6 @@ impl Resolver<OfIfs> {
         }
     }
 
-    /// Points, if all of them are known.
-    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
-        let points: Vec<_> = points
-            .iter()
-            .map(|point| self.constant_point(point))
-            .collect();
-        points.into_iter().collect()
-    }
-
-    pub(super) fn numbers<const N: usize>(&mut self, numbers: &[Number; N]) -> Option<[f64; N]> {
-        let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
-        let values: Option<Vec<_>> = values.into_iter().collect();
-        values?.try_into().ok()
-    }
-
     fn map(&mut self, document: &MapDocument) -> Option<Map> {
         let linear = document.linear.as_ref().and_then(|it| self.linear(it));
         let shift = document.shift.as_ref().map(|it| self.constant_point(it));
@@ -167,7 +152,11 @@ impl Resolver<OfIfs> {
                 Some(axes(scale?.into(), rotate?.into()))
             }
             LinearDocument::Complex { times, conjugate } => {
-                let map = if *conjugate { complex_conjugate } else { complex };
+                let map = if *conjugate {
+                    complex_conjugate
+                } else {
+                    complex
+                };
                 Some(map(self.constant_point(times)?, DVec2::ZERO).matrix2)
             }
         }
@@ -263,11 +252,11 @@ impl Resolver<OfIfs> {
                     "does not shrink".into()
                 };
                 let message = match contraction.word[..] {
-                    [map] => format!(
-                        "{} applied over and over {grows}",
-                        ifs.map_name(map)
+                    [map] => format!("{} applied over and over {grows}", ifs.map_name(map)),
+                    _ => format!(
+                        "{} over and over {grows}",
+                        ifs.product_name(&contraction.word)
                     ),
-                    _ => format!("{} over and over {grows}", ifs.product_name(&contraction.word)),
                 };
                 let hint = "a system needs maps that contract: all of their products must shrink";
                 self.error_with_hint(&place, message, hint);

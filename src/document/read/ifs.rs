@@ -1,6 +1,7 @@
 //! An iterated function system: what its keys hold.
 
 use crate::catalogue::Shelf;
+use crate::document::Point;
 use crate::document::Written;
 use crate::document::ifs::{
     CondensationDocument, EdgeDocument, IfsDocument, InterpolationDocument, LinearDocument,
@@ -9,7 +10,6 @@ use crate::document::ifs::{
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
-use crate::document::Point;
 use crate::model::Kind;
 
 use super::first_line;
@@ -346,7 +346,8 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     }
 }
 
-fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
+/// The rows of a matrix.
+pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
     let hint = "matrix: [[a, b], [c, d]]";
     let rows = reader.list(node, "a list of two rows", hint);
     if let [first, second] = rows {
@@ -397,11 +398,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
 }
 
 /// A list of points, which must be there.
-fn read_points(
-    reader: &mut Reader,
-    fields: &Fields<'_>,
-    hint: &'static str,
-) -> Option<Vec<Point>> {
+fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
     let Some(node) = fields.take("points") else {
         let message = "there are no `points`";
         reader.error_with_hint(&first_line(fields.place), message, hint);
@@ -445,4 +442,3 @@ fn read_edges(reader: &mut Reader, node: &Node) -> Vec<EdgeDocument> {
     }
     edges
 }
-

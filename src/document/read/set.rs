@@ -35,7 +35,8 @@ pub(super) const CONDENSATION: Shape = Shape {
 const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
-const FORMS: [Member; 6] = [
+/// The keys that say what a set is.
+pub(super) const FORMS: [Member; 6] = [
     key("point", Form::Point, "A point: a dot as wide as a line."),
     key(
         "segment",
@@ -56,10 +57,7 @@ const FORMS: [Member; 6] = [
     key("ellipse", Form::Mapping(&ELLIPSE), "An ellipse."),
 ];
 
-const fn alone(
-    needs: &'static [&'static str],
-    excludes: &'static [&'static str],
-) -> Way {
+const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
     Way { needs, excludes }
 }
 
