@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{DAffine2, DVec2, Direction, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::BaseElement;
@@ -42,25 +42,23 @@ impl Graph {
     /// Draws every object as the box of its limit set.
     fn draw_boxes(&mut self) {
         let initiator = self.initiator.clone();
-        let mut boxes: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut base_elements = self.base_elements.to_vec();
+        let mut boxes: Vec<Option<Bounds>> = Vec::new();
         for number in 0..self.objects.len() {
-            let behaviour = self.objects[number].behaviour;
-            let known = boxes.get(&behaviour).copied();
-            let base_element = known.unwrap_or_else(|| {
-                let bounds = (boxes.len() < MOST_BOXES).then(|| {
-                    self.initiator.instances = vec![instance(number, &DAffine2::IDENTITY, 0)];
-                    self.limit_bounds()
-                });
-                base_elements.push(filling(bounds.flatten()));
-                base_elements.len() - 1
-            });
-            boxes.insert(behaviour, base_element);
-            self.objects[number].base_element = base_element;
-            self.objects[number].visible = true;
+            // Behaviours are numbered in the order of the objects.
+            if self.objects[number].behaviour == boxes.len() {
+                self.initiator.instances = vec![instance(number, &DAffine2::IDENTITY, 0)];
+                let is_told = boxes.len() < MOST_BOXES;
+                boxes.push(is_told.then(|| self.limit_bounds()).flatten());
+            }
         }
         self.initiator = initiator;
-        self.base_elements = base_elements.into();
+        let first = self.base_elements.len();
+        let boxes = boxes.into_iter().map(filling);
+        self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
+        for object in &mut self.objects {
+            object.base_element = first + object.behaviour;
+            object.visible = true;
+        }
     }
 }
 
