@@ -25,6 +25,8 @@ pub struct Instancing {
 pub struct Object {
     /// Its name, with its level if it has one: `A(3)`.
     pub name: String,
+    /// What is done to all of it.
+    pub map: DAffine2,
     /// What it is made of.
     pub instances: Vec<Instance>,
 }
@@ -81,6 +83,14 @@ impl Instancing {
     #[must_use]
     pub fn initial(&self) -> Option<&Shape> {
         self.initial.as_ref()
+    }
+
+    /// Where what an instance shows stands, with what the object that it is one of does to all of it.
+    pub(crate) fn map_of(&self, instance: &Instance) -> DAffine2 {
+        match instance.master {
+            Master::Object(number) => instance.map * self.objects[number].map,
+            Master::Shape(_) => instance.map,
+        }
     }
 
     /// All instances, those of the scene first.

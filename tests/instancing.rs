@@ -35,10 +35,14 @@ fn expanded(
         let map = at * instance.map;
         match &instance.master {
             Master::Shape(shape) => found.push((map, Some(shape.clone()))),
-            Master::Object(_) if steps == 0 => found.push((map, None)),
             Master::Object(number) => {
-                let inside = &structure.objects()[*number].instances;
-                expanded(structure, inside, map, steps - 1, found);
+                let object = &structure.objects()[*number];
+                let map = map * object.map;
+                if steps == 0 {
+                    found.push((map, None));
+                } else {
+                    expanded(structure, &object.instances, map, steps - 1, found);
+                }
             }
         }
     }

@@ -18,8 +18,8 @@ impl Graph {
     /// Compiles a structure to its graph, whose unit frame is the plane itself.
     ///
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
-    /// there is one; with each step, instances of objects are replaced by what the objects are made
-    /// of. Shapes are infertile. Where there are neither shapes nor an initial set, an object is drawn
+    /// there is one, with what the object does to all of it; with each step, instances of objects are
+    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes nor an initial set, an object is drawn
     /// as the box of its limit set.
     #[must_use]
     pub fn of_structure(structure: &Instancing) -> Self {
@@ -150,7 +150,10 @@ impl<'s> Compiler<'s> {
         let numbered = instances.iter().enumerate();
         Chain {
             instances: numbered
-                .map(|(position, of)| instance(self.object(of), &of.map, position))
+                .map(|(position, of)| {
+                    let map = self.structure.map_of(of);
+                    instance(self.object(of), &map, position)
+                })
                 .collect(),
             meets_frame: [false; 2],
         }

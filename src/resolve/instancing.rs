@@ -43,6 +43,12 @@ struct Definitions {
     any: Option<usize>,
 }
 
+impl Definitions {
+    fn has_levels(&self) -> bool {
+        self.any.is_some() || !self.levels.is_empty()
+    }
+}
+
 /// A union whose expressions are compiled; the first slot is the level.
 struct Union {
     name: String,
@@ -111,7 +117,11 @@ impl Resolver<OfInstancing> {
         if self.diagnostics.has_errors() {
             return None;
         }
-        let scene = self.instances(&scene, None);
+        let whole = product(&scene.transforms, &[]);
+        let mut scene = self.instances(&scene, None);
+        for instance in &mut scene {
+            instance.map = whole * instance.map;
+        }
         let mut objects = Vec::new();
         while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
             let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
@@ -121,6 +131,7 @@ impl Resolver<OfInstancing> {
                     Some(level) => format!("{}({level})", union.name),
                     None => union.name.clone(),
                 },
+                map: product(&union.transforms, level.as_slice()),
                 instances: self.instances(&union, level),
             });
             self.kind.unions[number] = union;
@@ -169,8 +180,7 @@ impl Resolver<OfInstancing> {
             (Some(_), None) => known.any.replace(number).is_some(),
             (None, None) => known.plain.replace(number).is_some(),
         };
-        let has_levels = known.any.is_some() || !known.levels.is_empty();
-        let mixed = known.plain.is_some() && has_levels;
+        let mixed = known.plain.is_some() && known.has_levels();
         if twice {
             let message = format!("there is an object '{name}' of this level already");
             self.error(&document.name.place, message);
@@ -273,7 +283,7 @@ impl Resolver<OfInstancing> {
                     let message = format!("'{name}' needs a level");
                     self.error_with_hint(place, message, format!("{name}(10)"));
                 }
-                (Some(_), Some(_)) => {
+                (Some(_), Some(_)) if !known.has_levels() => {
                     let message = format!("'{name}' has no level");
                     self.error_with_hint(place, message, format!("write {name}"));
                 }
@@ -289,8 +299,8 @@ impl Resolver<OfInstancing> {
         let whole = product(&union.transforms, &slots);
         let mut instances = Vec::new();
         for prepared in &union.instances {
-            let map = whole * product(&prepared.transforms, &slots);
-            if !map.is_finite() {
+            let map = product(&prepared.transforms, &slots);
+            if !(whole * map).is_finite() {
                 let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
                 let message = format!("the transform of this instance is not finite{at}");
                 self.error(&prepared.place, message);

@@ -73,7 +73,7 @@ fn edges(structure: &Instancing) -> Vec<Edge> {
     for (from, object) in structure.objects.iter().enumerate() {
         for instance in &object.instances {
             if let Master::Object(to) = instance.master {
-                let linear = instance.map.matrix2;
+                let linear = structure.map_of(instance).matrix2;
                 edges.push(Edge { from, to, linear });
             }
         }
