@@ -1,6 +1,6 @@
 //! Where rule files and components are found: the user's folders, then the embedded library.
 //!
-//! A library folder holds `rules`, `ifs`, `initiators`, `generators` and `base_elements`, each with YAML
+//! A library folder holds `rules`, `ifs`, `instancing`, `initiators`, `generators` and `base_elements`, each with YAML
 //! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
 
 use std::collections::BTreeMap;
@@ -22,6 +22,8 @@ pub enum Shelf {
     Rules,
     /// An iterated function system.
     Ifs,
+    /// A structure of objects that instance each other.
+    Instancing,
     /// An initiator.
     Initiators,
     /// A generator.
@@ -37,6 +39,7 @@ impl Shelf {
         match kind {
             Kind::Rule => Self::Rules,
             Kind::Ifs => Self::Ifs,
+            Kind::Instancing => Self::Instancing,
         }
     }
 
@@ -47,9 +50,10 @@ impl Shelf {
     }
 
     /// All shelves, in the order in which they are listed.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Rules,
         Self::Ifs,
+        Self::Instancing,
         Self::Initiators,
         Self::Generators,
         Self::BaseElements,
@@ -61,6 +65,7 @@ impl Shelf {
         match self {
             Self::Rules => "rules",
             Self::Ifs => "ifs",
+            Self::Instancing => "instancing",
             Self::Initiators => "initiators",
             Self::Generators => "generators",
             Self::BaseElements => "base_elements",
@@ -73,6 +78,7 @@ impl Shelf {
         match self {
             Self::Rules => "rule",
             Self::Ifs => "ifs",
+            Self::Instancing => "instancing",
             Self::Initiators => "initiator",
             Self::Generators => "generator",
             Self::BaseElements => "base_element",
@@ -84,6 +90,7 @@ impl Shelf {
     pub fn noun(self) -> &'static str {
         match self {
             Self::Ifs => "system",
+            Self::Instancing => "structure",
             Self::BaseElements => "base element",
             other => other.kind(),
         }

@@ -56,6 +56,7 @@ pub mod graph;
 pub mod grow;
 pub mod heading;
 pub mod ifs;
+pub mod instancing;
 pub mod measure;
 pub mod model;
 pub mod parallel;

@@ -6,6 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::graph::{CompileError, Graph};
 use crate::heading::Heading;
 use crate::ifs::System;
+use crate::instancing::Instancing;
 use crate::rule::Rule;
 
 /// A kind of files that can be grown.
@@ -16,11 +17,13 @@ pub enum Kind {
     Rule,
     /// An iterated function system.
     Ifs,
+    /// A structure of objects that instance each other.
+    Instancing,
 }
 
 impl Kind {
     /// All kinds, in the order in which they are listed and names are looked up.
-    pub const ALL: [Self; 2] = [Self::Rule, Self::Ifs];
+    pub const ALL: [Self; 3] = [Self::Rule, Self::Ifs, Self::Instancing];
 
     /// What `kind:` says in its files.
     #[must_use]
@@ -28,6 +31,7 @@ impl Kind {
         match self {
             Self::Rule => "rule",
             Self::Ifs => "ifs",
+            Self::Instancing => "instancing",
         }
     }
 }
@@ -39,6 +43,8 @@ pub enum Model {
     Rule(Arc<Rule>),
     /// An iterated function system.
     Ifs(Arc<System>),
+    /// A structure of objects that instance each other.
+    Instancing(Arc<Instancing>),
 }
 
 impl Model {
@@ -48,6 +54,7 @@ impl Model {
         match self {
             Self::Rule(_) => Kind::Rule,
             Self::Ifs(_) => Kind::Ifs,
+            Self::Instancing(_) => Kind::Instancing,
         }
     }
 
@@ -57,6 +64,7 @@ impl Model {
         match self {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(system) => &system.heading,
+            Self::Instancing(structure) => &structure.heading,
         }
     }
 
@@ -65,7 +73,7 @@ impl Model {
     pub fn rule(&self) -> Option<&Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) => None,
+            Self::Ifs(_) | Self::Instancing(_) => None,
         }
     }
 
@@ -74,7 +82,7 @@ impl Model {
     pub fn into_rule(self) -> Option<Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) => None,
+            Self::Ifs(_) | Self::Instancing(_) => None,
         }
     }
 
@@ -87,6 +95,7 @@ impl Model {
         match self {
             Self::Rule(rule) => Graph::compile(rule, steps),
             Self::Ifs(system) => Ok(Graph::of_system(system)),
+            Self::Instancing(structure) => Ok(Graph::of_structure(structure)),
         }
     }
 
@@ -95,7 +104,7 @@ impl Model {
     pub fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         match self {
             Self::Rule(rule) => error.diagnostic(rule),
-            Self::Ifs(_) => Diagnostic::error(error.to_string()),
+            Self::Ifs(_) | Self::Instancing(_) => Diagnostic::error(error.to_string()),
         }
     }
 }

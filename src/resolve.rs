@@ -7,6 +7,7 @@
 
 mod heading;
 mod ifs;
+mod instancing;
 mod interpolation;
 mod numbers;
 mod outline;
@@ -48,6 +49,12 @@ pub(crate) fn resolve(
             resolved(&document.heading, settings, |resolver, heading| {
                 let system = resolver.system(document, heading)?;
                 Some(Model::Ifs(system.into()))
+            })
+        }
+        KindDocument::Instancing(document) => {
+            resolved(&document.heading, settings, |resolver, heading| {
+                let structure = resolver.structure(document, heading)?;
+                Some(Model::Instancing(structure.into()))
             })
         }
     }

@@ -129,7 +129,7 @@ fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
         Model::Ifs(system) => {
             system.heading().steps.is_none() && system.contraction().verdict == Verdict::Contracts
         }
-        Model::Rule(_) => false,
+        Model::Rule(_) | Model::Instancing(_) => false,
     }
 }
 

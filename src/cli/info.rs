@@ -233,7 +233,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         },
         system: match &loaded.model {
             Model::Ifs(system) => Some(SystemInfo::of(system)),
-            Model::Rule(_) => None,
+            Model::Rule(_) | Model::Instancing(_) => None,
         },
     }
 }

@@ -63,6 +63,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 rule::write(rule, document, &options, out)
             }
             (Model::Ifs(system), _) => rule::write_system(system, &options, out),
+            (Model::Instancing(_), _) => {
+                return Err(anyhow::anyhow!("there is no figure of this kind").into());
+            }
             (Model::Rule(_), _) => unreachable!("a model is of its document's kind"),
         };
         written.map_err(|error| match error {

@@ -526,6 +526,17 @@ fn harmless_parent(place: &Place, kind: Kind) -> Entries {
             let map = Value::Mapping(vec![(key("scale"), node(Value::Number(0.5)))]);
             vec![(key("maps"), node(Value::Sequence(vec![node(map)])))]
         }
+        Kind::Instancing => {
+            let segment = [0.0, 1.0].map(|x| {
+                node(Value::Sequence(
+                    [x, 0.0].map(|x| node(Value::Number(x))).into(),
+                ))
+            });
+            let segment = (key("segment"), node(Value::Sequence(segment.into())));
+            let union = node(Value::Sequence(vec![node(Value::Mapping(vec![segment]))]));
+            let objects = Value::Mapping(vec![(key("object"), union.clone())]);
+            vec![(key("objects"), node(objects)), (key("scene"), union)]
+        }
     }
 }
 

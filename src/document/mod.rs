@@ -7,6 +7,7 @@ mod assemble;
 mod data;
 mod heading;
 mod ifs;
+mod instancing;
 mod merge;
 pub mod node;
 mod read;
@@ -21,6 +22,10 @@ pub use heading::{HeadingDocument, ParameterDocument};
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, IfsDocument, InterpolationDocument,
     LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
+};
+pub use instancing::{
+    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
+    TintDocument, TransformDocument, UnionDocument,
 };
 pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
@@ -103,6 +108,8 @@ pub enum KindDocument {
     Rule(RuleDocument),
     /// An iterated function system.
     Ifs(IfsDocument),
+    /// A structure of objects that instance each other.
+    Instancing(InstancingDocument),
 }
 
 impl KindDocument {
@@ -112,6 +119,7 @@ impl KindDocument {
         match self {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(ifs) => &ifs.heading,
+            Self::Instancing(structure) => &structure.heading,
         }
     }
 }
@@ -168,7 +176,7 @@ impl Document {
     pub fn rule(&self) -> Option<&RuleDocument> {
         match &self.kind {
             KindDocument::Rule(rule) => Some(rule),
-            KindDocument::Ifs(_) => None,
+            KindDocument::Ifs(_) | KindDocument::Instancing(_) => None,
         }
     }
 

@@ -6,16 +6,19 @@ mod elements;
 mod generator;
 mod heading;
 mod ifs;
+mod instancing;
 mod parameters;
 mod rule;
 mod select;
 mod set;
+mod transform;
 
 pub(super) use base_element::BASE_ELEMENT;
 pub(super) use elements::{ELEMENTS, INITIATOR};
 pub(super) use generator::GENERATOR;
 pub(super) use heading::{DESCRIPTION, check_description};
 pub(super) use ifs::IFS;
+pub(super) use instancing::INSTANCING;
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 
@@ -32,6 +35,7 @@ pub(super) fn shape(kind: Kind) -> &'static Shape {
     match kind {
         Kind::Rule => &RULE,
         Kind::Ifs => &IFS,
+        Kind::Instancing => &INSTANCING,
     }
 }
 
@@ -46,6 +50,9 @@ pub(super) fn read(
     let document = match kind {
         Kind::Rule => rule::read_rule(&mut reader, node, complete).map(KindDocument::Rule),
         Kind::Ifs => ifs::read_ifs(&mut reader, node, complete).map(KindDocument::Ifs),
+        Kind::Instancing => {
+            instancing::read_instancing(&mut reader, node, complete).map(KindDocument::Instancing)
+        }
     };
     diagnostics.extend(reader.diagnostics);
     document

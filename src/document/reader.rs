@@ -41,6 +41,13 @@ impl<'n> Fields<'n> {
         self.field(key).map(|field| field.value)
     }
 
+    /// The keys with their values, in the order in which they are written.
+    pub(super) fn in_order(&self) -> impl Iterator<Item = (&'static str, &'n Node)> {
+        self.entries
+            .iter()
+            .map(|(name, field)| (*name, field.value))
+    }
+
     /// Where a key is written; the mapping where it is not there.
     pub(super) fn place_of(&self, key: &'static str) -> &'n Place {
         self.field(key).map_or(self.place, |field| field.key)

@@ -10,7 +10,8 @@ mod json;
 use crate::catalogue::{Catalogue, Shelf};
 
 use super::read::{
-    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, PARAMETER, PARAMS, RULE,
+    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, INSTANCING, PARAMETER, PARAMS,
+    RULE,
 };
 use super::shape::{Choice, Form, Needed, Shape};
 use json::{Json, Object, list};
@@ -52,6 +53,10 @@ pub fn schema(shelf: Shelf) -> String {
         Shelf::Ifs => (
             "An iterated function system: maps that shrink the plane, and what they are applied to.",
             definitions.grown(&IFS),
+        ),
+        Shelf::Instancing => (
+            "A structure of objects that instance each other, or themselves.",
+            definitions.grown(&INSTANCING),
         ),
         Shelf::Initiators => (
             "An initiator: what the growth starts from.",

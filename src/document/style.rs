@@ -132,7 +132,7 @@ pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
 }
 
 /// A colour; `none` is none.
-fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
+pub(super) fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
     let Value::Text(text) = &node.value else {
         if !matches!(node.value, Value::Null) {
             reader.mismatch(

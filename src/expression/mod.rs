@@ -156,6 +156,15 @@ impl Expression {
         matches!(self.node, Node::Unknown)
     }
 
+    /// The name, if it is nothing but a name.
+    #[must_use]
+    pub fn as_name(&self) -> Option<&str> {
+        match &self.node {
+            Node::Name(name) => Some(name),
+            _ => None,
+        }
+    }
+
     /// The name and arguments of the outermost call, if it is a distribution: `uniform`, `normal`
     /// or `choice`. Their number is right: two, two, at least one.
     #[must_use]

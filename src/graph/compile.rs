@@ -224,6 +224,7 @@ impl<'r> Compiler<'r> {
             visible: class.visible,
             origin: class.origin,
             last_map: None,
+            tint: None,
             behaviour,
             replacement: if class.fertile {
                 Replacement::Beyond

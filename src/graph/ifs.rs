@@ -69,7 +69,7 @@ fn middle(graph: &Graph) -> DVec2 {
 }
 
 /// A box, filled; the unit square if it is not known.
-fn filling(bounds: Option<Bounds>) -> BaseElement {
+pub(super) fn filling(bounds: Option<Bounds>) -> BaseElement {
     let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
     let (min, max) = (bounds.min(), bounds.max());
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
@@ -83,7 +83,7 @@ fn filling(bounds: Option<Bounds>) -> BaseElement {
 }
 
 /// A shape's outline; a point is the shortest line that there is, of which a pen makes a dot.
-fn outline(shape: &Shape) -> BaseElement {
+pub(super) fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
         Shape::Point(point) => {
@@ -206,6 +206,7 @@ impl<'s> Compiler<'s> {
             visible: true,
             origin: map,
             last_map,
+            tint: None,
             behaviour: 0,
             replacement: Replacement::Kept,
         }

@@ -18,6 +18,7 @@ mod count;
 mod error;
 mod forecast;
 mod ifs;
+mod instancing;
 mod limit;
 mod reach;
 mod state;
@@ -30,6 +31,7 @@ pub use limit::TooLarge;
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
+use crate::instancing::Tint;
 use crate::rule::{BaseElement, Placement, Rule};
 
 /// An object: a kind of element in a state that decides what it becomes.
@@ -44,6 +46,8 @@ pub struct Object {
     pub origin: Option<usize>,
     /// The map of a system that is applied last to what stands there, by number, where that is told.
     pub last_map: Option<usize>,
+    /// What it tints all that stands in its place with.
+    pub tint: Option<Tint>,
     /// What it becomes: objects of one behaviour have the same replacements, however they look.
     pub(crate) behaviour: usize,
     /// What takes its place in the next step.

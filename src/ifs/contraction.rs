@@ -65,9 +65,22 @@ impl Ifs {
         for list in successors.iter_mut().flatten() {
             list.sort_unstable();
         }
+        Contraction::within(&linear, successors, products)
+    }
+}
+
+impl Contraction {
+    /// Whether linear maps contract, of which each may be followed by some: by any, if there are no
+    /// lists.
+    pub(crate) fn of(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>) -> Self {
+        Self::within(linear, successors, MOST_PRODUCTS)
+    }
+
+    /// The same from no more than so many products. The lists are in ascending order.
+    fn within(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>, products: usize) -> Self {
         let search = Search {
             all: (0..linear.len()).collect(),
-            matrices: [in_best_coordinates(&linear), linear],
+            matrices: [in_best_coordinates(linear), linear.to_vec()],
             successors,
         };
         search.run(products)

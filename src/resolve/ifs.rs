@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
 use crate::document::{
-    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Number, Point, Written,
+    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Written,
 };
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::heading::Heading;
@@ -113,21 +113,6 @@ impl Resolver<OfIfs> {
             }
             MapsDocument::Interpolated(document) => self.interpolation(document),
         }
-    }
-
-    /// Points, if all of them are known.
-    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
-        let points: Vec<_> = points
-            .iter()
-            .map(|point| self.constant_point(point))
-            .collect();
-        points.into_iter().collect()
-    }
-
-    pub(super) fn numbers<const N: usize>(&mut self, numbers: &[Number; N]) -> Option<[f64; N]> {
-        let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
-        let values: Option<Vec<_>> = values.into_iter().collect();
-        values?.try_into().ok()
     }
 
     fn map(&mut self, document: &MapDocument) -> Option<Map> {

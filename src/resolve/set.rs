@@ -1,12 +1,12 @@
 //! Sets of the plane.
 
-use crate::document::{FormDocument, ShapeDocument};
+use crate::document::{FormDocument, Number, Point, ShapeDocument};
+use crate::geometry::DVec2;
 use crate::ifs::Shape;
 
 use super::Resolver;
-use super::ifs::OfIfs;
 
-impl Resolver<OfIfs> {
+impl<K> Resolver<K> {
     /// A set; `None` if something is wrong, which is said.
     pub(super) fn set(&mut self, document: &ShapeDocument) -> Option<Shape> {
         let before = self.mistakes;
@@ -57,5 +57,20 @@ impl Resolver<OfIfs> {
             self.error_with_hint(&document.place, "this set has no extent", hint);
         }
         shape
+    }
+
+    /// Points, if all of them are known.
+    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
+        let points: Vec<_> = points
+            .iter()
+            .map(|point| self.constant_point(point))
+            .collect();
+        points.into_iter().collect()
+    }
+
+    pub(super) fn numbers<const N: usize>(&mut self, numbers: &[Number; N]) -> Option<[f64; N]> {
+        let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
+        let values: Option<Vec<_>> = values.into_iter().collect();
+        values?.try_into().ok()
     }
 }

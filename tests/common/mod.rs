@@ -5,7 +5,7 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
@@ -15,7 +15,7 @@ use kfrac::rule::Rule;
 /// A rule of the embedded library as it is written.
 pub(crate) fn document(name: &str) -> Document {
     let catalogue = Catalogue::embedded();
-    let source = catalogue.component(Shelf::Rules, name).unwrap();
+    let source = catalogue.rule(name).unwrap();
     Document::read(&source, &catalogue).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
 }
 

@@ -346,7 +346,8 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     }
 }
 
-fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
+/// The rows of a matrix.
+pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
     let hint = "matrix: [[a, b], [c, d]]";
     let rows = reader.list(node, "a list of two rows", hint);
     if let [first, second] = rows {

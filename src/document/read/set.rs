@@ -35,7 +35,8 @@ pub(super) const CONDENSATION: Shape = Shape {
 const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
-const FORMS: [Member; 6] = [
+/// The keys that say what a set is.
+pub(super) const FORMS: [Member; 6] = [
     key("point", Form::Point, "A point: a dot as wide as a line."),
     key(
         "segment",

@@ -1,0 +1,328 @@
+//! A structure of objects that instance each other: what its keys hold.
+
+use crate::catalogue::Shelf;
+use crate::diagnostic::Place;
+use crate::document::instancing::{
+    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
+    TintDocument, UnionDocument,
+};
+use crate::document::node::{Key, Node, Value};
+use crate::document::reader::{Fields, Reader};
+use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
+use crate::document::style::read_colour;
+use crate::document::{Number, Written};
+use crate::expression::Expression;
+use crate::model::Kind;
+
+use super::first_line;
+use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::parameters::PARAMS;
+use super::set::{FORMS, SET, read_set};
+use super::transform::{TRANSFORMS, read_transforms};
+
+/// The keys of a structure.
+pub(in crate::document) const INSTANCING: Shape = Shape {
+    what: "an instancing structure",
+    keys: &[&DESCRIPTION, &INSTANCING_ALONE, &LIKING],
+    ways: &[],
+    hint: "a structure is a mapping of keys: `kfrac cat gasket-recursive` shows a short one",
+};
+
+/// The keys that only a structure has.
+const INSTANCING_ALONE: [Member; 6] = [
+    needed_key(
+        "kind",
+        Form::Words(&[Kind::Instancing.name()]),
+        "The kind of file.",
+    ),
+    key(
+        "extends",
+        Form::File(Shelf::Instancing),
+        "Another structure to start from, by name or by file. The keys written here replace its \
+         keys; `params`, `style` and `view` merge entry by entry.",
+    ),
+    PARAMS,
+    Member {
+        needed: Needed::Alone,
+        ..key(
+            "objects",
+            Form::Names(&UNION_OF, 1),
+            "The canonical objects, by name: each a union of instances. An object with a level is \
+             written `A(n)`, and `A(0)` for one level that is another.",
+        )
+    },
+    Member {
+        needed: Needed::Alone,
+        ..key("scene", UNION_OF, "The object that places the scene.")
+    },
+    key(
+        "initial",
+        Form::Mapping(&SET),
+        "What stands for an object that has not been replaced yet. If left out, nothing does where \
+         there are shapes, or else the box of the object's limit set.",
+    ),
+];
+
+const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
+
+const INSTANCES: Form = Form::List(
+    &Form::Either(&[Form::Text, Form::Mapping(&INSTANCE)]),
+    1,
+    None,
+);
+
+const UNION: Shape = Shape {
+    what: "an object",
+    keys: &[
+        &[needed_key(
+            "union",
+            INSTANCES,
+            "The instances: names of objects, or mappings.",
+        )],
+        &TRANSFORMS,
+    ],
+    ways: &[],
+    hint: "{union: [up, left, right], scale: 1/2, translate: [0, 1/2]}",
+};
+
+const INSTANCE: Shape = Shape {
+    what: "an instance",
+    keys: &[
+        &[
+            key(
+                "object",
+                Form::Text,
+                "The object that it is one of; with its level in brackets, if it has one.",
+            ),
+            key(
+                "tint",
+                Form::Mapping(&TINT),
+                "What it colours all that is in it with.",
+            ),
+        ],
+        &FORMS,
+        &TRANSFORMS,
+    ],
+    ways: &[],
+    hint: "the name of an object, {object: up, scale: 1/2}, or {segment: [[0, 0], [0, 1]]}",
+};
+
+const TINT: Shape = Shape {
+    what: "a tint",
+    keys: &[&[
+        needed_key("color", Form::Colour, "The colour, as CSS writes it."),
+        key(
+            "alpha",
+            Form::Number,
+            "How much it covers of what comes from further inside, from 0 to 1; all if left out.",
+        ),
+    ]],
+    ways: &[],
+    hint: "tint: {color: brown, alpha: 0.5}",
+};
+
+/// Reads a structure with its parents in it; `complete` if all of them were found.
+pub(super) fn read_instancing(
+    reader: &mut Reader,
+    node: &Node,
+    complete: bool,
+) -> Option<InstancingDocument> {
+    let fields = reader.fields(node, &INSTANCING)?;
+    let heading = read_heading(reader, &fields);
+    let objects = match fields.take("objects").map(|node| (&node.value, node)) {
+        Some((Value::Mapping(objects), _)) => objects
+            .iter()
+            .filter_map(|(key, node)| read_object(reader, key, node))
+            .collect(),
+        Some((_, node)) => {
+            reader.mismatch(node, "a mapping of names to objects", UNION.hint);
+            Vec::new()
+        }
+        None => {
+            let message = "the structure has no objects";
+            reader.error_with_hint(&first_line(fields.place), message, INSTANCING.hint);
+            Vec::new()
+        }
+    };
+    let scene = match fields.take("scene") {
+        Some(node) => read_union(reader, node),
+        None => {
+            let message = "the structure has no scene";
+            let hint = "scene: [A] places the object A";
+            reader.error_with_hint(&first_line(fields.place), message, hint);
+            None
+        }
+    };
+    let initial = fields.take("initial").and_then(|node| {
+        let fields = reader.fields(node, &SET)?;
+        Some(read_set(reader, &fields))
+    });
+    let mut structure = InstancingDocument {
+        heading,
+        objects,
+        scene,
+        initial,
+    };
+    structure.heading.complete = complete && !reader.names_are_missing;
+    Some(structure)
+}
+
+fn read_object(reader: &mut Reader, key: &Key, node: &Node) -> Option<ObjectDocument> {
+    let place = &key.place;
+    let within = |from: usize, to: usize| {
+        // Where a key is written otherwise than it reads, all of it is the place.
+        if place.text() == key.name {
+            place.within(from..to)
+        } else {
+            place.clone()
+        }
+    };
+    let (name, level) = split(&key.name);
+    let level = level.and_then(|(at, text)| {
+        let place = within(at, at + text.len());
+        let written = reader.expression(text, &place);
+        match written.value.as_name() {
+            Some(name) => Some(LevelDocument::Any(Written {
+                value: name.to_owned(),
+                place,
+            })),
+            None if written.value.is_unknown() => None,
+            None => Some(LevelDocument::One(written)),
+        }
+    });
+    Some(ObjectDocument {
+        name: Written {
+            value: name.to_owned(),
+            place: within(0, name.len()),
+        },
+        level,
+        union: read_union(reader, node)?,
+    })
+}
+
+/// `A(n - 1)` as A and where, and what, stands in its brackets.
+fn split(text: &str) -> (&str, Option<(usize, &str)>) {
+    let inside = text.find('(').zip(text.trim_end().strip_suffix(')'));
+    match inside {
+        Some((open, before)) if open < before.len() => {
+            (text[..open].trim(), Some((open + 1, &before[open + 1..])))
+        }
+        _ => (text.trim(), None),
+    }
+}
+
+fn read_union(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
+    if let Value::Sequence(_) = &node.value {
+        return Some(UnionDocument {
+            instances: read_instances(reader, node),
+            transforms: Vec::new(),
+            place: node.place.clone(),
+        });
+    }
+    let fields = reader.fields(node, &UNION)?;
+    let instances = match fields.take("union") {
+        Some(node) => read_instances(reader, node),
+        None => {
+            let message = "an object needs a `union` of instances";
+            reader.error_with_hint(&first_line(&node.place), message, UNION.hint);
+            Vec::new()
+        }
+    };
+    Some(UnionDocument {
+        instances,
+        transforms: read_transforms(reader, &fields),
+        place: node.place.clone(),
+    })
+}
+
+fn read_instances(reader: &mut Reader, node: &Node) -> Vec<InstanceDocument> {
+    let list = reader.list(node, "a list of instances", INSTANCE.hint);
+    if list.is_empty() && matches!(node.value, Value::Sequence(_)) {
+        let message = "there is no instance in this list";
+        reader.error_with_hint(&node.place, message, INSTANCE.hint);
+    }
+    list.iter()
+        .map(|node| read_instance(reader, node))
+        .collect()
+}
+
+fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
+    let mut instance = InstanceDocument {
+        master: None,
+        transforms: Vec::new(),
+        tint: None,
+        place: node.place.clone(),
+    };
+    if let Value::Text(_) = &node.value {
+        instance.master = read_named(reader, node);
+    } else if let Some(fields) = reader.fields(node, &INSTANCE) {
+        instance.master = read_master(reader, &fields);
+        instance.transforms = read_transforms(reader, &fields);
+        instance.tint = fields.take("tint").and_then(|node| {
+            let fields = reader.fields(node, &TINT)?;
+            if fields.take("color").is_none() {
+                let message = "a tint needs a `color`";
+                reader.error_with_hint(&first_line(&node.place), message, TINT.hint);
+            }
+            Some(TintDocument {
+                colour: fields
+                    .take("color")
+                    .and_then(|node| read_colour(reader, node)),
+                alpha: reader.optional_number(fields.take("alpha")),
+            })
+        });
+    }
+    instance
+}
+
+/// What an instance is one of: an object, or the shape that one of its keys says.
+fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocument> {
+    let shape = FORMS.iter().find(|form| fields.take(form.name).is_some());
+    match (fields.take("object"), shape) {
+        (Some(node), None) => read_named(reader, node),
+        (Some(_), Some(shape)) => {
+            let message = format!("an instance of an object is no {} as well", shape.name);
+            let place = fields.place_of(shape.name);
+            reader.error_with_hint(place, message, "write two instances");
+            None
+        }
+        (None, Some(_)) => Some(MasterDocument::Shape(read_set(reader, fields))),
+        (None, None) => {
+            let message = "this instance does not say what it is one of";
+            reader.error_with_hint(&first_line(fields.place), message, INSTANCE.hint);
+            None
+        }
+    }
+}
+
+fn read_named(reader: &mut Reader, node: &Node) -> Option<MasterDocument> {
+    let text = reader.text(node)?;
+    let (name, level) = split(&text);
+    let level: Option<Number> = level.map(|(at, text)| {
+        let place = node.within(at..at + text.len());
+        reader.expression(text, &place)
+    });
+    Some(MasterDocument::Object {
+        name: Written {
+            value: name.to_owned(),
+            place: node.within(0..name.len()),
+        },
+        level,
+    })
+}
+
+impl Reader {
+    /// An expression that is part of a text.
+    fn expression(&mut self, text: &str, place: &Place) -> Number {
+        let value = Expression::parse(text).unwrap_or_else(|error| {
+            let message = error.message;
+            let hint = error.hint.unwrap_or_else(|| "A(n - 1), A(0)".into());
+            self.error_with_hint(place, message, hint);
+            Expression::unknown()
+        });
+        Written {
+            value,
+            place: place.clone(),
+        }
+    }
+}

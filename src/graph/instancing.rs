@@ -1,0 +1,230 @@
+//! From a structure of objects to its graph.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
+use crate::ifs::Shape;
+use crate::instancing::{self, Instancing, Master, Tint};
+use crate::rule::BaseElement;
+
+use super::ifs::{filling, outline};
+use super::{Chain, Graph, Instance, Object, Production, Replacement};
+
+/// Boxes of more objects than this are not told apart where nothing else is drawn.
+const MOST_BOXES: usize = 256;
+
+impl Graph {
+    /// Compiles a structure to its graph, whose unit frame is the plane itself.
+    ///
+    /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
+    /// there is one, with what the object does to all of it; with each step, instances of objects are
+    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes nor an initial set, an object is drawn
+    /// as the box of its limit set.
+    #[must_use]
+    pub fn of_structure(structure: &Instancing) -> Self {
+        let mut graph = Compiler::new(structure).run();
+        let has_shapes = structure
+            .instances()
+            .any(|instance| matches!(instance.master, Master::Shape(_)));
+        if structure.initial.is_none() && !has_shapes {
+            graph.draw_boxes();
+        }
+        let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
+        if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
+            graph.middle = (bounds.min() + bounds.max()) / 2.0;
+            let size = bounds.size().max_element();
+            graph.unit = if size > 0.0 { size } else { 1.0 };
+        }
+        graph
+    }
+
+    /// Draws every object as the box of its limit set.
+    fn draw_boxes(&mut self) {
+        let initiator = self.initiator.clone();
+        let mut boxes: Vec<Option<Bounds>> = Vec::new();
+        for number in 0..self.objects.len() {
+            // Behaviours are numbered in the order of the objects.
+            if self.objects[number].behaviour == boxes.len() {
+                self.initiator.instances = vec![instance(number, &DAffine2::IDENTITY, 0)];
+                let is_told = boxes.len() < MOST_BOXES;
+                boxes.push(is_told.then(|| self.limit_bounds()).flatten());
+            }
+        }
+        self.initiator = initiator;
+        let first = self.base_elements.len();
+        let boxes = boxes.into_iter().map(filling);
+        self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
+        for object in &mut self.objects {
+            object.base_element = first + object.behaviour;
+            object.visible = true;
+        }
+    }
+}
+
+fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
+    let frame = Frame {
+        map: *map,
+        direction: Direction::Normal,
+    };
+    Instance {
+        length: frame.stretch(),
+        frame,
+        joined: false,
+        position: u32::try_from(position).unwrap_or(u32::MAX),
+        object,
+    }
+}
+
+struct Compiler<'s> {
+    structure: &'s Instancing,
+    base_elements: Vec<BaseElement>,
+    objects: Vec<Object>,
+    /// The numbers of objects, by what an instance is one of and by its tint.
+    numbers: Vec<(Master, Option<Tint>, usize)>,
+    /// Those of canonical objects by number and tint, which may be many.
+    canonical: BTreeMap<(usize, [u64; 2]), usize>,
+    /// For every object of the graph, the canonical object that it is.
+    of: Vec<Option<usize>>,
+}
+
+impl<'s> Compiler<'s> {
+    fn new(structure: &'s Instancing) -> Self {
+        let initial = structure.initial.as_ref().map(outline);
+        Self {
+            structure,
+            base_elements: vec![initial.unwrap_or_else(BaseElement::line)],
+            objects: Vec::new(),
+            numbers: Vec::new(),
+            canonical: BTreeMap::new(),
+            of: Vec::new(),
+        }
+    }
+
+    fn run(mut self) -> Graph {
+        let initiator = self.chain(&self.structure.scene);
+        // The objects that are reached; those of one canonical object share what replaces them.
+        let mut made: BTreeMap<usize, Arc<Production>> = BTreeMap::new();
+        let mut behaviours: BTreeMap<Option<usize>, usize> = BTreeMap::new();
+        let mut done = 0;
+        while done < self.objects.len() {
+            let of = self.of[done];
+            let next = behaviours.len();
+            self.objects[done].behaviour = *behaviours.entry(of).or_insert(next);
+            if let Some(canonical) = of {
+                let production = match made.get(&canonical) {
+                    Some(production) => Arc::clone(production),
+                    None => {
+                        let object = &self.structure.objects[canonical];
+                        let body = self.chain(&object.instances);
+                        let production = Arc::new(Production {
+                            body,
+                            seeds: Vec::new(),
+                        });
+                        made.insert(canonical, Arc::clone(&production));
+                        production
+                    }
+                };
+                self.objects[done].replacement = Replacement::Fixed(production);
+            }
+            done += 1;
+        }
+        Graph {
+            rule: None,
+            base_elements: self.base_elements.into(),
+            origins: 0,
+            objects: self.objects,
+            initiator,
+            depth: None,
+            regular: true,
+            counts_index: false,
+            draws: false,
+            seeds: false,
+            affine: true,
+            unit: 1.0,
+            middle: DVec2::ZERO,
+        }
+    }
+
+    fn chain(&mut self, instances: &[instancing::Instance]) -> Chain {
+        let numbered = instances.iter().enumerate();
+        Chain {
+            instances: numbered
+                .map(|(position, of)| {
+                    let map = self.structure.map_of(of);
+                    instance(self.object(of), &map, position)
+                })
+                .collect(),
+            meets_frame: [false; 2],
+        }
+    }
+
+    /// The object that an instance is one of, made if it is new.
+    fn object(&mut self, instance: &instancing::Instance) -> usize {
+        match &instance.master {
+            Master::Object(number) => {
+                let tint = instance.tint.map_or([0; 2], |tint| {
+                    let [red, green, blue, _] = tint.colour.rgba();
+                    let colour = u32::from_be_bytes([1, red, green, blue]);
+                    [u64::from(colour), tint.alpha.to_bits()]
+                });
+                if let Some(known) = self.canonical.get(&(*number, tint)) {
+                    return *known;
+                }
+                let visible = self.structure.initial.is_some();
+                let made = self.new_object(0, visible, instance.tint, Some(*number));
+                self.canonical.insert((*number, tint), made);
+                made
+            }
+            Master::Shape(shape) => {
+                let same = |(master, tint, _): &&(Master, Option<Tint>, usize)| {
+                    *master == instance.master && *tint == instance.tint
+                };
+                if let Some((_, _, known)) = self.numbers.iter().find(same) {
+                    return *known;
+                }
+                let base_element = self.base_element(shape);
+                let made = self.new_object(base_element, true, instance.tint, None);
+                self.numbers
+                    .push((instance.master.clone(), instance.tint, made));
+                made
+            }
+        }
+    }
+
+    fn base_element(&mut self, shape: &Shape) -> usize {
+        let made = outline(shape);
+        let known = self
+            .base_elements
+            .iter()
+            .skip(1)
+            .position(|known| *known == made);
+        known.map_or_else(
+            || {
+                self.base_elements.push(made);
+                self.base_elements.len() - 1
+            },
+            |known| known + 1,
+        )
+    }
+
+    fn new_object(
+        &mut self,
+        base_element: usize,
+        visible: bool,
+        tint: Option<Tint>,
+        of: Option<usize>,
+    ) -> usize {
+        self.objects.push(Object {
+            base_element,
+            visible,
+            origin: None,
+            last_map: None,
+            tint,
+            behaviour: 0,
+            replacement: Replacement::Kept,
+        });
+        self.of.push(of);
+        self.objects.len() - 1
+    }
+}

@@ -1,0 +1,101 @@
+//! Object instancing (Hart, "The object instancing paradigm for linear fractal modeling", 1992).
+//!
+//! Canonical objects are unions of instances: of other objects, of themselves, or of shapes, each with a
+//! map of its own. What a file writes with a level, `A(n)`, is here one object a level that is reached.
+
+use crate::geometry::DAffine2;
+use crate::heading::Heading;
+use crate::ifs::Shape;
+use crate::style::Colour;
+
+/// A structure of objects that instance each other.
+///
+/// Guarantees: all numbers of objects are in range, all maps are finite, and instances that lead back
+/// to their object do not grow (or it is undecided whether they do).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instancing {
+    pub(crate) heading: Heading,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) scene: Vec<Instance>,
+    pub(crate) initial: Option<Shape>,
+}
+
+/// A canonical object: a union of instances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Its name, with its level if it has one: `A(3)`.
+    pub name: String,
+    /// What is done to all of it.
+    pub map: DAffine2,
+    /// What it is made of.
+    pub instances: Vec<Instance>,
+}
+
+/// An instance of an object, or of a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// Where it stands in the object that it is part of.
+    pub map: DAffine2,
+    /// What stands there.
+    pub master: Master,
+    /// What it tints all that is in it.
+    pub tint: Option<Tint>,
+}
+
+/// What an instance is one of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Master {
+    /// An object, by number.
+    Object(usize),
+    /// A shape: a primitive.
+    Shape(Shape),
+}
+
+/// A colour and how much it covers (Hart 1992, section 5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tint {
+    /// The colour; its own opacity does not matter.
+    pub colour: Colour,
+    /// How much it covers, from 0, nothing, to 1, all.
+    pub alpha: f64,
+}
+
+impl Instancing {
+    /// What files of all kinds say.
+    #[must_use]
+    pub fn heading(&self) -> &Heading {
+        &self.heading
+    }
+
+    /// The objects that the scene leads to.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// What the scene is made of.
+    #[must_use]
+    pub fn scene(&self) -> &[Instance] {
+        &self.scene
+    }
+
+    /// What stands for an object that has not been replaced yet.
+    #[must_use]
+    pub fn initial(&self) -> Option<&Shape> {
+        self.initial.as_ref()
+    }
+
+    /// Where what an instance shows stands, with what the object that it is one of does to all of it.
+    pub(crate) fn map_of(&self, instance: &Instance) -> DAffine2 {
+        match instance.master {
+            Master::Object(number) => instance.map * self.objects[number].map,
+            Master::Shape(_) => instance.map,
+        }
+    }
+
+    /// All instances, those of the scene first.
+    pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
+        let objects = self.objects.iter().flat_map(|object| &object.instances);
+        self.scene.iter().chain(objects)
+    }
+}

@@ -1,0 +1,398 @@
+//! Structures of objects that instance each other.
+
+mod loops;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::diagnostic::{Diagnostic, Place, did_you_mean, listed};
+use crate::document::{
+    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, Number, ObjectDocument,
+    TransformDocument, UnionDocument,
+};
+use crate::expression::{Program, Scope};
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::heading::Heading;
+use crate::ifs::{Shape, axes};
+use crate::instancing::{Instance, Instancing, Master, Object, Tint};
+use crate::style::Colour;
+
+use super::Resolver;
+
+/// More objects than this are not made of those with levels.
+const MOST_OBJECTS: usize = 20_000;
+
+/// What is known while a structure is resolved.
+#[derive(Default)]
+pub(super) struct OfInstancing {
+    /// The objects that were written.
+    unions: Vec<Union>,
+    /// Those of a name.
+    names: BTreeMap<String, Definitions>,
+    /// The objects that have been reached: the union of each, and its level.
+    reached: Vec<(usize, Option<f64>)>,
+    numbers: BTreeMap<(usize, u64), usize>,
+    is_too_many: bool,
+}
+
+/// The objects that share a name, by the number of their union.
+#[derive(Default)]
+struct Definitions {
+    plain: Option<usize>,
+    /// Of single levels.
+    levels: Vec<(f64, usize)>,
+    any: Option<usize>,
+}
+
+impl Definitions {
+    fn has_levels(&self) -> bool {
+        self.any.is_some() || !self.levels.is_empty()
+    }
+}
+
+/// A union whose expressions are compiled; the first slot is the level.
+struct Union {
+    name: String,
+    instances: Vec<Prepared>,
+    transforms: Vec<Transform>,
+}
+
+struct Prepared {
+    master: Option<PreparedMaster>,
+    transforms: Vec<Transform>,
+    tint: Option<(Colour, Program)>,
+    place: Place,
+}
+
+enum PreparedMaster {
+    Shape(Shape),
+    Object {
+        name: String,
+        level: Option<Program>,
+        place: Place,
+    },
+}
+
+enum Transform {
+    Scale([Program; 2]),
+    Rotate(Program),
+    Translate([Program; 2]),
+    Matrix([[Program; 2]; 2]),
+}
+
+impl Transform {
+    fn map(&self, slots: &[f64]) -> DAffine2 {
+        let vector = |[x, y]: &[Program; 2]| DVec2::new(x.eval(slots), y.eval(slots));
+        match self {
+            Self::Scale(factors) => DAffine2::from_mat2(DMat2::from_diagonal(vector(factors))),
+            Self::Rotate(angle) => {
+                DAffine2::from_mat2(axes(DVec2::ONE, DVec2::splat(angle.eval(slots))))
+            }
+            Self::Translate(shift) => DAffine2::from_translation(vector(shift)),
+            Self::Matrix([first, second]) => {
+                DAffine2::from_mat2(DMat2::from_cols(vector(first), vector(second)).transpose())
+            }
+        }
+    }
+}
+
+/// Transforms in their order: what is written first is done first.
+fn product(transforms: &[Transform], slots: &[f64]) -> DAffine2 {
+    let maps = transforms.iter().map(|transform| transform.map(slots));
+    maps.fold(DAffine2::IDENTITY, |before, map| map * before)
+}
+
+impl Resolver<OfInstancing> {
+    /// The structure; `None` if something is wrong, which is said.
+    pub(super) fn structure(
+        &mut self,
+        document: &InstancingDocument,
+        heading: Heading,
+    ) -> Option<Instancing> {
+        let initial = document.initial.as_ref().map(|set| self.set(set));
+        for object in &document.objects {
+            self.define(object);
+        }
+        let scene = self.union(String::new(), document.scene.as_ref()?, None);
+        self.check_names(document, &scene);
+        if self.diagnostics.has_errors() {
+            return None;
+        }
+        let whole = product(&scene.transforms, &[]);
+        let mut scene = self.instances(&scene, None);
+        for instance in &mut scene {
+            instance.map = whole * instance.map;
+        }
+        let mut objects = Vec::new();
+        while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
+            let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
+            let number = self.kind.reached[objects.len()].0;
+            objects.push(Object {
+                name: match level {
+                    Some(level) => format!("{}({level})", union.name),
+                    None => union.name.clone(),
+                },
+                map: product(&union.transforms, level.as_slice()),
+                instances: self.instances(&union, level),
+            });
+            self.kind.unions[number] = union;
+            if self.diagnostics.has_errors() {
+                return None;
+            }
+        }
+        self.check_all_are_reached(document);
+        let structure = Instancing {
+            heading,
+            objects,
+            scene,
+            initial: match initial {
+                None => None,
+                Some(initial) => Some(initial?),
+            },
+        };
+        self.check_loops(document, &structure)?;
+        Some(structure)
+    }
+
+    /// Takes in an object as written.
+    fn define(&mut self, document: &ObjectDocument) {
+        let name = &document.name.value;
+        let number = self.kind.unions.len();
+        let variable = match &document.level {
+            Some(LevelDocument::Any(name)) => Some(name.value.as_str()),
+            _ => None,
+        };
+        let union = self.union(name.clone(), &document.union, variable);
+        self.kind.unions.push(union);
+        let level = match &document.level {
+            Some(LevelDocument::One(number)) => match self.constant(number) {
+                Some(level) => Some(level),
+                None => return,
+            },
+            _ => None,
+        };
+        let known = self.kind.names.entry(name.clone()).or_default();
+        let twice = match (&document.level, level) {
+            (_, Some(level)) => {
+                let twice = known.levels.iter().any(|(known, _)| *known == level);
+                known.levels.push((level, number));
+                twice
+            }
+            (Some(_), None) => known.any.replace(number).is_some(),
+            (None, None) => known.plain.replace(number).is_some(),
+        };
+        let mixed = known.plain.is_some() && known.has_levels();
+        if twice {
+            let message = format!("there is an object '{name}' of this level already");
+            self.error(&document.name.place, message);
+        } else if mixed {
+            let message = format!("'{name}' is written with a level and without");
+            let hint = "an object has a level everywhere, or nowhere";
+            self.error_with_hint(&document.name.place, message, hint);
+        }
+    }
+
+    fn union(&mut self, name: String, document: &UnionDocument, variable: Option<&str>) -> Union {
+        let mut scope = self.constants.clone();
+        if let Some(variable) = variable {
+            self.used.insert(variable.to_owned());
+            scope.variable(variable, 0);
+        }
+        Union {
+            name,
+            instances: document
+                .instances
+                .iter()
+                .map(|instance| self.prepared(instance, &scope))
+                .collect(),
+            transforms: self.transforms(&document.transforms, &scope),
+        }
+    }
+
+    fn prepared(&mut self, document: &InstanceDocument, scope: &Scope) -> Prepared {
+        let master = document.master.as_ref().and_then(|master| match master {
+            MasterDocument::Shape(shape) => self.set(shape).map(PreparedMaster::Shape),
+            MasterDocument::Object { name, level } => Some(PreparedMaster::Object {
+                name: name.value.clone(),
+                level: level.as_ref().map(|level| self.program(level, scope)),
+                place: name.place.clone(),
+            }),
+        });
+        let tint = document.tint.as_ref().and_then(|tint| {
+            let alpha = match &tint.alpha {
+                Some(alpha) => self.program(alpha, scope),
+                None => Program::constant(1.0),
+            };
+            Some((tint.colour?, alpha))
+        });
+        Prepared {
+            master,
+            transforms: self.transforms(&document.transforms, scope),
+            tint,
+            place: document.place.clone(),
+        }
+    }
+
+    fn transforms(&mut self, documents: &[TransformDocument], scope: &Scope) -> Vec<Transform> {
+        let mut two = |x: &Number, y: &Number| [self.program(x, scope), self.program(y, scope)];
+        let mut transforms = Vec::new();
+        for document in documents {
+            transforms.push(match document {
+                TransformDocument::Scale([x, y]) => Transform::Scale(two(x, y)),
+                TransformDocument::Translate(shift) => {
+                    Transform::Translate(two(&shift.x, &shift.y))
+                }
+                TransformDocument::Matrix([a, b]) => {
+                    Transform::Matrix([two(&a.x, &a.y), two(&b.x, &b.y)])
+                }
+                TransformDocument::Rotate(angle) => {
+                    let [angle, _] = two(angle, angle);
+                    Transform::Rotate(angle)
+                }
+            });
+        }
+        transforms
+    }
+
+    /// Says which names of objects are not known, whether or not they are reached.
+    fn check_names(&mut self, document: &InstancingDocument, scene: &Union) {
+        if self.incomplete {
+            return;
+        }
+        let unions = std::mem::take(&mut self.kind.unions);
+        for prepared in unions
+            .iter()
+            .chain([scene])
+            .flat_map(|union| &union.instances)
+        {
+            let Some(PreparedMaster::Object { name, level, place }) = &prepared.master else {
+                continue;
+            };
+            let Some(known) = self.kind.names.get(name) else {
+                let names = document
+                    .objects
+                    .iter()
+                    .map(|object| object.name.value.as_str());
+                let hint = did_you_mean(name, names.clone())
+                    .unwrap_or_else(|| format!("the objects are: {}", listed(names)));
+                let message = format!("there is no object '{name}'");
+                self.error_with_hint(place, message, hint);
+                continue;
+            };
+            match (level, known.plain) {
+                (None, None) => {
+                    let message = format!("'{name}' needs a level");
+                    self.error_with_hint(place, message, format!("{name}(10)"));
+                }
+                (Some(_), Some(_)) if !known.has_levels() => {
+                    let message = format!("'{name}' has no level");
+                    self.error_with_hint(place, message, format!("write {name}"));
+                }
+                _ => {}
+            }
+        }
+        self.kind.unions = unions;
+    }
+
+    /// The instances of a union at a level; objects that are new are reached.
+    fn instances(&mut self, union: &Union, level: Option<f64>) -> Vec<Instance> {
+        let slots: Vec<f64> = level.into_iter().collect();
+        let whole = product(&union.transforms, &slots);
+        let mut instances = Vec::new();
+        for prepared in &union.instances {
+            let map = product(&prepared.transforms, &slots);
+            if !(whole * map).is_finite() {
+                let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
+                let message = format!("the transform of this instance is not finite{at}");
+                self.error(&prepared.place, message);
+                continue;
+            }
+            let tint = prepared.tint.as_ref().map(|(colour, alpha)| Tint {
+                colour: *colour,
+                alpha: alpha.eval(&slots),
+            });
+            if let Some(tint) = tint.filter(|tint| !(0.0..=1.0).contains(&tint.alpha)) {
+                let message = format!("the alpha of this tint is {}", tint.alpha);
+                let hint = "it is a number from 0, nothing, to 1, all";
+                self.error_with_hint(&prepared.place, message, hint);
+                continue;
+            }
+            let master = match &prepared.master {
+                Some(PreparedMaster::Shape(shape)) => Some(Master::Shape(shape.clone())),
+                Some(PreparedMaster::Object { name, level, place }) => {
+                    let level = level.as_ref().map(|level| level.eval(&slots));
+                    self.object(name, level, place).map(Master::Object)
+                }
+                None => None,
+            };
+            instances.extend(master.map(|master| Instance { map, master, tint }));
+        }
+        instances
+    }
+
+    /// The number of an object at a level, which is reached with this.
+    fn object(&mut self, name: &str, level: Option<f64>, place: &Place) -> Option<usize> {
+        let known = self.kind.names.get(name)?;
+        let union = match level {
+            None => known.plain,
+            Some(level) => {
+                let mut levels = known.levels.iter();
+                let one = levels.find(|(known, _)| *known == level);
+                one.map(|(_, union)| *union).or(known.any)
+            }
+        };
+        let level = level.map(|level| level + 0.0);
+        let Some(union) = union else {
+            let level = level.unwrap_or_default();
+            let message = format!("there is no object '{name}({level})'");
+            let hint = format!("write one, or {name}(n) for all levels");
+            self.error_with_hint(place, message, hint);
+            return None;
+        };
+        if level.is_some_and(|level| !level.is_finite()) {
+            let message = format!("the level of '{name}' is not finite here");
+            self.error(place, message);
+            return None;
+        }
+        let key = (union, level.map_or(0, f64::to_bits));
+        if let Some(&known) = self.kind.numbers.get(&key) {
+            return Some(known);
+        }
+        let number = self.kind.reached.len();
+        if number >= MOST_OBJECTS {
+            if !self.kind.is_too_many {
+                self.kind.is_too_many = true;
+                let message =
+                    format!("'{name}' leads to more than {MOST_OBJECTS} levels of itself");
+                let hint = format!("an object of one level ends it: {name}(0)");
+                self.error_with_hint(place, message, hint);
+            }
+            return None;
+        }
+        self.kind.reached.push((union, level));
+        self.kind.numbers.insert(key, number);
+        Some(number)
+    }
+
+    /// Warns of objects that the scene does not lead to.
+    fn check_all_are_reached(&mut self, document: &InstancingDocument) {
+        let reached: BTreeSet<usize> = self.kind.reached.iter().map(|(union, _)| *union).collect();
+        for (number, object) in document.objects.iter().enumerate() {
+            if !reached.contains(&number) {
+                let message = format!("the scene does not lead to '{}'", object.name.place.text());
+                let hint = "leave the object out, or instance it";
+                let warning = Diagnostic::warning(message).at(&object.name.place);
+                self.diagnostics.push(warning.hint(hint));
+            }
+        }
+    }
+}
+
+impl Union {
+    fn nothing() -> Self {
+        Self {
+            name: String::new(),
+            instances: Vec::new(),
+            transforms: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Whether instances that lead back to their object shrink.
+
+use crate::diagnostic::Diagnostic;
+use crate::digraph::components;
+use crate::document::InstancingDocument;
+use crate::geometry::DMat2;
+use crate::ifs::{Contraction, Verdict};
+use crate::instancing::{Instancing, Master};
+use crate::resolve::Resolver;
+
+use super::OfInstancing;
+
+/// An instance that lies on a loop.
+struct Edge {
+    from: usize,
+    to: usize,
+    linear: DMat2,
+}
+
+impl Resolver<OfInstancing> {
+    /// Refuses a loop of instances that does not contract, and says where that is not known.
+    pub(super) fn check_loops(
+        &mut self,
+        document: &InstancingDocument,
+        structure: &Instancing,
+    ) -> Option<()> {
+        let edges = edges(structure);
+        if edges.is_empty() {
+            return Some(());
+        }
+        let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
+        // What is applied after a map is what its object is instanced by.
+        let after = |edge: &Edge| {
+            let outer = edges.iter().enumerate();
+            let outer = outer.filter(|(_, outer)| outer.to == edge.from);
+            outer.map(|(number, _)| number).collect()
+        };
+        let contraction = Contraction::of(&linear, Some(edges.iter().map(after).collect()));
+        let name = |edge: &usize| structure.objects[edges[*edge].from].name.as_str();
+        let object = contraction.word.last().map_or("", name);
+        let written = document
+            .objects
+            .iter()
+            .find(|written| object.split('(').next() == Some(&written.name.value));
+        let place = written.map_or(&document.heading.place, |written| &written.name.place);
+        match contraction.verdict {
+            Verdict::Contracts => Some(()),
+            Verdict::Diverges => {
+                let way = contraction.word.iter().rev().map(name).chain([object]);
+                let way = way.collect::<Vec<_>>().join(" > ");
+                let message = format!("an instancing loop does not contract: {way}");
+                let hint = "what leads back to an object must become smaller on the way";
+                self.error_with_hint(place, message, hint);
+                None
+            }
+            Verdict::Undecided => {
+                let message = format!(
+                    "ways of up to {} instances do not tell whether all loops contract",
+                    contraction.length
+                );
+                let hint = "it can be grown by a number of steps, but its limit is not known";
+                let warning = Diagnostic::warning(message).at(place).hint(hint);
+                self.diagnostics.push(warning);
+                Some(())
+            }
+        }
+    }
+}
+
+/// The instances of objects in objects that lead back.
+fn edges(structure: &Instancing) -> Vec<Edge> {
+    let mut edges = Vec::new();
+    for (from, object) in structure.objects.iter().enumerate() {
+        for instance in &object.instances {
+            if let Master::Object(to) = instance.master {
+                let linear = structure.map_of(instance).matrix2;
+                edges.push(Edge { from, to, linear });
+            }
+        }
+    }
+    let mut targets = vec![Vec::new(); structure.objects.len()];
+    for edge in &edges {
+        targets[edge.from].push(edge.to);
+    }
+    let component = components(&targets);
+    edges.retain(|edge| component[edge.from] == component[edge.to]);
+    edges
+}
