@@ -17,7 +17,7 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   similarity dimension
+//!     ├── measure   dimensions: exact, and by boxes
 //!     │  grow       a depth-first walk
 //!     ▼
 //!  elements, in order, streamed
@@ -26,7 +26,8 @@
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
-//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
+//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other
+//! (what is measured beside graphs, pictures and tables of points, is read by [`import`]);
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
 //! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in
@@ -44,6 +45,7 @@ pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
+pub mod import;
 pub mod measure;
 pub mod parallel;
 pub mod render;
