@@ -35,11 +35,12 @@ Examples:
 ";
 
 /// The commands that take a rule, and the argument that is it.
-const OF_RULES: [(&str, &str); 6] = [
+const OF_RULES: [(&str, &str); 7] = [
     ("grow", "rule"),
     ("sheet", "rule"),
     ("show", "rule"),
     ("info", "rule"),
+    ("dim", "rule"),
     ("cat", "rule"),
     ("check", "files"),
 ];

@@ -3,6 +3,7 @@
 mod cat;
 mod check;
 mod completions;
+mod dim;
 mod format;
 mod goal;
 mod grow;
@@ -56,6 +57,7 @@ enum Command {
     Sheet(sheet::Arguments),
     Show(show::Arguments),
     Info(info::Arguments),
+    Dim(dim::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
@@ -175,6 +177,7 @@ pub fn run() -> ExitCode {
         Command::Show(arguments) => show::run(arguments, &catalogue),
         Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
+        Command::Dim(arguments) => dim::run(arguments, &catalogue),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
