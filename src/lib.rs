@@ -17,7 +17,7 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   dimensions, exactly where they can be
+//!     ├── measure   dimensions: exactly where they can be, and by boxes
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
@@ -32,7 +32,8 @@
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
 //! `render` turns into pictures.
 //!
-//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
+//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other
+//! (what is measured beside graphs, pictures and tables of points, is read by [`import`]);
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
 //! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in
@@ -56,6 +57,7 @@ pub mod graph;
 pub mod grow;
 pub mod heading;
 pub mod ifs;
+pub mod import;
 pub mod instancing;
 pub mod measure;
 pub mod model;

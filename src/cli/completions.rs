@@ -35,12 +35,13 @@ Examples:
 ";
 
 /// The commands that take a rule, and the argument that is it.
-const OF_RULES: [(&str, &str); 7] = [
+const OF_RULES: [(&str, &str); 8] = [
     ("grow", "rule"),
     ("sheet", "rule"),
     ("show", "rule"),
     ("info", "rule"),
     ("count", "rule"),
+    ("dim", "rule"),
     ("cat", "rule"),
     ("check", "files"),
 ];

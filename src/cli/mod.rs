@@ -4,6 +4,7 @@ mod cat;
 mod check;
 mod completions;
 mod count;
+mod dim;
 mod format;
 mod goal;
 mod grow;
@@ -59,6 +60,7 @@ enum Command {
     Show(show::Arguments),
     Info(info::Arguments),
     Count(count::Arguments),
+    Dim(dim::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
@@ -179,6 +181,7 @@ pub fn run() -> ExitCode {
         Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Count(arguments) => count::run(arguments, &catalogue),
+        Command::Dim(arguments) => dim::run(arguments, &catalogue),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),

@@ -50,7 +50,7 @@ pub(super) struct RuleArguments {
     pub(super) omit: Vec<u32>,
 }
 
-fn setting(text: &str) -> Result<Setting, String> {
+pub(super) fn setting(text: &str) -> Result<Setting, String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
     let program = Expression::parse(value)
         .and_then(|expression| expression.compile(&Scope::new()))
@@ -146,7 +146,17 @@ impl RuleArguments {
     /// Finds, reads and resolves the rule; warnings are said.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
         let source = open(&self.rule, catalogue)?;
-        let document = Document::read(&source, catalogue)?;
+        self.resolve(&source, catalogue, quiet)
+    }
+
+    /// Reads and resolves the rule from its text; warnings are said.
+    pub(super) fn resolve(
+        &self,
+        source: &Arc<Source>,
+        catalogue: &Catalogue,
+        quiet: bool,
+    ) -> Result<Loaded, Failure> {
+        let document = Document::read(source, catalogue)?;
         let name = name_of(&self.rule).to_string_lossy().into_owned();
         for setting in &self.set {
             self.check_setting(setting, &document, &name)?;

@@ -1,6 +1,34 @@
-//! Dimensions.
+//! Dimensions: exact where the graph tells them, measured by boxes where it does not.
+//!
+//! Three kinds of sets are covered by boxes: the pixels of a picture ([`Bits`]), [`Points`] of the
+//! plane, and the [`LimitSet`] of a graph, with nothing drawn in between (or what is [`grown`] of it,
+//! where maps are drawn by chance). Every size of boxes is counted on several [`Grid`]s, of which the
+//! least cover counts. [`BoxCounting`] is the slope of the counts with its error and its evidence;
+//! [`Masses`] tell the other dimensions D_q, and lacunarity.
+//!
+//! The axes are those of the sets: x to the right and y up, but rows of pictures from the top down.
+//!
+#![doc = include_str!("library.md")]
 
+mod bits;
+mod box_counting;
+mod cover;
 pub mod exact;
+mod grown;
+mod limit;
+mod mass;
+mod points;
+mod raster;
+mod regression;
 mod similarity;
 
+pub use bits::Bits;
+pub use box_counting::{BoxCounting, Boxes, Window};
+pub use cover::{Grid, Scale};
+pub use grown::{Grown, grown};
+pub use limit::{LimitSet, NoLimit};
+pub use mass::{Generalised, Lacunarity, Masses};
+pub use points::{NoExtent, Points, counts};
+pub use raster::raster_scales;
+pub use regression::Estimate;
 pub use similarity::{Similarity, similarity_dimension};

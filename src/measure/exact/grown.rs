@@ -42,15 +42,18 @@ pub fn dimensions_of_graph(graph: &Graph) -> Grown {
                       line that is drawn has finite length";
         notes.push(points.into());
     }
-    let drawn = if draws_infertile(graph) {
-        let lines = "infertile elements that are drawn have the dimension 1: what is drawn has \
-                     the larger of the two";
-        notes.push(lines.into());
-        let bound = dimensions.hausdorff.upper_bound;
-        let small = bound.is_some_and(|bound| bound <= 1.0).then_some(1.0);
-        own.map(|own| own.max(1.0)).or(small)
-    } else {
-        own
+    let drawn = match infertile(graph) {
+        None => own,
+        Some(infertile) => {
+            notes.push(format!(
+                "what stays infertile and is drawn has the dimension {infertile}: all that is drawn \
+                 has the larger of the two"
+            ));
+            let bound = dimensions.hausdorff.upper_bound;
+            let small = bound.is_some_and(|bound| bound <= infertile);
+            own.map(|own| own.max(infertile))
+                .or(small.then_some(infertile))
+        }
     };
     Grown {
         dimensions: Some(dimensions),
@@ -95,7 +98,16 @@ fn at_random(graph: &Graph) -> Grown {
 }
 
 /// Whether elements that are drawn stay infertile.
-fn draws_infertile(graph: &Graph) -> bool {
-    let mut objects = graph.objects().iter();
-    objects.any(|object| object.visible && matches!(object.replacement, Replacement::Kept))
+/// The dimension of the infertile elements that are drawn, if there are any: 2 of polygons and the
+/// like, which are filled, 1 of lines.
+fn infertile(graph: &Graph) -> Option<f64> {
+    let objects = graph.objects().iter();
+    let drawn =
+        objects.filter(|object| object.visible && matches!(object.replacement, Replacement::Kept));
+    drawn
+        .map(|object| {
+            let is_closed = graph.base_elements()[object.base_element].is_closed();
+            if is_closed { 2.0 } else { 1.0 }
+        })
+        .reduce(f64::max)
 }

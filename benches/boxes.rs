@@ -1,0 +1,99 @@
+//! How fast boxes are counted: `cargo bench --bench boxes`.
+
+#![allow(missing_docs, reason = "a program of its own")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a benchmark ends where it unwraps nothing"
+)]
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use kfrac::catalogue::Catalogue;
+use kfrac::document::Document;
+use kfrac::geometry::{DAffine2, DVec2};
+use kfrac::graph::Graph;
+use kfrac::measure::{Bits, BoxCounting, Grid, LimitSet, counts};
+
+fn main() {
+    divan::main();
+}
+
+const SIDE: usize = 1 << 14;
+
+/// A gasket of 16384² pixels, a byte each.
+fn bytes() -> Vec<u8> {
+    let pixel = |place: usize| {
+        let (column, row) = (place % SIDE, place / SIDE);
+        if column & row == 0 { 255 } else { 0 }
+    };
+    (0..SIDE * SIDE).map(pixel).collect()
+}
+
+fn pyramid(mut bits: Bits) -> u64 {
+    let mut all = bits.count();
+    while bits.width() > 1 {
+        bits = bits.folded([false; 2]);
+        all += bits.count();
+    }
+    all
+}
+
+#[divan::bench(sample_count = 10)]
+fn bytes_of_16384_squared(bencher: Bencher) {
+    let bytes = bytes();
+    bencher
+        .counter(ItemsCount::new(bytes.len()))
+        .bench(|| pyramid(Bits::of_bytes(&bytes, SIDE, SIDE, 128)));
+}
+
+#[divan::bench(sample_count = 10)]
+fn bits_of_16384_squared(bencher: Bencher) {
+    let bits = Bits::of_bytes(&bytes(), SIDE, SIDE, 128);
+    bencher
+        .counter(ItemsCount::new(SIDE * SIDE))
+        .bench(|| pyramid(bits.clone()));
+}
+
+/// Points all over a gasket, in no order.
+fn points() -> Vec<DVec2> {
+    let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
+    let (mut state, mut at) = (1u64, DVec2::ZERO);
+    let point = |_| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        at = (at + corners[(state >> 33) as usize % 3]) / 2.0;
+        at
+    };
+    (0..10_000_000).map(point).collect()
+}
+
+/// Down to boxes of 2^-14 by bits, or of 2^-20 by sorted keys.
+#[divan::bench(args = [14, 20], sample_count = 5)]
+fn ten_million_points(bencher: Bencher, levels: u32) {
+    let points = points();
+    let boxes = 1usize << levels;
+    let map = DAffine2::from_scale(DVec2::splat(0.999_999_999 * boxes as f64));
+    bencher
+        .counter(ItemsCount::new(points.len()))
+        .bench(|| counts(&points, &map, [boxes; 2], levels));
+}
+
+/// A whole measurement of a limit set, on one thread.
+#[divan::bench(args = ["koch", "carpet", "dragon"], sample_count = 3)]
+fn limit_set(bencher: Bencher, name: &str) {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue.rule(name).unwrap();
+    let (rule, _) = Document::read(&source, &catalogue)
+        .unwrap()
+        .resolve(&[])
+        .unwrap();
+    let graph = Graph::compile(&Arc::new(rule), 20).unwrap();
+    let set = LimitSet::of(&graph).unwrap();
+    let grids = Grid::spread(NonZero::new(8).unwrap());
+    let one = NonZero::<usize>::MIN;
+    bencher.bench(|| BoxCounting::of_limit(&set, None, &grids, one));
+}

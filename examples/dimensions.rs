@@ -1,0 +1,75 @@
+//! Measures the limit sets of the whole library by boxes, beside what their dimensions are.
+//!
+//!     cargo run --release --example dimensions
+//!
+//! The table is Markdown: the exact dimension, the measured one with two standard errors, whether it
+//! is off by more than 0.01, and whether it lies outside its own interval.
+
+#![allow(clippy::print_stdout, reason = "it says what it has found")]
+
+use std::error::Error;
+use std::num::NonZero;
+use std::sync::Arc;
+use std::time::Instant;
+
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::diagnostic::Diagnostics;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use kfrac::measure::{BoxCounting, Grid, LimitSet, similarity_dimension};
+use kfrac::parallel::all_cores;
+
+/// Where copies overlap exactly, the similarity dimension is too large. These are from the graph of
+/// neighbours (Ngai & Wang 2001).
+const OVERLAPPING: [(&str, f64); 2] = [
+    ("self-seeding-square", 1.685_724_399_856),
+    ("self-seeding-square-adjacent", 1.723_972_842_310),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let catalogue = Catalogue::embedded();
+    let grids = Grid::spread(NonZero::new(8).ok_or("no grids")?);
+    let (mut measured, mut close, mut covered) = (0, 0, 0);
+    println!("| rule | exact | measured | ± 2 s.e. | off | decades | s | |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let entries = catalogue.entries();
+    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        let source = catalogue.rule(&entry.name).map_err(Diagnostics::from)?;
+        let (rule, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
+        let graph = Graph::compile(&Arc::new(rule), 64)?;
+        let start = Instant::now();
+        let known = OVERLAPPING.iter().find(|(name, _)| *name == entry.name);
+        let exact = known.map(|(_, exact)| *exact);
+        let exact = exact.or_else(|| similarity_dimension(&graph).value);
+        let (Some(exact), Ok(set)) = (exact.filter(|&exact| exact > 0.0), LimitSet::of(&graph))
+        else {
+            continue;
+        };
+        let counting = BoxCounting::of_limit(&set, None, &grids, all_cores());
+        let Some(estimate) = counting.estimate else {
+            continue;
+        };
+        let off = estimate.value - exact;
+        let error = 2.0 * estimate.std_error;
+        measured += 1;
+        close += usize::from(off.abs() <= 0.01);
+        covered += usize::from(off.abs() <= error);
+        let says = match (off.abs() <= 0.01, off.abs() <= error) {
+            (true, true) => "",
+            (false, true) => "far",
+            (true, false) => "not covered",
+            (false, false) => "far, not covered",
+        };
+        println!(
+            "| {} | {exact:.4} | {:.4} | {error:.4} | {off:+.4} | {:.1} | {:.1} | {says} |",
+            entry.name,
+            estimate.value,
+            estimate.decades(),
+            start.elapsed().as_secs_f64(),
+        );
+    }
+    println!(
+        "\n{close} of {measured} are off by no more than 0.01, {covered} lie in their interval."
+    );
+    Ok(())
+}

@@ -1,0 +1,345 @@
+//! What has been measured, for people and for programs.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::measure::exact::{Dimensions, Grown, Hausdorff};
+use crate::measure::{BoxCounting, Estimate};
+
+use super::super::Failure;
+use super::Measured;
+
+/// Below so many decades, a slope says little of a dimension.
+const FEW_DECADES: f64 = 2.0;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    similarity: Option<Value>,
+    affinity: Option<Value>,
+    hausdorff: Option<Value>,
+    boundary: Option<Value>,
+    drawn: Option<f64>,
+    notes: &'a [String],
+    box_counting: Counting<'a>,
+    spectrum: Vec<Value>,
+    lacunarity: Vec<Value>,
+    warnings: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Counting<'a> {
+    set: &'a str,
+    #[serde(flatten)]
+    estimate: Fields,
+    boxes: Vec<Boxes>,
+}
+
+#[derive(Serialize)]
+struct Boxes {
+    size: f64,
+    count: u64,
+    local_slope: Option<f64>,
+    scatter: f64,
+    used: bool,
+}
+
+/// An estimate, or nulls.
+#[derive(Serialize, Default)]
+struct Fields {
+    value: Option<f64>,
+    std_error: Option<f64>,
+    range: Option<[f64; 2]>,
+    r_squared: Option<f64>,
+}
+
+impl Fields {
+    fn of(estimate: Option<&Estimate>) -> Self {
+        estimate.map_or_else(Self::default, |estimate| Self {
+            value: Some(estimate.value),
+            std_error: Some(estimate.std_error),
+            range: Some(estimate.range),
+            r_squared: Some(estimate.r_squared),
+        })
+    }
+}
+
+/// As JSON.
+pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
+    let exact = measured.exact.as_ref();
+    let known = exact.and_then(|exact| exact.dimensions.as_ref());
+    let boxes = measured.counting.boxes.iter().map(|it| Boxes {
+        size: it.size,
+        count: it.count,
+        local_slope: it.local_slope,
+        scatter: it.scatter,
+        used: it.used,
+    });
+    let spectrum = measured.spectrum.iter().map(|it| {
+        let sums = it.entropies.iter();
+        let sums = sums.map(|(size, entropy)| json!({"size": size, "entropy": entropy}));
+        let mut value = json!(Fields::of(it.estimate.as_ref()));
+        value["q"] = json!(it.order);
+        value["boxes"] = sums.collect();
+        value
+    });
+    let lacunarity = measured.lacunarity.iter();
+    let lacunarity =
+        lacunarity.map(|it| json!({"size": it.size, "value": it.value, "places": it.places}));
+    let report = Report {
+        similarity: exact.map(|_| similarity(known)),
+        affinity: known.and_then(affinity),
+        hausdorff: exact.map(|_| hausdorff(known)),
+        boundary: known.and_then(boundary),
+        drawn: exact.and_then(|exact| exact.drawn),
+        notes: exact.map_or(&[][..], |exact| &exact.notes),
+        box_counting: Counting {
+            set: &measured.set,
+            estimate: Fields::of(measured.counting.estimate.as_ref()),
+            boxes: boxes.collect(),
+        },
+        spectrum: spectrum.collect(),
+        lacunarity: lacunarity.collect(),
+        warnings: &measured.warnings,
+    };
+    let mut text = serde_json::to_string_pretty(&report).map_err(anyhow::Error::from)?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// The similarity dimension, and how it is found.
+fn similarity(known: Option<&Dimensions>) -> Value {
+    let similar = known.and_then(|known| known.similarity.as_ref());
+    json!({
+        "value": similar.map(|it| it.value),
+        "equation": similar.map(|it| it.equation.to_string()),
+        "closed_form": similar.and_then(|it| it.closed_form.as_ref()),
+    })
+}
+
+/// Falconer's affinity dimension, where maps are no similarities: an upper bound.
+fn affinity(known: &Dimensions) -> Option<Value> {
+    let affinity = known.affinity.as_ref()?;
+    Some(json!({
+        "upper_bound": affinity.upper_bound,
+        "estimate": affinity.estimate,
+        "length": affinity.length,
+    }))
+}
+
+/// The dimension of the set itself, where copies may overlap.
+fn hausdorff(known: Option<&Dimensions>) -> Value {
+    known.map_or_else(
+        || json!({"value": null, "overlap": "unknown", "method": null}),
+        |known| {
+            let hausdorff = &known.hausdorff;
+            json!({
+                "value": hausdorff.value,
+                "closed_form": hausdorff.closed_form,
+                "upper_bound": hausdorff.upper_bound,
+                "overlap": hausdorff.overlap.to_string(),
+                "method": hausdorff.method,
+            })
+        },
+    )
+}
+
+/// The dimension of the boundary of a set with inside.
+fn boundary(known: &Dimensions) -> Option<Value> {
+    let boundary = known.boundary.as_ref()?;
+    Some(json!({
+        "value": boundary.value,
+        "closed_form": boundary.closed_form,
+        "method": boundary.method,
+    }))
+}
+
+/// Adds what is to be said against the measurement.
+pub(super) fn warn(measured: &mut Measured) {
+    let warning = match &measured.counting.estimate {
+        Some(estimate) if estimate.sizes > 0 && estimate.decades() < FEW_DECADES => format!(
+            "the range spans {:.1} decades only: below {FEW_DECADES} a slope says little of a dimension",
+            estimate.decades()
+        ),
+        None if !measured.counting.boxes.is_empty() => {
+            "there are fewer than three sizes of boxes that tell anything: nothing is fitted".into()
+        }
+        _ => return,
+    };
+    measured.warnings.push(warning);
+}
+
+/// The result in a sentence.
+pub(super) fn sentence(measured: &Measured) -> String {
+    let Some(estimate) = &measured.counting.estimate else {
+        return "There is no box-counting dimension to be told.".into();
+    };
+    let Estimate {
+        value, std_error, ..
+    } = estimate;
+    if estimate.sizes == 0 {
+        return "A single point has dimension 0.".into();
+    }
+    let unit = measured
+        .unit
+        .map(|unit| format!(" {unit}"))
+        .unwrap_or_default();
+    let decimals = decimals(2.0 * std_error);
+    format!(
+        "The box-counting dimension is {value:.decimals$} ± {:.decimals$} (2 standard errors), from {} sizes \
+         over {:.1} decades ({} to {}{unit}), r² = {:.6}.",
+        2.0 * std_error,
+        estimate.sizes,
+        estimate.decades(),
+        short(estimate.range[0]),
+        short(estimate.range[1]),
+        estimate.r_squared,
+    )
+}
+
+/// As many decimals as tell two digits of an error.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "it is clamped"
+)]
+fn decimals(error: f64) -> usize {
+    let first = if error > 0.0 {
+        -libm::log10(error).floor()
+    } else {
+        4.0
+    };
+    (first + 1.0).clamp(2.0, 6.0) as usize
+}
+
+/// A size in four digits.
+fn short(size: f64) -> String {
+    let exponent = libm::log10(size).floor();
+    if (-4.0..6.0).contains(&exponent) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "it is small"
+        )]
+        let decimals = (3.0 - exponent).max(0.0) as usize;
+        let text = format!("{size:.decimals$}");
+        match text.split_once('.') {
+            Some(_) => text.trim_end_matches('0').trim_end_matches('.').into(),
+            None => text,
+        }
+    } else {
+        format!("{size:.3e}")
+    }
+}
+
+/// For people.
+pub(super) fn described(measured: &Measured) -> String {
+    let mut text = format!("{}: {}\n\n", measured.name, measured.set);
+    if let Some(exact) = &measured.exact {
+        known(&mut text, exact);
+    }
+    table(&mut text, &measured.counting, measured.unit);
+    if !measured.spectrum.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n{:>6}  {:>8}  {:>8}  {:>9}",
+            "q", "D_q", "± 2 s.e.", "r²"
+        );
+        for it in &measured.spectrum {
+            let name = match it.order {
+                1.0 => "information",
+                2.0 => "correlation",
+                _ => "",
+            };
+            if let Some(estimate) = &it.estimate {
+                let line = format!(
+                    "{:>6}  {:>8.4}  {:>8.4}  {:>9.6}  {name}",
+                    it.order,
+                    estimate.value,
+                    2.0 * estimate.std_error,
+                    estimate.r_squared
+                );
+                let _ = writeln!(text, "{}", line.trim_end());
+            }
+        }
+    }
+    if !measured.lacunarity.is_empty() {
+        let _ = writeln!(text, "\n{:>12}  {:>10}", "gliding box", "lacunarity");
+        for it in &measured.lacunarity {
+            let _ = writeln!(text, "{:>12}  {:>10.4}", short(it.size), it.value);
+        }
+    }
+    let _ = writeln!(text, "\n{}", sentence(measured));
+    text
+}
+
+/// What is known without measuring.
+fn known(text: &mut String, exact: &Grown) {
+    let mut line = |label: &str, value: &str| {
+        let _ = writeln!(text, "{label:<22}{value}");
+    };
+    let told = |value: f64, form: Option<&String>| match form {
+        Some(form) => format!("{value:.12} = {form}"),
+        None => format!("{value:.12}"),
+    };
+    if let Some(dimensions) = &exact.dimensions {
+        if let Some(similar) = &dimensions.similarity {
+            let form = similar.closed_form.as_ref();
+            line("similarity dimension", &told(similar.value, form));
+        }
+        if let Some(affinity) = &dimensions.affinity {
+            let bound = format!("at most {:.4} (Falconer 1988)", affinity.upper_bound);
+            line("affinity dimension", &bound);
+        }
+        let Hausdorff {
+            value,
+            closed_form,
+            upper_bound,
+            overlap,
+            method,
+        } = &dimensions.hausdorff;
+        let own = match (value, upper_bound) {
+            (Some(value), _) => told(*value, closed_form.as_ref()),
+            (None, Some(bound)) => format!("at most {bound:.6}"),
+            (None, None) => "not decided".into(),
+        };
+        line("Hausdorff dimension", &own);
+        line("", method);
+        line("overlap", &overlap.to_string());
+        if let Some(boundary) = &dimensions.boundary {
+            let form = boundary.closed_form.as_ref();
+            line("boundary", &told(boundary.value, form));
+        }
+        if let Some(drawn) = exact.drawn {
+            line("all that is drawn", &told(drawn, None));
+        }
+    }
+    for note in &exact.notes {
+        line("note", note);
+    }
+    text.push('\n');
+}
+
+/// The boxes of every size; a star marks those that are used.
+fn table(text: &mut String, counting: &BoxCounting, unit: Option<&str>) {
+    if counting.boxes.is_empty() {
+        return;
+    }
+    let side = unit.map_or("side".into(), |unit| format!("side ({unit})"));
+    let _ = writeln!(text, "{side:>13}  {:>12}  {:>11}", "boxes", "local slope");
+    for it in &counting.boxes {
+        let slope = it
+            .local_slope
+            .map(|slope| format!("{slope:.4}"))
+            .unwrap_or_default();
+        let star = if it.used { "*" } else { "" };
+        let line = format!(
+            "{:>13}  {:>12}  {slope:>11} {star}",
+            short(it.size),
+            it.count
+        );
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    let _ = writeln!(text, "(* used by the fit)");
+}

@@ -1,0 +1,278 @@
+use std::io::Cursor;
+
+use png::{ColorType, Decoder, Limits, Transformations};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+/// The most pixels of a picture.
+const MOST_PIXELS: u64 = 1 << 30;
+
+/// What is wrong with a picture.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// It is neither PNG nor JPEG.
+    #[error("the picture is neither PNG nor JPEG")]
+    Unknown,
+    /// The PNG cannot be read.
+    #[error("the PNG cannot be read: {0}")]
+    Png(#[from] png::DecodingError),
+    /// The JPEG cannot be read.
+    #[error("the JPEG cannot be read: {0}")]
+    Jpeg(String),
+    /// It has too many pixels.
+    #[error("the picture has {width} x {height} pixels, more than {MOST_PIXELS}")]
+    TooLarge {
+        /// Its width.
+        width: u64,
+        /// Its height.
+        height: u64,
+    },
+    /// It has no pixels.
+    #[error("the picture has no pixels")]
+    Empty,
+}
+
+/// What of a pixel tells whether it belongs to the set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// Its darkness: white is 0, black 255 (ITU-R BT.601).
+    Darkness,
+    /// Its opacity: 0 can be seen through.
+    Alpha,
+}
+
+/// A picture as one number a pixel.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// What the numbers are.
+    pub channel: Channel,
+    /// The numbers, row by row from the top.
+    pub values: Vec<u8>,
+}
+
+impl Picture {
+    /// Whether bytes begin as those of a picture that can be read.
+    #[must_use]
+    pub fn is_picture(bytes: &[u8]) -> bool {
+        is_png(bytes) || is_jpeg(bytes)
+    }
+
+    /// Reads a PNG or JPEG.
+    ///
+    /// Without a channel, it is the opacity of a picture that has transparent pixels, or else the
+    /// darkness. Colours under transparency are as dark as they are on white.
+    ///
+    /// # Errors
+    ///
+    /// If it is none, is not whole or too large.
+    pub fn read(bytes: &[u8], channel: Option<Channel>) -> Result<Self, PictureError> {
+        let (width, height, values, channel) = if is_png(bytes) {
+            png(bytes, channel)?
+        } else if is_jpeg(bytes) {
+            jpeg(bytes, channel)?
+        } else {
+            return Err(PictureError::Unknown);
+        };
+        Ok(Self {
+            width,
+            height,
+            channel,
+            values,
+        })
+    }
+
+    /// The picture with all numbers taken from 255: what was left out is the set.
+    #[must_use]
+    pub fn inverted(mut self) -> Self {
+        self.values
+            .iter_mut()
+            .for_each(|value| *value = 255 - *value);
+        self
+    }
+
+    /// The threshold that parts the numbers best: values from it on belong to the set (Otsu 1979).
+    ///
+    /// A picture of one value has none, and belongs to the set as a whole if that is 128 or more.
+    #[must_use]
+    pub fn otsu(&self) -> u8 {
+        let mut histogram = [0u64; 256];
+        for &value in &self.values {
+            histogram[usize::from(value)] += 1;
+        }
+        otsu(&histogram)
+    }
+}
+
+/// The threshold with the largest variance between the two classes.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "a threshold is chosen, nothing is counted"
+)]
+fn otsu(histogram: &[u64; 256]) -> u8 {
+    let total: u64 = histogram.iter().sum();
+    let moment = |(value, &count): (usize, &u64)| value as u64 * count;
+    let sum: u64 = histogram.iter().enumerate().map(moment).sum();
+    let (mut below, mut sum_below) = (0, 0);
+    let mut best = (0.0, 128);
+    for threshold in 1..=255u8 {
+        let value = usize::from(threshold) - 1;
+        below += histogram[value];
+        sum_below += value as u64 * histogram[value];
+        let above = total - below;
+        if below == 0 || above == 0 {
+            continue;
+        }
+        let means = sum_below as f64 / below as f64 - (sum - sum_below) as f64 / above as f64;
+        let variance = below as f64 * above as f64 * means * means;
+        if variance > best.0 {
+            best = (variance, threshold);
+        }
+    }
+    best.1
+}
+
+fn is_png(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x89PNG\r\n\x1a\n")
+}
+
+fn is_jpeg(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xff, 0xd8, 0xff])
+}
+
+/// Refuses pictures that are too large for memory, and those that are none.
+fn check(width: u64, height: u64) -> Result<(), PictureError> {
+    match width.checked_mul(height) {
+        Some(0) => Err(PictureError::Empty),
+        Some(pixels) if pixels <= MOST_PIXELS => Ok(()),
+        _ => Err(PictureError::TooLarge { width, height }),
+    }
+}
+
+type Read = (usize, usize, Vec<u8>, Channel);
+
+fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 1 << 28 });
+    decoder.set_transformations(Transformations::normalize_to_color8());
+    let header = decoder.read_header_info()?;
+    check(header.width.into(), header.height.into())?;
+    let mut reader = decoder.read_info()?;
+    let (width, height) = reader.info().size();
+    let (width, height) = (width as usize, height as usize);
+    let channels = match reader.output_color_type().0 {
+        ColorType::Grayscale => 1,
+        ColorType::GrayscaleAlpha => 2,
+        ColorType::Rgb => 3,
+        _ => 4,
+    };
+    let mut pixels = Pixels::new(width * height, channels, asked);
+    if reader.info().interlaced {
+        // Rows come in no order: the whole frame is needed.
+        let mut frame = vec![0; width * height * channels];
+        reader.next_frame(&mut frame)?;
+        pixels.add(&frame);
+    } else {
+        while let Some(row) = reader.next_row()? {
+            pixels.add(row.data());
+        }
+    }
+    let (values, channel) = pixels.finish();
+    Ok((width, height, values, channel))
+}
+
+fn jpeg(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
+    let failed = |error: zune_jpeg::errors::DecodeErrors| PictureError::Jpeg(error.to_string());
+    let options = DecoderOptions::default()
+        .set_strict_mode(true)
+        .set_max_width(usize::from(u16::MAX))
+        .set_max_height(usize::from(u16::MAX))
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
+    decoder.decode_headers().map_err(failed)?;
+    let Some(info) = decoder.info() else {
+        return Err(PictureError::Empty);
+    };
+    check(info.width.into(), info.height.into())?;
+    let (width, height) = (usize::from(info.width), usize::from(info.height));
+    let frame = decoder.decode().map_err(failed)?;
+    let mut pixels = Pixels::new(width * height, 3, asked);
+    pixels.add(&frame);
+    let (values, channel) = pixels.finish();
+    if values.len() != width * height {
+        return Err(PictureError::Jpeg("pixels are missing".into()));
+    }
+    Ok((width, height, values, channel))
+}
+
+/// Pixels on their way to one number each.
+struct Pixels {
+    channels: usize,
+    asked: Option<Channel>,
+    darkness: Vec<u8>,
+    alpha: Vec<u8>,
+}
+
+impl Pixels {
+    fn new(count: usize, channels: usize, asked: Option<Channel>) -> Self {
+        let room = |wanted: bool| Vec::with_capacity(if wanted { count } else { 0 });
+        Self {
+            channels,
+            asked,
+            darkness: room(asked != Some(Channel::Alpha)),
+            alpha: room(keeps_alpha(asked, channels)),
+        }
+    }
+
+    fn add(&mut self, samples: &[u8]) {
+        for pixel in samples.chunks_exact(self.channels) {
+            let (grey, alpha) = match *pixel {
+                [grey] => (grey, 255),
+                [grey, alpha] => (grey, alpha),
+                [red, green, blue] => (luma(red, green, blue), 255),
+                [red, green, blue, alpha] => (luma(red, green, blue), alpha),
+                _ => unreachable!("pixels have one to four channels"),
+            };
+            if self.asked != Some(Channel::Alpha) {
+                let darkness = u32::from(255 - grey) * u32::from(alpha) + 127;
+                self.darkness
+                    .push(u8::try_from(darkness / 255).unwrap_or(255));
+            }
+            if keeps_alpha(self.asked, self.channels) {
+                self.alpha.push(alpha);
+            }
+        }
+    }
+
+    fn finish(self) -> (Vec<u8>, Channel) {
+        let channel = self.asked.unwrap_or_else(|| {
+            if self.alpha.iter().any(|&alpha| alpha < 255) {
+                Channel::Alpha
+            } else {
+                Channel::Darkness
+            }
+        });
+        match channel {
+            Channel::Darkness => (self.darkness, channel),
+            Channel::Alpha => (self.alpha, channel),
+        }
+    }
+}
+
+/// Whether opacity may be what is asked for.
+fn keeps_alpha(asked: Option<Channel>, channels: usize) -> bool {
+    match asked {
+        Some(channel) => channel == Channel::Alpha,
+        None => channels.is_multiple_of(2),
+    }
+}
+
+/// The luminance of a colour (ITU-R BT.601), in 65,536ths.
+fn luma(red: u8, green: u8, blue: u8) -> u8 {
+    let [red, green, blue] = [red, green, blue].map(u32::from);
+    let sum = 19_595 * red + 38_470 * green + 7_471 * blue + 0x8000;
+    u8::try_from(sum >> 16).unwrap_or(255)
+}

@@ -1,0 +1,260 @@
+//! Sets of boxes as bits: the boxes of one size that hold something, folded to larger boxes.
+
+/// Boxes in rows, a bit for each: set where the box holds something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bits {
+    width: usize,
+    height: usize,
+    /// Words of 64 boxes, the first in the lowest bit; bits beyond the width are not set.
+    words: Vec<u64>,
+}
+
+impl Bits {
+    /// No box of so many in a row and so many rows holds anything.
+    #[must_use]
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            width,
+            height,
+            words: vec![0; width.div_ceil(64) * height],
+        }
+    }
+
+    /// The boxes whose bytes are at a threshold or above; rows follow each other without gaps.
+    ///
+    /// # Panics
+    ///
+    /// If there are not width × height bytes.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8], width: usize, height: usize, threshold: u8) -> Self {
+        assert_eq!(bytes.len(), width * height, "a byte for every box");
+        let mut bits = Self::new(width, height);
+        if width == 0 {
+            return bits;
+        }
+        let rows = bytes.chunks_exact(width);
+        for (row, words) in rows.zip(bits.words.chunks_exact_mut(width.div_ceil(64))) {
+            for (bytes, word) in row.chunks(64).zip(words) {
+                let (eights, rest) = bytes.as_chunks::<8>();
+                for (number, eight) in eights.iter().enumerate() {
+                    *word |= flags(*eight, threshold) << (8 * number);
+                }
+                for (number, &byte) in rest.iter().enumerate() {
+                    *word |= u64::from(byte >= threshold) << (8 * eights.len() + number);
+                }
+            }
+        }
+        bits
+    }
+
+    /// Boxes in a row.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Says that a box holds something.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such box.
+    #[inline]
+    pub fn set(&mut self, column: usize, row: usize) {
+        self.words[row * self.width.div_ceil(64) + column / 64] |= 1 << (column % 64);
+    }
+
+    /// Whether a box holds something.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such box.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, column: usize, row: usize) -> bool {
+        self.words[row * self.width.div_ceil(64) + column / 64] >> (column % 64) & 1 == 1
+    }
+
+    /// Sets a box, if there is such a one.
+    #[inline]
+    pub(super) fn mark(&mut self, place: [i64; 2]) {
+        if let Some([column, row]) = self.inside(place) {
+            self.set(column, row);
+        }
+    }
+
+    /// Whether all boxes from one to another are set, as far as there are such.
+    #[inline]
+    pub(super) fn are_marked(&self, low: [i64; 2], high: [i64; 2]) -> bool {
+        let is_marked = |place| {
+            let inside = self.inside(place);
+            inside.is_none_or(|[column, row]| self.get(column, row))
+        };
+        let rows = low[1]..=high[1];
+        rows.into_iter()
+            .all(|row| (low[0]..=high[0]).all(|column| is_marked([column, row])))
+    }
+
+    #[inline]
+    fn inside(&self, [column, row]: [i64; 2]) -> Option<[usize; 2]> {
+        let [column, row] = [usize::try_from(column).ok()?, usize::try_from(row).ok()?];
+        (column < self.width && row < self.height).then_some([column, row])
+    }
+
+    /// The words of a row.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[u64] {
+        let stride = self.width.div_ceil(64);
+        &self.words[row * stride..][..stride]
+    }
+
+    /// How many boxes hold something.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        let ones = self.words.iter().map(|word| u64::from(word.count_ones()));
+        ones.sum()
+    }
+
+    /// Boxes twice as large: the first of a row or column holds two smaller ones, or only one where
+    /// the grid is shifted.
+    #[must_use]
+    pub fn folded(&self, shift: [bool; 2]) -> Self {
+        let [left, top] = shift.map(usize::from);
+        let width = (self.width + left).div_ceil(2);
+        let height = (self.height + top).div_ceil(2);
+        let mut folded = Self::new(width, height);
+        if width == 0 {
+            return folded;
+        }
+        let empty = vec![0; self.width.div_ceil(64)];
+        for (number, row) in folded
+            .words
+            .chunks_exact_mut(width.div_ceil(64))
+            .enumerate()
+        {
+            // Of the two rows, one may lie outside.
+            let below = 2 * number + 1 - top;
+            let upper = match below.checked_sub(1) {
+                Some(above) => self.row(above),
+                None => &empty,
+            };
+            let lower = if below < self.height {
+                self.row(below)
+            } else {
+                &empty
+            };
+            fold(upper, lower, left, row);
+        }
+        folded
+    }
+
+    /// Boxes `side` times as large, on a grid that begins `shift` boxes (fewer than `side`) before
+    /// these in both directions.
+    ///
+    /// # Panics
+    ///
+    /// If the side is 0 or the shift too large.
+    #[must_use]
+    pub fn coarser(&self, side: usize, shift: [usize; 2]) -> Self {
+        assert!(
+            shift.iter().all(|&shift| shift < side),
+            "a shift is less than a box"
+        );
+        let [left, top] = shift;
+        let mut coarser = Self::new(
+            (self.width + left).div_ceil(side),
+            (self.height + top).div_ceil(side),
+        );
+        let mut band = vec![0; self.width.div_ceil(64)];
+        for row in 0..coarser.height {
+            let from = (row * side).saturating_sub(top);
+            let to = ((row + 1) * side - top).min(self.height);
+            band.fill(0);
+            for below in from..to {
+                let words = band.iter_mut().zip(self.row(below));
+                words.for_each(|(all, word)| *all |= word);
+            }
+            for column in 0..coarser.width {
+                let from = (column * side).saturating_sub(left);
+                let to = ((column + 1) * side - left).min(self.width);
+                if any(&band, from, to) {
+                    coarser.set(column, row);
+                }
+            }
+        }
+        coarser
+    }
+}
+
+/// Of eight bytes, whether each is at a threshold or above, as bits: all at once in one word.
+#[inline]
+fn flags(bytes: [u8; 8], threshold: u8) -> u64 {
+    const ONES: u64 = 0x0101_0101_0101_0101;
+    const HIGH: u64 = 0x80 * ONES;
+    let bytes = u64::from_le_bytes(bytes);
+    // The lower seven bits are compared by a subtraction that takes nothing from the next byte.
+    let lower = (bytes | HIGH) - u64::from(threshold & 0x7f) * ONES;
+    let reached = if threshold < 0x80 {
+        bytes | lower
+    } else {
+        bytes & lower
+    };
+    // The product gathers the first bit of every byte in the last one.
+    ((reached & HIGH) >> 7).wrapping_mul(0x0102_0408_1020_4080) >> 56
+}
+
+/// Whether a bit from one place to before another is set.
+fn any(words: &[u64], from: usize, to: usize) -> bool {
+    if from >= to {
+        return false;
+    }
+    let (first, last) = (from / 64, (to - 1) / 64);
+    (first..=last).any(|number| {
+        let mut word = words[number];
+        if number == first {
+            word &= u64::MAX << (from % 64);
+        }
+        if number == last {
+            word &= u64::MAX >> (63 - (to - 1) % 64);
+        }
+        word != 0
+    })
+}
+
+/// Folds two rows to one of boxes twice as large.
+fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
+    let mut carried = 0;
+    let mut both = upper.iter().zip(lower).map(|(upper, lower)| {
+        let word = upper | lower;
+        let shifted = word << left | carried;
+        carried = word >> 63 & left as u64;
+        halved(shifted | shifted >> 1)
+    });
+    for word in folded.iter_mut() {
+        let low = both.next();
+        let high = both.next();
+        *word = low.unwrap_or_default() | high.unwrap_or_default() << 32;
+    }
+    drop(both);
+    // The last box may hold nothing but what was shifted out.
+    if carried == 1 {
+        let words = upper.len();
+        folded[words / 2] |= 1 << (32 * (words % 2));
+    }
+}
+
+/// Every other bit, from the lowest on, in the lower half.
+#[inline]
+fn halved(word: u64) -> u64 {
+    let mut word = word & 0x5555_5555_5555_5555;
+    word = (word | word >> 1) & 0x3333_3333_3333_3333;
+    word = (word | word >> 2) & 0x0f0f_0f0f_0f0f_0f0f;
+    word = (word | word >> 4) & 0x00ff_00ff_00ff_00ff;
+    word = (word | word >> 8) & 0x0000_ffff_0000_ffff;
+    (word | word >> 16) & 0x0000_0000_ffff_ffff
+}

@@ -1,0 +1,433 @@
+//! The limit set of a graph as points, as close as one likes, with nothing drawn.
+
+use std::num::NonZero;
+
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
+use crate::graph::{Graph, Instance, Replacement};
+use crate::rule::Placement;
+
+use super::bits::Bits;
+use super::cover::{Grid, Scale, least};
+
+/// Why a graph has no limit set that can be walked over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoLimit {
+    /// Maps are drawn, or depend on an index that has to be counted.
+    #[error("its maps are not fixed: they depend on draws or on indices")]
+    NotFixed,
+    /// Objects come up without end.
+    #[error("what replaces an element changes from step to step without end")]
+    Endless,
+    /// Seeds are placed as the initiator.
+    #[error("there is no limit set: seeds are placed as the initiator")]
+    Resets,
+    /// Something comes back at its own size.
+    #[error("there is no limit set: what is replaced does not shrink")]
+    DoesNotShrink,
+    /// Nothing is replaced for ever.
+    #[error("there is no limit set: nothing stays fertile")]
+    NothingFertile,
+}
+
+/// The limit set of what stays fertile, as the graph tells it: the attractor.
+///
+/// What becomes of an element at last is a copy of its object's set, and that is the union of the
+/// copies of its instances' sets. Infertile elements are not replaced and add nothing.
+#[derive(Clone, Debug)]
+pub struct LimitSet {
+    objects: Vec<Part>,
+    start: Vec<Placed>,
+    bounds: Bounds,
+}
+
+/// What becomes of an object, in its unit frame.
+#[derive(Clone, Debug, Default)]
+struct Part {
+    /// A point of its set, and the radius of a disc about it that holds the set.
+    point: DVec2,
+    radius: f64,
+    children: Vec<Placed>,
+}
+
+/// A copy of an object's set: where it stands, and how much it is lengthened at most.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    map: DAffine2,
+    scale: f64,
+    object: usize,
+}
+
+impl Placed {
+    fn of(instance: &Instance) -> Self {
+        Self {
+            map: instance.frame.map,
+            scale: norm(&instance.frame.map.matrix2),
+            object: instance.object,
+        }
+    }
+
+    /// A copy inside this one.
+    #[inline]
+    fn compose(&self, inner: &Self) -> Self {
+        Self {
+            map: self.map * inner.map,
+            scale: self.scale * inner.scale,
+            object: inner.object,
+        }
+    }
+}
+
+/// A distance that is nothing beside the unit.
+const NEGLIGIBLE: f64 = 1e-17;
+
+/// Sweeps and levels after which numbers have settled.
+const MOST_SWEEPS: usize = 10_000;
+
+impl LimitSet {
+    /// The limit set of a graph's fertile elements.
+    ///
+    /// # Errors
+    ///
+    /// If there is none, or if the graph does not tell it.
+    pub fn of(graph: &Graph) -> Result<Self, NoLimit> {
+        if !graph.is_plain() || !graph.is_regular() {
+            return Err(NoLimit::NotFixed);
+        }
+        if graph.depth().is_some() {
+            return Err(NoLimit::Endless);
+        }
+        if graph.resets().contains(&true) {
+            return Err(NoLimit::Resets);
+        }
+        if !graph.shrinks() {
+            return Err(NoLimit::DoesNotShrink);
+        }
+        let lasting = lasting(graph);
+        let kept = |instance: &&Instance| lasting[instance.object];
+        let part = |object| Part {
+            children: fertile(graph, object)
+                .filter(kept)
+                .map(Placed::of)
+                .collect(),
+            ..Part::default()
+        };
+        let mut set = Self {
+            objects: (0..graph.objects().len()).map(part).collect(),
+            start: graph
+                .initiator()
+                .instances
+                .iter()
+                .filter(kept)
+                .map(Placed::of)
+                .collect(),
+            bounds: Bounds::EMPTY,
+        };
+        if set.start.is_empty() {
+            return Err(NoLimit::NothingFertile);
+        }
+        set.find_points();
+        set.find_radii();
+        set.bounds = Self::extent(&set.objects, &set.start);
+        // A single point has no extent but by rounding.
+        const ROUNDING: f64 = 1e-12;
+        let scale = set.start.iter().map(|copy| copy.scale).fold(0.0, f64::max);
+        if set.bounds.size().max_element() <= ROUNDING * scale {
+            set.bounds = Bounds::new(set.bounds.min(), set.bounds.min());
+        }
+        Ok(set)
+    }
+
+    /// Its box, to some 12 digits.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Visits points of the set such that none of it lies farther than `distance` from one of them,
+    /// until `visit` wants no more.
+    pub fn visit(&self, distance: f64, mut visit: impl FnMut(DVec2) -> bool) {
+        let mut stack: Vec<_> = self.start.iter().rev().copied().collect();
+        while let Some(copy) = stack.pop() {
+            let part = &self.objects[copy.object];
+            if part.radius * copy.scale <= distance {
+                if !visit(copy.map.transform_point2(part.point)) {
+                    return;
+                }
+                continue;
+            }
+            let children = part.children.iter().rev();
+            stack.extend(children.map(|inner| copy.compose(inner)));
+        }
+    }
+
+    /// The number above 1 of which all ratios are powers, if there is one: what the set looks like
+    /// repeats itself at sizes that differ by it.
+    #[must_use]
+    pub fn period(&self) -> Option<f64> {
+        const LEAST: f64 = 0.05;
+        const TOLERANCE: f64 = 1e-9;
+        let copies = self.objects.iter().flat_map(|part| &part.children);
+        let mut common: f64 = 0.0;
+        for copy in copies {
+            // Euclid's algorithm on logarithms.
+            let mut other = -libm::log(copy.scale);
+            if other < -TOLERANCE {
+                return None;
+            }
+            while other > TOLERANCE {
+                (common, other) = (other, common.rem_euclid(other));
+                if other > common - TOLERANCE {
+                    other = 0.0;
+                }
+            }
+        }
+        (common > LEAST).then(|| libm::exp(common))
+    }
+
+    /// How the set is covered by boxes of sides that are parts of its extent, each `base` times
+    /// smaller than the one before, down to some `most` boxes (or 2^14 in a row).
+    ///
+    /// # Panics
+    ///
+    /// If the base is not above 1.
+    #[must_use]
+    pub fn scales(
+        &self,
+        base: f64,
+        most: u64,
+        grids: &[Grid],
+        threads: NonZero<usize>,
+    ) -> Vec<Scale> {
+        assert!(base > 1.0, "boxes get smaller");
+        const FINEST: f64 = 1.0 / 16_384.0;
+        let extent = self.bounds.size().max_element();
+        if extent <= 0.0 {
+            return Vec::new();
+        }
+        let largest = extent / 2.0;
+        let mut sizes = Vec::new();
+        let mut size = extent * (1.0 + 2e-9) / base;
+        while size >= FINEST * extent {
+            sizes.push(size);
+            let (map, boxes) = Grid::ALONG.map(&self.bounds, size, largest);
+            if self.cover(&map, boxes).count() > most {
+                break;
+            }
+            size /= base;
+        }
+        least(&sizes, grids, threads, |grid| {
+            let turned = self.turned_bounds(grid);
+            let count = |&size: &f64| {
+                let (map, boxes) = grid.map(&turned, size, largest);
+                self.cover(&map, boxes).count()
+            };
+            sizes.iter().map(count).collect()
+        })
+    }
+
+    /// The box of the turned set.
+    fn turned_bounds(&self, grid: &Grid) -> Bounds {
+        let turn = DAffine2::from_mat2(grid.turn());
+        let turned = |copy: &Placed| Placed {
+            map: turn * copy.map,
+            ..*copy
+        };
+        let start: Vec<_> = self.start.iter().map(turned).collect();
+        Self::extent(&self.objects, &start)
+    }
+
+    /// The boxes that the set meets, on a grid that `map` leads to: its boxes have side 1 and corners
+    /// at whole numbers from (0, 0) to `boxes`. What lies outside is left out.
+    ///
+    /// Every box that is marked holds a point of the set. A box that the set enters by no more than a
+    /// quarter of its side may be missed.
+    #[must_use]
+    pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Bits {
+        const GRAZED: f64 = 1.0 / 8.0;
+        let mut bits = Bits::new(boxes[0], boxes[1]);
+        let grid = Placed {
+            map: *map,
+            scale: norm(&map.matrix2),
+            object: 0,
+        };
+        let start: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
+        // A box that one copy hardly enters is most often met by another: looked into later, few are
+        // left to be looked into at all.
+        let mut later = Vec::new();
+        self.mark(start, &mut bits, |_, copy| {
+            later.push(copy);
+            false
+        });
+        self.mark(later, &mut bits, |radius, _| radius > GRAZED);
+        bits
+    }
+
+    /// Marks the boxes that copies meet. Of a copy in no more than two columns and rows of boxes, of
+    /// which some are not marked, `goes_on` tells whether it is looked into.
+    fn mark(
+        &self,
+        mut stack: Vec<Placed>,
+        bits: &mut Bits,
+        mut goes_on: impl FnMut(f64, Placed) -> bool,
+    ) {
+        const WIDEST: i64 = 8;
+        while let Some(copy) = stack.pop() {
+            let part = &self.objects[copy.object];
+            let point = copy.map.transform_point2(part.point);
+            let radius = part.radius * copy.scale;
+            let [low, high] = [point - radius, point + radius].map(boxed);
+            let span = (high[0] - low[0]).max(high[1] - low[1]);
+            if span <= 1 {
+                bits.mark(boxed(point));
+            }
+            // Where copies overlap, all of a large one may be known already.
+            if span <= WIDEST && bits.are_marked(low, high) {
+                continue;
+            }
+            if span <= 1 && !goes_on(radius, copy) {
+                continue;
+            }
+            stack.extend(part.children.iter().map(|inner| copy.compose(inner)));
+        }
+    }
+
+    /// A point for every object: the one that a fixed address leads to, which is no corner.
+    fn find_points(&mut self) {
+        for start in 0..self.objects.len() {
+            let mut copy = Placed {
+                map: DAffine2::IDENTITY,
+                scale: 1.0,
+                object: start,
+            };
+            for level in 0..MOST_SWEEPS {
+                let children = &self.objects[copy.object].children;
+                if children.is_empty() || copy.scale <= NEGLIGIBLE {
+                    break;
+                }
+                // The golden section never repeats itself.
+                let turn = (0x9e37_79b9_7f4a_7c15u64.wrapping_mul(level as u64 + 1) >> 33) as usize;
+                copy = copy.compose(&children[turn % children.len()]);
+            }
+            self.objects[start].point = copy.map.translation;
+        }
+    }
+
+    /// The smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
+    /// c, approached from below.
+    fn find_radii(&mut self) {
+        const TOLERANCE: f64 = 1e-9;
+        for _ in 0..MOST_SWEEPS {
+            let mut change: f64 = 0.0;
+            for object in (0..self.objects.len()).rev() {
+                let part = &self.objects[object];
+                let reach = part.children.iter().map(|copy| {
+                    let child = &self.objects[copy.object];
+                    let away = copy.map.transform_point2(child.point) - part.point;
+                    away.length() + copy.scale * child.radius
+                });
+                let radius = reach.fold(0.0, f64::max);
+                change = change.max(radius - part.radius);
+                self.objects[object].radius = radius;
+            }
+            if change <= TOLERANCE {
+                break;
+            }
+        }
+        for part in &mut self.objects {
+            part.radius *= 1.0 + 1e-6;
+        }
+    }
+
+    /// The box of copies, to some 12 digits.
+    fn extent(objects: &[Part], copies: &[Placed]) -> Bounds {
+        let [right, up, left, down] = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
+            .map(|direction| reach(objects, copies, direction));
+        Bounds::new(DVec2::new(-left, -down), DVec2::new(right, up))
+    }
+}
+
+/// How far copies reach in a direction of length 1.
+///
+/// Those that may reach farthest are looked into, again and again; of many that reach as far, any
+/// will do.
+fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
+    const MOST_COPIES: usize = 256;
+    const TOLERANCE: f64 = 1e-13;
+    let disc = |copy: &Placed| {
+        let part = &objects[copy.object];
+        let at = copy.map.transform_point2(part.point).dot(direction);
+        (at, at + copy.scale * part.radius)
+    };
+    let mut copies = copies.to_vec();
+    let sizes = copies.iter().map(|copy| disc(copy).1 - disc(copy).0);
+    let tolerance = TOLERANCE * sizes.fold(0.0, f64::max);
+    let mut certain = f64::NEG_INFINITY;
+    for _ in 0..MOST_SWEEPS {
+        certain = copies
+            .iter()
+            .map(|copy| disc(copy).0)
+            .fold(certain, f64::max);
+        copies.retain(|copy| disc(copy).1 > certain + tolerance);
+        if copies.is_empty() {
+            break;
+        }
+        if copies.len() > MOST_COPIES {
+            copies.sort_by(|a, b| disc(b).1.total_cmp(&disc(a).1));
+            copies.truncate(MOST_COPIES);
+        }
+        let inner = copies.iter().flat_map(|copy| {
+            let children = objects[copy.object].children.iter();
+            children.map(|inner| copy.compose(inner))
+        });
+        copies = inner.collect();
+    }
+    certain
+}
+
+/// The fixed instances that take an object's place or start what it seeds.
+fn fertile(graph: &Graph, object: usize) -> impl Iterator<Item = &Instance> {
+    let production = match &graph.objects()[object].replacement {
+        Replacement::Fixed(production) => Some(production),
+        _ => None,
+    };
+    let placed = production
+        .into_iter()
+        .flat_map(|production| production.placed_instances());
+    placed
+        .filter(|(placement, _)| *placement != Placement::SeedsAsInitiator)
+        .map(|(_, instance)| instance)
+}
+
+/// Objects from which a fertile path goes on for ever.
+fn lasting(graph: &Graph) -> Vec<bool> {
+    let mut lasting = vec![true; graph.objects().len()];
+    loop {
+        let goes_on = |object| fertile(graph, object).any(|instance| lasting[instance.object]);
+        let next: Vec<bool> = (0..lasting.len()).map(goes_on).collect();
+        if next == lasting {
+            return lasting;
+        }
+        lasting = next;
+    }
+}
+
+/// The box that a point lies in.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn boxed(point: DVec2) -> [i64; 2] {
+    [point.x.floor() as i64, point.y.floor() as i64]
+}
+
+/// The most that a linear map lengthens a vector: its largest singular value.
+#[inline]
+fn norm(matrix: &DMat2) -> f64 {
+    let (a, b) = (matrix.x_axis, matrix.y_axis);
+    let half = (a.length_squared() + b.length_squared()) / 2.0;
+    let difference = (a.length_squared() - b.length_squared()) / 2.0;
+    let product = a.dot(b);
+    let root = (difference * difference + product * product).sqrt();
+    (half + root).sqrt()
+}

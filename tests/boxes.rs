@@ -1,0 +1,193 @@
+//! Box counting: what is known is measured, and what cannot be measured is said.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+#[path = "boxes/bad.rs"]
+mod bad;
+mod common;
+#[path = "boxes/laws.rs"]
+mod laws;
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use kfrac::catalogue::Catalogue;
+use kfrac::document::Document;
+use kfrac::graph::Graph;
+use kfrac::measure::{Bits, BoxCounting, Estimate, Grid, LimitSet, Masses, NoLimit};
+
+fn number(number: usize) -> NonZero<usize> {
+    NonZero::new(number).unwrap()
+}
+
+fn grids() -> Vec<Grid> {
+    Grid::spread(number(8))
+}
+
+/// A square picture whose pixels are told by their column and row.
+fn picture(side: usize, is_set: impl Fn(usize, usize) -> bool) -> Bits {
+    let mut bits = Bits::new(side, side);
+    for row in 0..side {
+        for column in (0..side).filter(|&column| is_set(column, row)) {
+            bits.set(column, row);
+        }
+    }
+    bits
+}
+
+fn measured(pixels: &Bits) -> Estimate {
+    let counting = BoxCounting::of_pixels(pixels, number(2), &grids(), number(2));
+    counting.estimate.unwrap()
+}
+
+fn assert_is(estimate: &Estimate, dimension: f64, tolerance: f64) {
+    let off = (estimate.value - dimension).abs();
+    assert!(off <= tolerance, "{estimate:?}");
+    assert!(off <= 2.0 * estimate.std_error + 1e-9, "{estimate:?}");
+}
+
+#[test]
+fn a_filled_square_has_dimension_2() {
+    assert_is(&measured(&picture(1024, |_, _| true)), 2.0, 0.005);
+}
+
+#[test]
+fn lines_have_dimension_1() {
+    assert_is(&measured(&picture(1024, |_, row| row == 300)), 1.0, 0.005);
+    assert_is(
+        &measured(&picture(1024, |column, _| column == 511)),
+        1.0,
+        0.005,
+    );
+    assert_is(
+        &measured(&picture(1024, |column, row| column == row)),
+        1.0,
+        0.005,
+    );
+}
+
+#[test]
+fn a_gasket_has_its_dimension() {
+    let gasket = picture(4096, |column, row| column & row == 0);
+    assert_is(&measured(&gasket), libm::log(3.0) / libm::log(2.0), 0.01);
+    let masses = Masses::of_pixels(&gasket);
+    for generalised in masses.spectrum(&[0.0, 1.0, 2.0, 3.5], 4.0) {
+        assert_is(
+            &generalised.estimate.unwrap(),
+            libm::log(3.0) / libm::log(2.0),
+            0.01,
+        );
+    }
+}
+
+#[test]
+fn a_disc_has_dimension_2() {
+    let disc = picture(2048, |column, row| {
+        let away = |place: usize| (place as i64 - 1000).pow(2);
+        away(column) + away(row) < 900 * 900
+    });
+    assert_is(&measured(&disc), 2.0, 0.02);
+}
+
+#[test]
+fn a_pixel_has_dimension_0() {
+    let pixel = picture(256, |column, row| (column, row) == (100, 30));
+    assert_is(&measured(&pixel), 0.0, 0.0);
+}
+
+#[test]
+fn boxes_of_other_sizes_measure_the_same() {
+    let carpet = picture(729, |mut column, mut row| {
+        while column > 0 && row > 0 {
+            if column % 3 == 1 && row % 3 == 1 {
+                return false;
+            }
+            (column, row) = (column / 3, row / 3);
+        }
+        true
+    });
+    let counting = BoxCounting::of_pixels(&carpet, number(3), &grids(), number(1));
+    assert_eq!(
+        counting.boxes.iter().map(|it| it.size).fold(0.0, f64::max),
+        729.0
+    );
+    let estimate = counting.estimate.unwrap();
+    assert_is(&estimate, libm::log(8.0) / libm::log(3.0), 0.01);
+}
+
+#[test]
+fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
+    let uniform = Masses::of_pixels(&picture(256, |_, _| true)).lacunarity();
+    assert!(
+        uniform.iter().all(|it| (it.value - 1.0).abs() < 1e-12),
+        "{uniform:?}"
+    );
+    let gasket = Masses::of_pixels(&picture(256, |column, row| column & row == 0)).lacunarity();
+    // One box of one pixel: ⟨m²⟩ / ⟨m⟩² is one over the part of the pixels that are set.
+    assert!((gasket[0].value - (4.0f64 / 3.0).powi(8)).abs() < 1e-9);
+    assert!(gasket.is_sorted_by(|a, b| a.value >= b.value), "{gasket:?}");
+}
+
+fn limit(name: &str) -> Result<LimitSet, NoLimit> {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue.rule(name).unwrap();
+    let (rule, _) = Document::read(&source, &catalogue)
+        .unwrap()
+        .resolve(&[])
+        .unwrap();
+    LimitSet::of(&Graph::compile(&Arc::new(rule), 20).unwrap())
+}
+
+/// The sizes at which a debug build is quick.
+fn of_limit(set: &LimitSet, base: f64) -> Estimate {
+    let window = kfrac::measure::Window {
+        finest: 0.0,
+        coarsest: set.bounds().size().max_element() / 2.0,
+        least_boxes: 9,
+        most_boxes: u64::MAX,
+    };
+    let scales = set.scales(base, 2_000, &grids(), number(2));
+    BoxCounting::of(&scales, &window).estimate.unwrap()
+}
+
+#[test]
+fn limit_sets_are_measured_without_a_picture() {
+    for (name, period, dimension) in [
+        ("koch", 3.0, libm::log(4.0) / libm::log(3.0)),
+        ("carpet", 3.0, libm::log(8.0) / libm::log(3.0)),
+        ("sierpinski-triangles", 2.0, libm::log(3.0) / libm::log(2.0)),
+        ("hilbert", 2.0, 2.0),
+    ] {
+        let set = limit(name).unwrap();
+        assert!((set.period().unwrap() - period).abs() < 1e-9, "{name}");
+        assert_is(&of_limit(&set, period), dimension, 0.03);
+    }
+}
+
+#[test]
+fn a_limit_set_lies_in_its_box_and_is_met_by_what_is_counted() {
+    let set = limit("koch").unwrap();
+    let (min, max) = (set.bounds().min(), set.bounds().max());
+    assert!(min.length() < 1e-9, "{min}");
+    assert!(
+        (max - kfrac::geometry::DVec2::new(1.0, 12f64.sqrt().recip())).length() < 1e-9,
+        "{max}"
+    );
+    // Of the trunks of a tree nothing belongs to the limit set of what stays fertile.
+    let tree = limit("binary-tree").unwrap();
+    assert!(tree.bounds().min().x > 0.9, "{:?}", tree.bounds());
+}
+
+#[test]
+fn a_limit_that_is_a_point_has_dimension_0() {
+    let spiral = limit("spiral").unwrap();
+    assert_eq!(spiral.bounds().size().max_element(), 0.0);
+    let estimate = BoxCounting::of_limit(&spiral, None, &grids(), number(1)).estimate;
+    assert_eq!(estimate.unwrap().value, 0.0);
+}
+
+#[test]
+fn what_has_no_limit_set_says_so() {
+    assert_eq!(limit("random-tree").unwrap_err(), NoLimit::NotFixed);
+    assert_eq!(limit("snow-crystal").unwrap_err(), NoLimit::Endless);
+}
