@@ -3,6 +3,7 @@
 mod cat;
 mod check;
 mod completions;
+mod family;
 mod format;
 mod goal;
 mod grow;

@@ -1,6 +1,6 @@
 //! Sets of the plane.
 
-use crate::document::{FormDocument, ShapeDocument};
+use crate::document::{EllipseDocument, FormDocument, ShapeDocument};
 use crate::ifs::Shape;
 
 use super::Resolver;
@@ -31,11 +31,12 @@ impl Resolver<OfIfs> {
                     Shape::polyline(&points)
                 }
             }
-            FormDocument::Ellipse {
-                centre,
-                axes,
-                rotate,
-            } => {
+            FormDocument::Ellipse(ellipse) => {
+                let EllipseDocument {
+                    centre,
+                    axes,
+                    rotate,
+                } = &**ellipse;
                 let centre = self.constant_point(centre);
                 let values = self.numbers(axes);
                 let angle = match rotate {
