@@ -456,3 +456,47 @@ fn what_is_not_decided_is_said() {
     assert_eq!(graph.limit_bounds(), None);
     assert_eq!(elements(&graph, 2).len(), 16);
 }
+
+#[test]
+fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
+    let kfrac = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
+        let output = command.args(arguments).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            text(output.stdout),
+            text(output.stderr),
+        )
+    };
+    let sweep = ["sheet", "tree-libeskind-hadas", "--steps", "2", "-o", "-"];
+    let (code, sheet, said) =
+        kfrac(&[&sweep[..], &["--set", "frame=1..3", "--samples", "3"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    for caption in ["frame = 1: ", "frame = 2: ", "frame = 3: "] {
+        assert!(sheet.contains(caption), "{caption}");
+    }
+    let (code, _, said) = kfrac(&["info", "pythagoras", "--set", "angle=20,40"]);
+    assert!(code == Some(2) && said.contains("kfrac sheet"), "{said}");
+    let (code, table, said) = kfrac(&[
+        "grow", "gasket", "--omit", "2", "--steps", "3", "--format", "csv", "-o", "-",
+    ]);
+    assert_eq!((code, table.lines().count()), (Some(0), 9), "{said}");
+    for (arguments, message) in [
+        (["info", "gasket", "--omit", "4"], "has 3 maps"),
+        (["info", "gasket", "--omit", "1,2,3"], "at least one map"),
+        (["info", "koch", "--omit", "1"], "has none"),
+        (["grow", "koch", "--color-by", "last-map"], "has no maps"),
+    ] {
+        let (code, _, said) = kfrac(&arguments);
+        assert!(code != Some(0) && said.contains(message), "{said}");
+    }
+    let (_, info, _) = kfrac(&["info", "cantor", "--steps", "0", "--json"]);
+    let info: serde_json::Value = serde_json::from_str(&info).unwrap();
+    let measure = &info["measure"];
+    assert_close("mean", measure["mean"][0].as_f64().unwrap(), 0.5, 1e-12);
+    let variance = measure["covariance"][0][0].as_f64().unwrap();
+    assert_close("variance", variance, 0.125, 1e-12);
+    assert_eq!(info["default_weights"], true);
+    assert_eq!(info["contraction"]["contracts"], true);
+}

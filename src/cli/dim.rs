@@ -10,13 +10,12 @@ use clap::ValueHint;
 use clap::builder::PossibleValue;
 
 use crate::catalogue::Catalogue;
-use crate::document::Setting;
 use crate::figure::dimension;
 use crate::measure::{BoxCounting, Generalised, Grid, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels, RenderError};
 
-use super::rule::setting;
+use super::family::{Assignment, assignment};
 use super::{Failure, format, help, output, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
@@ -34,8 +33,8 @@ pub(super) struct Arguments {
     #[arg(value_name = "RULE|IMAGE|POINTS")]
     rule: PathBuf,
     /// Sets a parameter of the rule; it may be given several times
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
-    set: Vec<Setting>,
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    set: Vec<Assignment>,
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
     omit: Vec<u32>,

@@ -5,6 +5,7 @@ mod check;
 mod completions;
 mod count;
 mod dim;
+mod family;
 mod format;
 mod goal;
 mod grow;

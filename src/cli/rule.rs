@@ -10,11 +10,11 @@ use etcetera::BaseStrategy;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Severity, Source, did_you_mean};
 use crate::document::{Document, Setting};
-use crate::expression::{Expression, Scope};
 use crate::graph::Graph;
 use crate::model::Model;
 use crate::style::{ColorBy, Named};
 
+use super::family::{self, Assignment};
 use super::{Failure, text};
 
 /// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
@@ -43,28 +43,11 @@ pub(super) struct RuleArguments {
     /// Sets a parameter of the rule; it may be given several times
     ///
     /// The value may be an expression: --set angle=180/7. `kfrac info RULE` lists the parameters.
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
-    pub(super) set: Vec<Setting>,
+    #[arg(long, value_name = "NAME=VALUE", value_parser = family::assignment)]
+    pub(super) set: Vec<Assignment>,
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) omit: Vec<u32>,
-}
-
-pub(super) fn setting(text: &str) -> Result<Setting, String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
-    let program = Expression::parse(value)
-        .and_then(|expression| expression.compile(&Scope::new()))
-        .map_err(|error| match error.hint {
-            Some(hint) => format!("{} ({hint})", error.message),
-            None => error.message,
-        })?;
-    match program.as_constant() {
-        Some(value) if value.is_finite() => Ok(Setting {
-            name: name.trim().into(),
-            value,
-        }),
-        _ => Err("the value is not finite".into()),
-    }
 }
 
 /// A rule that has been read.
@@ -146,22 +129,55 @@ impl RuleArguments {
     /// Finds, reads and resolves the rule; warnings are said.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
         let source = open(&self.rule, catalogue)?;
-        self.resolve(&source, catalogue, quiet)
+        self.load_from(&source, catalogue, quiet)
     }
 
-    /// Reads and resolves the rule from its text; warnings are said.
-    pub(super) fn resolve(
+    /// The same from its text.
+    pub(super) fn load_from(
         &self,
         source: &Arc<Source>,
         catalogue: &Catalogue,
         quiet: bool,
     ) -> Result<Loaded, Failure> {
+        let settings: Result<_, _> = self.set.iter().map(Assignment::setting).collect();
         let document = Document::read(source, catalogue)?;
-        let name = name_of(&self.rule).to_string_lossy().into_owned();
-        for setting in &self.set {
-            self.check_setting(setting, &document, &name)?;
+        self.resolve(document, settings?, quiet)
+    }
+
+    /// The same for several values of a parameter, each with the setting that makes it; a range has so
+    /// many. Without one, there is none.
+    pub(super) fn load_family(
+        &self,
+        catalogue: &Catalogue,
+        quiet: bool,
+        samples: u32,
+    ) -> Result<Vec<(Setting, Loaded)>, Failure> {
+        let (fixed, swept) = family::split(&self.set, samples)?;
+        if swept.is_empty() {
+            return Ok(Vec::new());
         }
-        let (model, warnings) = document.resolve(&self.set)?;
+        let document = Document::read(&open(&self.rule, catalogue)?, catalogue)?;
+        let members = swept.into_iter().enumerate().map(|(number, setting)| {
+            let mut settings = fixed.clone();
+            settings.push(setting.clone());
+            let mut loaded = self.resolve(document.clone(), settings, quiet || number > 0)?;
+            loaded.settings.clone_from(&fixed);
+            Ok((setting, loaded))
+        });
+        members.collect()
+    }
+
+    fn resolve(
+        &self,
+        document: Document,
+        settings: Vec<Setting>,
+        quiet: bool,
+    ) -> Result<Loaded, Failure> {
+        let name = name_of(&self.rule).to_string_lossy().into_owned();
+        for setting in &settings {
+            check_setting(setting, &settings, &document, &name)?;
+        }
+        let (model, warnings) = document.resolve(&settings)?;
         if !quiet && !warnings.is_empty() {
             text::complain(&warnings);
         }
@@ -170,7 +186,7 @@ impl RuleArguments {
             name,
             document,
             model,
-            settings: self.set.clone(),
+            settings,
             omitted: self.omit.clone(),
         })
     }
@@ -203,49 +219,48 @@ impl RuleArguments {
         })?;
         Ok(Model::Ifs(left.into()))
     }
+}
 
-    /// What is wrong with a setting is wrong with the command line, not with the file.
-    fn check_setting(
-        &self,
-        setting: &Setting,
-        document: &Document,
-        rule: &str,
-    ) -> Result<(), Failure> {
-        let params = &document.heading().params;
-        if !params.iter().any(|param| param.name.value == setting.name) {
-            let names = params.iter().map(|param| param.name.value.as_str());
-            let hint = match did_you_mean(&setting.name, names.clone()) {
-                Some(hint) => hint,
-                None if params.is_empty() => "it has none".into(),
-                None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
-            };
-            let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
-            return Err(Failure::Usage(message));
+/// What is wrong with a setting is wrong with the command line, not with the file.
+fn check_setting(
+    setting: &Setting,
+    settings: &[Setting],
+    document: &Document,
+    rule: &str,
+) -> Result<(), Failure> {
+    let params = &document.heading().params;
+    if !params.iter().any(|param| param.name.value == setting.name) {
+        let names = params.iter().map(|param| param.name.value.as_str());
+        let hint = match did_you_mean(&setting.name, names.clone()) {
+            Some(hint) => hint,
+            None if params.is_empty() => "it has none".into(),
+            None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
+        };
+        let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
+        return Err(Failure::Usage(message));
+    }
+    let others: Vec<_> = settings
+        .iter()
+        .filter(|other| other.name == setting.name)
+        .cloned()
+        .collect();
+    let unset = document.resolve(&[]);
+    match document.resolve(&others) {
+        // The file is right with its own values, so it is this one that is not.
+        Err(diagnostics) if unset.is_ok() => {
+            let errors = diagnostics
+                .iter()
+                .filter(|diagnostic| diagnostic.severity() == Severity::Error);
+            let said: Vec<_> = errors.map(Diagnostic::message).collect();
+            let message = format!(
+                "--set {}={}: {}",
+                setting.name,
+                setting.value,
+                said.join("; ")
+            );
+            Err(Failure::Usage(message))
         }
-        let others: Vec<_> = self
-            .set
-            .iter()
-            .filter(|other| other.name == setting.name)
-            .cloned()
-            .collect();
-        let unset = document.resolve(&[]);
-        match document.resolve(&others) {
-            // The file is right with its own values, so it is this one that is not.
-            Err(diagnostics) if unset.is_ok() => {
-                let errors = diagnostics
-                    .iter()
-                    .filter(|diagnostic| diagnostic.severity() == Severity::Error);
-                let said: Vec<_> = errors.map(Diagnostic::message).collect();
-                let message = format!(
-                    "--set {}={}: {}",
-                    setting.name,
-                    setting.value,
-                    said.join("; ")
-                );
-                Err(Failure::Usage(message))
-            }
-            _ => Ok(()),
-        }
+        _ => Ok(()),
     }
 }
 

@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
+use crate::document::Setting;
 use crate::figure::sheet;
 use crate::render::{self, Size};
 use crate::style::{Named, Style, Width};
@@ -18,9 +19,10 @@ use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
 use super::{Failure, format, help, output, steps, text};
 
-/// Draws approximants side by side
+/// Draws approximants side by side, or a family of fractals
 ///
-/// All are drawn to one scale, each with its step and its number of elements under it.
+/// All are drawn to one scale, each with its step and its number of elements under it. Where --set
+/// gives a parameter several values, as angle=10,20,30 or angle=0..90, it is one step for each of them.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -38,6 +40,9 @@ pub(super) struct Arguments {
     /// How many pictures stand in a row [default: as many as make the sheet 4 to 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     columns: Option<u32>,
+    /// How many values of a range --set NAME=FROM..TO takes
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    samples: u32,
     #[command(flatten)]
     growth: GrowthArguments,
     /// The long side of every single picture in pixels, or WIDTHxHEIGHT
@@ -52,6 +57,8 @@ const MORE: &str = "\
 Examples:
   kfrac sheet koch --steps 0..5
       Draws the first approximants of the Koch curve, into koch-sheet.svg
+  kfrac sheet pythagoras --set angle=20..70 --samples 6
+      Draws the tree for six angles
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
       Draws three of them in a row, larger, as pixels
 ";
@@ -59,6 +66,13 @@ Examples:
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
+    let family =
+        arguments
+            .rule
+            .load_family(catalogue, arguments.growth.quiet, arguments.samples)?;
+    if !family.is_empty() {
+        return arguments.draw_family(&family, format, start);
+    }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let steps = match &arguments.steps {
         Some(steps) => steps.clone(),
@@ -70,7 +84,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     let default = arguments.rule.file("-sheet", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let options = arguments.options(&loaded, &steps, format);
+    let shown = format!("Steps {steps}");
+    let options = arguments.options(&loaded, &shown, vec![("steps", steps.to_string())], format);
     let (written, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
         let cells = steps.as_slice().iter().map(|&step| sheet::Cell {
             name: format!("step {step}"),
@@ -107,8 +122,72 @@ impl Arguments {
         style
     }
 
-    fn options(&self, loaded: &Loaded, steps: &Several, format: render::Format) -> render::Options {
-        let mut options = vec![("steps", steps.to_string())];
+    /// Draws one step for every value of a parameter.
+    fn draw_family(
+        &self,
+        family: &[(Setting, Loaded)],
+        format: render::Format,
+        start: Instant,
+    ) -> Result<(), Failure> {
+        let (first, loaded) = &family[0];
+        let step = match self.steps.as_ref().map(Several::as_slice) {
+            None => steps::choose(None, loaded)?,
+            Some([step]) => *step,
+            Some(_) => {
+                let message = "a sheet shows several steps or several values, not both";
+                return Err(Failure::Usage(message.into()));
+            }
+        };
+        let color_by = self.style(loaded).color_by;
+        let mut graphs = Vec::new();
+        for (_, member) in family {
+            let graph = member.compile_for(step, color_by)?;
+            self.growth.check(step, &graph, member, None)?;
+            graphs.push(graph);
+        }
+        let default = self.rule.file("-sheet", format.name());
+        let path = self.output.as_ref().unwrap_or(&default);
+        let values: Vec<_> = family.iter().map(|(it, _)| it.value.to_string()).collect();
+        let sweep = ("set", format!("{}={}", first.name, values.join(",")));
+        let shown = format!("Step {step} for values of {}", first.name);
+        let which = vec![sweep, ("steps", step.to_string())];
+        let options = self.options(loaded, &shown, which, format);
+        let (written, bytes) = output::write(path, self.growth.quiet, |out, progress| {
+            let cells = family
+                .iter()
+                .zip(&graphs)
+                .map(|((it, _), graph)| sheet::Cell {
+                    name: format!("{} = {}", it.name, rounded(it.value)),
+                    graph,
+                    growth: self.growth.to(step, progress),
+                });
+            let cells: Vec<_> = cells.collect();
+            sheet::write(&cells, self.columns, &options, out)
+                .map_err(|error| self.growth.explain(error, loaded, path))
+        })?;
+        if !self.growth.quiet {
+            let [width, height] = written.size;
+            text::say(&format!(
+                "{}: {} of {} at step {step}, {}, {width} x {height} pixels, {}, {:.2} s",
+                output::called(path),
+                wording::counted(&family.len().into(), "value"),
+                first.name,
+                wording::counted(&written.elements.into(), "element"),
+                wording::bytes(bytes),
+                start.elapsed().as_secs_f64(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn options(
+        &self,
+        loaded: &Loaded,
+        shown: &str,
+        which: Vec<(&'static str, String)>,
+        format: render::Format,
+    ) -> render::Options {
+        let mut options = which;
         options.extend(self.growth.options());
         if format != render::Format::Svg {
             options.push(("format", format.name().into()));
@@ -123,7 +202,13 @@ impl Arguments {
             size: self.size,
             threads: self.growth.threads(),
             detail: None,
-            labels: labels(loaded, &format!("Steps {steps}"), "sheet", options),
+            labels: labels(loaded, shown, "sheet", options),
         }
     }
+}
+
+/// A value as a caption has it, to six digits.
+fn rounded(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').into()
 }

@@ -75,8 +75,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     })?;
     if !arguments.quiet {
         text::say(&format!(
-            "{}: the rule of {}, {width} x {height} pixels, {}",
+            "{}: the {} of {}, {width} x {height} pixels, {}",
             output::called(path),
+            noun(&loaded.model),
             loaded.name,
             wording::bytes(bytes),
         ));
@@ -97,7 +98,23 @@ impl Arguments {
             format,
             size: self.size,
             background: self.background,
-            labels: labels(loaded, "The production rule", "show", options),
+            labels: labels(loaded, shown(&loaded.model), "show", options),
         }
+    }
+}
+
+fn noun(model: &Model) -> &'static str {
+    match model {
+        Model::Rule(_) => "rule",
+        Model::Ifs(_) => "system",
+        Model::Instancing(_) => "structure",
+    }
+}
+
+fn shown(model: &Model) -> &'static str {
+    match model {
+        Model::Rule(_) => "The production rule",
+        Model::Ifs(_) => "The system",
+        Model::Instancing(_) => "The structure",
     }
 }

@@ -140,12 +140,16 @@ pub enum FormDocument {
         closed: bool,
     },
     /// An ellipse.
-    Ellipse {
-        /// Its centre.
-        centre: Point,
-        /// Its half axes.
-        axes: [Number; 2],
-        /// The angle of the first of them.
-        rotate: Option<Number>,
-    },
+    Ellipse(Box<EllipseDocument>),
+}
+
+/// An ellipse as written.
+#[derive(Clone, Debug)]
+pub struct EllipseDocument {
+    /// Its centre.
+    pub centre: Point,
+    /// Its half axes.
+    pub axes: [Number; 2],
+    /// The angle of the first of them.
+    pub rotate: Option<Number>,
 }

@@ -20,8 +20,8 @@ mod yaml;
 
 pub use heading::{HeadingDocument, ParameterDocument};
 pub use ifs::{
-    CondensationDocument, EdgeDocument, FormDocument, IfsDocument, InterpolationDocument,
-    LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
+    CondensationDocument, EdgeDocument, EllipseDocument, FormDocument, IfsDocument,
+    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,

@@ -1,6 +1,6 @@
 //! Sets of the plane.
 
-use crate::document::{FormDocument, Number, Point, ShapeDocument};
+use crate::document::{EllipseDocument, FormDocument, Number, Point, ShapeDocument};
 use crate::geometry::DVec2;
 use crate::ifs::Shape;
 
@@ -31,11 +31,12 @@ impl<K> Resolver<K> {
                     Shape::polyline(&points)
                 }
             }
-            FormDocument::Ellipse {
-                centre,
-                axes,
-                rotate,
-            } => {
+            FormDocument::Ellipse(ellipse) => {
+                let EllipseDocument {
+                    centre,
+                    axes,
+                    rotate,
+                } = &**ellipse;
                 let centre = self.constant_point(centre);
                 let values = self.numbers(axes);
                 let angle = match rotate {

@@ -82,7 +82,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
                     .read_to_end(&mut bytes)
                     .with_context(cannot)?;
                 let source: Arc<Source> = Source::read("<stdin>", bytes)?;
-                rules().resolve(&source, catalogue, arguments.json)?
+                rules().load_from(&source, catalogue, arguments.json)?
             } else {
                 rules().load(catalogue, arguments.json)?
             };

@@ -1,6 +1,6 @@
 //! Sets of the plane: condensation sets and initial sets.
 
-use crate::document::ifs::{FormDocument, ShapeDocument};
+use crate::document::ifs::{EllipseDocument, FormDocument, ShapeDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
@@ -172,11 +172,11 @@ fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
         reader.error_with_hint(&first_line(&node.place), "a disk needs a radius", DISK.hint);
         return None;
     };
-    Some(FormDocument::Ellipse {
+    Some(FormDocument::Ellipse(Box::new(EllipseDocument {
         centre: read_centre(reader, &fields),
         axes: [radius.clone(), radius],
         rotate: None,
-    })
+    })))
 }
 
 fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
@@ -186,11 +186,11 @@ fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
         reader.error_with_hint(&first_line(&node.place), message, ELLIPSE.hint);
         return None;
     };
-    Some(FormDocument::Ellipse {
+    Some(FormDocument::Ellipse(Box::new(EllipseDocument {
         centre: read_centre(reader, &fields),
         axes,
         rotate: reader.optional_number(fields.take("rotate")),
-    })
+    })))
 }
 
 fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {

@@ -1,0 +1,137 @@
+//! Values of parameters as the command line has them: one, or several that make a family.
+
+use crate::document::Setting;
+use crate::expression::{Expression, Scope};
+
+use super::Failure;
+
+/// A parameter with the values that it is to have.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Assignment {
+    name: String,
+    values: Values,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Values {
+    One(f64),
+    Several(Vec<f64>),
+    /// From one to another.
+    Range([f64; 2]),
+}
+
+/// Reads `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`.
+pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
+    let (name, written) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    let values = match (value(written), written.split_once("..")) {
+        // A comma may belong to a function.
+        (Ok(value), _) => Values::One(value),
+        (_, Some((first, last))) => Values::Range([value(first)?, value(last)?]),
+        (Err(error), None) => {
+            let several: Result<Vec<f64>, _> = written.split(',').map(value).collect();
+            match several {
+                Ok(several) if several.len() > 1 => Values::Several(several),
+                _ => return Err(error),
+            }
+        }
+    };
+    Ok(Assignment {
+        name: name.trim().into(),
+        values,
+    })
+}
+
+fn value(text: &str) -> Result<f64, String> {
+    let program = Expression::parse(text)
+        .and_then(|expression| expression.compile(&Scope::new()))
+        .map_err(|error| match error.hint {
+            Some(hint) => format!("{} ({hint})", error.message),
+            None => error.message,
+        })?;
+    match program.as_constant() {
+        Some(value) if value.is_finite() => Ok(value),
+        _ => Err("the value is not finite".into()),
+    }
+}
+
+impl Assignment {
+    /// The one value.
+    pub(super) fn setting(&self) -> Result<Setting, Failure> {
+        match self.values {
+            Values::One(value) => Ok(self.with(value)),
+            _ => {
+                let message = format!(
+                    "--set {}: several values are for `kfrac sheet`, which draws them side by side",
+                    self.name
+                );
+                Err(Failure::Usage(message))
+            }
+        }
+    }
+
+    fn with(&self, value: f64) -> Setting {
+        Setting {
+            name: self.name.clone(),
+            value,
+        }
+    }
+
+    /// The values that make a family, so many of a range.
+    fn several(&self, samples: u32) -> Option<Vec<Setting>> {
+        let values = match &self.values {
+            Values::One(_) => return None,
+            Values::Several(values) => values.clone(),
+            Values::Range([first, last]) => {
+                let share = |sample: u32| f64::from(sample) / f64::from(samples.max(2) - 1);
+                let samples = 0..samples.max(2);
+                samples
+                    .map(|sample| first + (last - first) * share(sample))
+                    .collect()
+            }
+        };
+        Some(values.into_iter().map(|value| self.with(value)).collect())
+    }
+}
+
+/// The settings that are the same for all pictures, and those of the parameter that is swept.
+pub(super) fn split(
+    assignments: &[Assignment],
+    samples: u32,
+) -> Result<(Vec<Setting>, Vec<Setting>), Failure> {
+    let mut fixed = Vec::new();
+    let mut swept = Vec::new();
+    for assignment in assignments {
+        match assignment.several(samples) {
+            None => fixed.push(assignment.setting()?),
+            Some(several) if swept.is_empty() => swept = several,
+            Some(_) => {
+                let message = format!("--set {}: one parameter is swept already", assignment.name);
+                return Err(Failure::Usage(message));
+            }
+        }
+    }
+    Ok((fixed, swept))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{assignment, split};
+
+    #[test]
+    fn values_are_one_or_several() {
+        let values = |text: &str| {
+            let (fixed, swept) = split(&[assignment(text).unwrap()], 3).unwrap();
+            let all = fixed.into_iter().chain(swept);
+            all.map(|setting| setting.value).collect::<Vec<_>>()
+        };
+        assert_eq!(values("a=180/4"), [45.0]);
+        assert_eq!(values("a=max(1, 2)"), [2.0]);
+        assert_eq!(values("a=10,20,30"), [10.0, 20.0, 30.0]);
+        assert_eq!(values("a=0..90"), [0.0, 45.0, 90.0]);
+        for wrong in ["a", "a=", "a=1,", "a=1..", "a=1/0", "a=x,2"] {
+            assert!(assignment(wrong).is_err(), "{wrong}");
+        }
+        let two = ["a=1,2", "b=1,2"].map(|text| assignment(text).unwrap());
+        assert!(split(&two, 3).is_err());
+    }
+}
