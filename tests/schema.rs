@@ -15,6 +15,7 @@ use jsonschema::Validator;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::{Document, schema};
+use kfrac::model::Kind;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -74,11 +75,13 @@ fn the_rules_of_the_reference_are_valid() {
     let rules = include_str!("../library/README.md")
         .split("```yaml\n")
         .skip(1);
-    let validator = validator(Shelf::Rules);
+    let kinds = Kind::ALL.map(|kind| (kind, validator(Shelf::of(kind))));
     let mut number = 0;
     for rule in rules {
         let rule = rule.split("```").next().unwrap();
-        assert_valid(&validator, &format!("rule {number}"), rule);
+        let says = |kind: &&(Kind, Validator)| rule.contains(&format!("kind: {}\n", kind.0.name()));
+        let (_, validator) = kinds.iter().find(says).unwrap_or(&kinds[0]);
+        assert_valid(validator, &format!("rule {number}"), rule);
         number += 1;
     }
     assert!(number >= 10, "only {number} whole rules were found");
@@ -198,7 +201,7 @@ fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
     let rule = match shelf {
-        Shelf::Rules | Shelf::Ifs => text.clone(),
+        Shelf::Rules | Shelf::Ifs | Shelf::Instancing => text.clone(),
         Shelf::Initiators => "initiator: changed\ngenerator: koch\n".into(),
         Shelf::Generators => "initiator: segment\ngenerator: changed\n".into(),
         Shelf::BaseElements => {
@@ -223,7 +226,18 @@ fn the_schemas_and_the_reader_agree() {
     let mut keys = BTreeMap::new();
     collect_keys(&rules, &mut keys);
     let rules = rules.as_object().unwrap().values().cloned();
-    let mut samples: Vec<_> = rules.map(|rule| (Shelf::Rules, rule)).collect();
+    let mut samples: Vec<_> = rules
+        .map(|file| {
+            (
+                if file["kind"] == "instancing" {
+                    Shelf::Instancing
+                } else {
+                    Shelf::Rules
+                },
+                file,
+            )
+        })
+        .collect();
     for (shelf, name) in [
         (Shelf::Initiators, "triangle"),
         (Shelf::Generators, "swaying-roof"),

@@ -253,7 +253,7 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
         tint: None,
         place: node.place.clone(),
     };
-    if let Value::Text(_) = &node.value {
+    if let Value::Text(_) | Value::Number(_) = &node.value {
         instance.master = read_named(reader, node);
     } else if let Some(fields) = reader.fields(node, &INSTANCE) {
         instance.master = read_master(reader, &fields);
