@@ -26,6 +26,9 @@
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
+//! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
+//! interpolation are worked out on it without a graph.
+//!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other;
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
@@ -45,7 +48,6 @@ pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
-pub mod heading;
 pub mod ifs;
 pub mod instancing;
 pub mod measure;

@@ -23,6 +23,9 @@ const MOST_LEVELS: u32 = 20_000;
 /// What is smaller than this multiple of the whole adds nothing to a double.
 const NEGLIGIBLE: f64 = 1e-17;
 
+/// The same where maps are any affine ones, so that rounding merges less.
+const ROUNDING: f64 = 1e-15;
+
 struct State {
     object: usize,
     vector: DVec2,
@@ -35,21 +38,58 @@ struct State {
 struct Reach {
     spread: f64,
     ratio: f64,
-    /// The radius of all that becomes of an object, where single ratios do not tell it.
-    within: Option<f64>,
+    /// In systems, what is known of every object instead.
+    discs: Option<Discs>,
     /// Objects that surely draw something.
     alive: Vec<bool>,
     /// What lies around every object, as a multiple of its length.
     pads: Vec<f64>,
 }
 
+/// Where the parts of a system lie.
+struct Discs {
+    /// About this point of every unit frame,
+    centre: DVec2,
+    /// within these radii, at every step and in the limit.
+    radii: Vec<f64>,
+    /// Points of what objects come to in the limit.
+    anchors: Vec<Vec<DVec2>>,
+}
+
 impl Reach {
+    /// About where, along a state's vector, all lies that becomes of it, and how far to both sides.
+    fn span(&self, state: &State, levels: Option<u32>) -> [f64; 2] {
+        let length = state.vector.length();
+        match &self.discs {
+            Some(discs) => [
+                state.offset + state.vector.dot(discs.centre),
+                length * discs.radii[state.object],
+            ],
+            None => [state.offset, length * self.radius(levels)],
+        }
+    }
+
+    /// What the limit of a state surely reaches, along its vector.
+    fn reached(&self, state: &State) -> f64 {
+        let discs = self.discs.as_ref();
+        let anchors = discs.map_or(&[][..], |discs| &discs.anchors[state.object]);
+        let along = anchors.iter().map(|point| state.vector.dot(*point));
+        state.offset + along.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Rounding must not drop all that reaches farthest, where points of the limit tell what does.
+    fn slack(&self) -> f64 {
+        self.discs.as_ref().map_or(0.0, |_| ROUNDING)
+    }
+
+    /// What adds nothing, as a multiple of the whole.
+    fn negligible(&self) -> f64 {
+        self.discs.as_ref().map_or(NEGLIGIBLE, |_| ROUNDING)
+    }
+
     /// The radius around its origin, in its own unit frame, of all that an object draws within a
     /// number of levels, or ever: the sum of a geometric series.
     fn radius(&self, levels: Option<u32>) -> f64 {
-        if let Some(within) = self.within {
-            return within;
-        }
         if self.ratio < 1.0 {
             return self.spread / (1.0 - self.ratio);
         }
@@ -103,7 +143,7 @@ impl Graph {
         let reach = Reach {
             spread,
             ratio,
-            within: self.reach_by_products(DVec2::ZERO, spread),
+            discs: self.affine.then(|| self.discs(&pad)).flatten(),
             alive: self.alive(steps.is_none()),
             pads: self.objects.iter().map(pad).collect(),
         };
@@ -156,6 +196,24 @@ impl Graph {
         constant
     }
 
+    /// Discs about the parts of a system; `None` if it is not known to contract.
+    fn discs(&self, pad: impl Fn(&Object) -> f64) -> Option<Discs> {
+        let axes = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y];
+        let centre = self.middle;
+        let radii = self.reaches(|object| {
+            let base_element = &self.base_elements()[object.base_element];
+            let beyond = axes.map(|axis| (base_element.support(axis) - axis.dot(centre)).abs());
+            let [x, y] = [beyond[0].max(beyond[1]), beyond[2].max(beyond[3])];
+            libm::hypot(x, y) + pad(object)
+        });
+        let known = radii.iter().all(|radius| radius.is_finite());
+        known.then(|| Discs {
+            centre,
+            radii,
+            anchors: self.limit_points(),
+        })
+    }
+
     /// Objects that surely draw something at every later level or, for the limit, that are drawn
     /// again and again: those that lead to a visible kept object, or for ever to visible ones.
     fn alive(&self, limit: bool) -> Vec<bool> {
@@ -199,7 +257,7 @@ impl Graph {
         let mut work = 0;
         for level in 0..=MOST_LEVELS {
             let last = steps == Some(level);
-            let radius = reach.radius(steps.map(|steps| steps - level));
+            let levels = steps.map(|steps| steps - level);
             let mut next = Vec::new();
             let mut certain = best;
             for state in &states {
@@ -211,18 +269,22 @@ impl Graph {
                     let reached = base_element.support(state.vector) + state.lost + pad;
                     best = best.max(state.offset + reached);
                 }
-                let size = state.vector.length() * radius;
                 if reach.alive[state.object] {
-                    certain = certain.max(state.offset - size);
+                    let [offset, size] = reach.span(state, levels);
+                    certain = certain.max(offset - size);
+                    if levels.is_none() {
+                        certain = certain.max(reach.reached(state));
+                    }
                 }
             }
             if last {
                 return best.is_finite().then_some(best);
             }
             certain = certain.max(best);
+            let certain = certain - reach.slack() * (1.0 + certain.abs());
             for state in states {
-                let size = state.vector.length() * radius;
-                let hopeless = state.offset + size < certain;
+                let [offset, size] = reach.span(&state, levels);
+                let hopeless = offset + size < certain;
                 let dead = steps.is_none() && !reach.alive[state.object];
                 if hopeless || dead {
                     continue;
@@ -230,7 +292,7 @@ impl Graph {
                 if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
                     // What is not surely drawn at this very step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
-                    if known && size <= NEGLIGIBLE * (1.0 + state.offset.abs()) {
+                    if known && size <= reach.negligible() * (1.0 + state.offset.abs()) {
                         if reach.alive[state.object] {
                             best = best.max(state.offset + state.lost);
                         }

@@ -2,7 +2,7 @@
 
 use crate::geometry::{DAffine2, DVec2};
 
-use super::{Graph, Replacement};
+use super::{Graph, Instance, Replacement};
 
 /// More products than this are not tried.
 const MOST_PRODUCTS: usize = 100_000;
@@ -32,6 +32,39 @@ impl Graph {
         }
         let reach = SHORT_ENOUGH.map(|enough| move || self.reach_to(centre, own, enough));
         reach.into_iter().find_map(|reach| reach())
+    }
+
+    /// Points of what every object comes to in the limit, if it contracts: a point inside each of the
+    /// instances that take its place.
+    pub(super) fn limit_points(&self) -> Vec<Vec<DVec2>> {
+        /// As long a way leads to a point to the last digit, unless maps contract very little.
+        const MOST_STEPS: usize = 2_000;
+        let fertile = |object: usize| {
+            let children = self.children(object).map(|(_, instance)| instance);
+            children.filter(|instance| {
+                !matches!(self.objects[instance.object].replacement, Replacement::Kept)
+            })
+        };
+        let mut points = vec![self.middle; self.objects.len()];
+        for _ in 0..MOST_STEPS {
+            let next: Vec<DVec2> = (0..points.len())
+                .map(|object| match fertile(object).next() {
+                    Some(first) => first.frame.map.transform_point2(points[first.object]),
+                    None => points[object],
+                })
+                .collect();
+            if next == points {
+                break;
+            }
+            points = next;
+        }
+        let inside = |instance: &Instance| {
+            let point = points[instance.object];
+            instance.frame.map.transform_point2(point)
+        };
+        let all = 0..points.len();
+        all.map(|object| fertile(object).map(inside).collect())
+            .collect()
     }
 
     fn reach_to(&self, centre: DVec2, own: f64, enough: f64) -> Option<f64> {

@@ -34,6 +34,7 @@ impl Graph {
     fn compile_system(system: &System, tells_last: bool) -> Self {
         let ifs = system.ifs();
         let mut graph = Compiler::new(system, tells_last).run();
+        graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
         let initial = ifs
             .initial()
@@ -50,6 +51,20 @@ impl Graph {
         let size = whole.size().max_element();
         graph.unit = if size > 0.0 { size } else { 1.0 };
         graph
+    }
+}
+
+/// About the middle of what a graph comes to in the limit: that of the box of some points.
+fn middle(graph: &Graph) -> DVec2 {
+    let mut bounds = Bounds::EMPTY;
+    for point in &graph.limit_points()[0] {
+        bounds.add(*point);
+    }
+    let middle = (bounds.min() + bounds.max()) / 2.0;
+    if middle.is_finite() {
+        middle
+    } else {
+        DVec2::ZERO
     }
 }
 

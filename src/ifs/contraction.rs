@@ -20,7 +20,7 @@ pub enum Verdict {
     Contracts,
     /// It does not: applied over and over, the product [`Contraction::word`] does not shrink.
     Diverges,
-    /// Products up to [`Contraction::length`] do not tell.
+    /// Products of up to [`Contraction::length`] maps do not tell.
     Undecided,
 }
 
@@ -40,7 +40,7 @@ pub struct Contraction {
     /// map may follow the last. Where the system diverges, no shorter product does so. Empty where all
     /// products that were formed and can be repeated are nilpotent.
     pub word: Vec<usize>,
-    /// The number of maps in the longest product that was formed.
+    /// All products of up to so many maps were looked at, or need not be.
     pub length: u32,
 }
 
@@ -79,8 +79,8 @@ impl Contraction {
     /// The same from no more than so many products. The lists are in ascending order.
     fn within(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>, products: usize) -> Self {
         let search = Search {
-            matrices: in_best_coordinates(linear),
             all: (0..linear.len()).collect(),
+            matrices: [in_best_coordinates(linear), linear.to_vec()],
             successors,
         };
         search.run(products)
@@ -88,7 +88,8 @@ impl Contraction {
 }
 
 struct Search {
-    matrices: Vec<DMat2>,
+    /// In the coordinates of the norm and in the given ones.
+    matrices: [Vec<DMat2>; 2],
     all: Vec<usize>,
     /// In ascending order.
     successors: Option<Vec<Vec<usize>>>,
@@ -97,16 +98,27 @@ struct Search {
 /// A product that is followed.
 #[derive(Clone, Copy)]
 struct Product {
-    /// Scaled to norm 1.
-    matrix: DMat2,
-    /// The logarithm of the norm.
-    norm: f64,
+    /// In the coordinates of the norm and in the given ones, where eigenvalues keep more digits; both
+    /// to be multiplied by 2 to the power `exponent`.
+    matrices: [DMat2; 2],
+    exponent: i32,
     /// The least norm to the power 1 / length of all its beginnings.
     factor: f64,
     first: usize,
     last: usize,
     /// The product that is one map shorter, among those that were ever followed.
     beginning: Option<usize>,
+}
+
+impl Product {
+    /// A size of the scaled matrix to the power 1 / length.
+    fn root(&self, size: f64, length: u32) -> f64 {
+        if length == 1 {
+            return libm::scalbn(size, self.exponent);
+        }
+        let logarithm = libm::log(size) + f64::from(self.exponent) * std::f64::consts::LN_2;
+        libm::exp(logarithm / f64::from(length))
+    }
 }
 
 /// The closed product with the largest radius so far.
@@ -128,28 +140,29 @@ impl Search {
         let mut followed: Vec<Product> = Vec::new();
         let mut level = 0..0;
         'lengths: loop {
-            length += 1;
+            let longer = length + 1;
             let mut next = Vec::new();
-            let beginnings: Vec<Option<usize>> = match length {
+            let beginnings: Vec<Option<usize>> = match longer {
                 1 => vec![None],
                 _ => level.clone().map(Some).collect(),
             };
             for beginning in beginnings {
                 let before = beginning.map(|index| followed[index]);
                 for &map in self.successors(before.map(|product| product.last)) {
-                    if formed >= budget && length > 1 {
+                    if formed >= budget && longer > 1 {
                         break 'lengths;
                     }
                     formed += 1;
-                    let Some(product) = self.extended(before, beginning, map, length) else {
+                    let Some(product) = self.extended(before, beginning, map, longer) else {
                         continue;
                     };
                     if self.may_follow(map, product.first) {
-                        best.try_product(&product, length);
+                        best.try_product(&product, longer);
                     }
                     next.push(product);
                 }
             }
+            length = longer;
             let bound = best.bound();
             let (kept, short): (Vec<Product>, Vec<Product>) =
                 next.into_iter().partition(|product| product.factor > bound);
@@ -199,24 +212,34 @@ impl Search {
         length: u32,
     ) -> Option<Product> {
         let before = before.unwrap_or(Product {
-            matrix: DMat2::IDENTITY,
-            norm: 0.0,
+            matrices: [DMat2::IDENTITY; 2],
+            exponent: 0,
             factor: f64::INFINITY,
             first: map,
             last: map,
             beginning: None,
         });
-        let matrix = self.matrices[map] * before.matrix;
-        let grown = stretch(matrix);
-        let norm = before.norm + libm::log(grown);
-        (grown != 0.0).then(|| Product {
-            matrix: matrix * (1.0 / grown),
-            norm,
-            factor: libm::exp(norm / f64::from(length)).min(before.factor),
-            first: before.first,
+        let [normed, given] = [0, 1].map(|of| self.matrices[of][map] * before.matrices[of]);
+        let size = stretch(normed);
+        if size < f64::MIN_POSITIVE {
+            return None;
+        }
+        // Long products leave the range of a double; powers of two take no digits.
+        let exponent = if size.is_finite() {
+            libm::ilogb(size)
+        } else {
+            0
+        };
+        let scale = libm::scalbn(1.0, -exponent);
+        let mut product = Product {
+            matrices: [normed * scale, given * scale],
+            exponent: before.exponent + exponent,
             last: map,
             beginning,
-        })
+            ..before
+        };
+        product.factor = product.root(size * scale, length).min(before.factor);
+        Some(product)
     }
 }
 
@@ -229,8 +252,7 @@ fn largest(least: f64, products: &[Product]) -> f64 {
 
 impl Best {
     fn try_product(&mut self, product: &Product, length: u32) {
-        let radius = libm::log(spectral_radius(product.matrix)) + product.norm;
-        let factor = libm::exp(radius / f64::from(length));
+        let factor = product.root(spectral_radius(product.matrices[1]), length);
         // The first of several that are equal but for rounding.
         if factor > self.factor * (1.0 + ROUNDING) {
             *self = Self {

@@ -72,7 +72,7 @@ pub fn interpolate(points: &[DVec2], scales: &[f64]) -> Result<Vec<Map>, Interpo
             pieces,
         });
     }
-    let diverges = |scale: &f64| !(scale.abs() < 1.0);
+    let diverges = |scale: &f64| scale.is_nan() || scale.abs() >= 1.0;
     if let Some(number) = scales.iter().position(diverges) {
         let scale = scales[number];
         return Err(InterpolationError::Scale { number, scale });

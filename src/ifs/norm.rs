@@ -47,7 +47,9 @@ pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
         });
         let found = around.min_by(|a, b| a.0.total_cmp(&b.0));
         match found {
-            Some((less, coordinates)) if less < stretch * (1.0 - 1e-9) => {
+            Some((less, coordinates))
+                if less < stretch * (1.0 - 1e-9) && !coordinates.is_flat() =>
+            {
                 (best, stretch, size) = (coordinates, less, size * 1.5);
             }
             _ => size *= 0.7,
@@ -81,6 +83,11 @@ impl Coordinates {
         }
     }
 
+    /// Whether products would leave the range of a double.
+    fn is_flat(&self) -> bool {
+        !(1e-100..1e100).contains(&self.ratio) || self.shear.abs() > 1e100
+    }
+
     fn applied(&self, matrix: DMat2) -> DMat2 {
         let there = DMat2::from_cols(DVec2::X, DVec2::new(self.shear, self.ratio));
         let back = DVec2::new(-self.shear, 1.0) / self.ratio;
@@ -89,12 +96,13 @@ impl Coordinates {
 
     fn stretch(&self, matrices: &[DMat2]) -> f64 {
         let stretches = matrices.iter().map(|&matrix| stretch(self.applied(matrix)));
-        // What is not a number is no improvement.
-        stretches.fold(
-            0.0,
-            |most, stretch| {
-                if stretch <= most { most } else { stretch }
-            },
-        )
+        let numbers = stretches.map(|stretch| {
+            if stretch.is_nan() {
+                f64::INFINITY
+            } else {
+                stretch
+            }
+        });
+        numbers.fold(0.0, f64::max)
     }
 }

@@ -49,7 +49,7 @@ impl Shape {
     /// An ellipse with its half axes, of which the first is turned by an angle in degrees,
     /// counter-clockwise, from the x axis. `None` if it has no extent.
     ///
-    /// The outline is within 1e-9 of the ellipse, as a multiple of the longer half axis.
+    /// The outline is within 1e-7 of the ellipse, as a multiple of the longer half axis.
     #[must_use]
     pub fn ellipse(centre: DVec2, half_axes: DVec2, angle: f64) -> Option<Self> {
         let (cosine, sine) = (degrees::cos(angle), degrees::sin(angle));
@@ -67,8 +67,8 @@ impl Shape {
     /// Mean and covariance of the uniform distribution: along an open outline by length, within a
     /// closed one by area. `None` if something is not finite or a closed outline has no area.
     ///
-    /// Exact to rounding, but for lengths of curves, where some 9 digits are right unless they have
-    /// sharp bends. A closed outline must not cross itself, else parts count as often as it turns
+    /// Exact to rounding for the outline as it is, but for lengths of curves, where some 9 digits are
+    /// right unless they have sharp bends. A closed outline must not cross itself, else parts count as often as it turns
     /// around them.
     #[must_use]
     pub fn moments(&self) -> Option<Moments> {
@@ -80,7 +80,7 @@ impl Shape {
 }
 
 fn moments(outline: &BaseElement) -> Option<Moments> {
-    let (mut length, mut around) = (Sums::default(), Sums::default());
+    let (mut length, mut around) = (Sums::NONE, Sums::NONE);
     let mut from = outline.start();
     for piece in outline.pieces() {
         let parts = if matches!(piece, Piece::Line(_)) {
@@ -125,7 +125,6 @@ fn at(from: DVec2, piece: &Piece, t: f64) -> (DVec2, DVec2) {
 }
 
 /// The integrals of 1, of the points and of their squares.
-#[derive(Default)]
 struct Sums {
     total: f64,
     first: DVec2,
@@ -133,6 +132,12 @@ struct Sums {
 }
 
 impl Sums {
+    const NONE: Self = Self {
+        total: 0.0,
+        first: DVec2::ZERO,
+        second: DMat2::ZERO,
+    };
+
     fn add(&mut self, point: DVec2, weight: f64) {
         self.total += weight;
         self.first += weight * point;

@@ -232,7 +232,7 @@ fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
 
 /// Cubic Bézier pieces along the circular arc from `from` through `through` to `to`.
 ///
-/// Each spans at most 22.5°, which keeps them within 1e-9 of the radius of the arc. `None` if the
+/// Each spans at most 22.5°, which keeps them within 1e-7 of the radius of the arc. `None` if the
 /// three points lie on a line.
 #[must_use]
 pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {

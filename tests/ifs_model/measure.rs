@@ -84,8 +84,7 @@ fn condensation_sets_count_with_their_weights() {
     assert!((segment.moments.covariance.x_axis.x - expected).abs() < 1e-15);
 }
 
-/// Where f_0 (x → x/2), which may be followed by all, is followed by f_1 (x → x/2 + 1), and that
-/// by f_0 only: m_0 = (2/3 m_0 + 1/3 m_1 …) — with weights π = (2/3, 1/3), m_1 = m_0/2 + 1.
+/// The digraph is not symmetric: map 1 follows map 0 only, and map 2 follows map 1 only.
 #[test]
 fn parts_of_recurrent_systems_follow_the_digraph() {
     let maps = vec![
