@@ -38,6 +38,7 @@
 pub mod build;
 pub mod catalogue;
 pub mod cli;
+pub mod convert;
 pub mod diagnostic;
 mod digraph;
 pub mod document;
@@ -48,6 +49,7 @@ pub mod figure;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
+pub mod heading;
 pub mod ifs;
 pub mod instancing;
 pub mod measure;

@@ -143,7 +143,7 @@ fn shells_learn_commands_options_and_rules() {
         );
     }
     let zsh = printed(&["completions", "zsh"]);
-    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 6);
+    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 9);
 }
 
 #[cfg(target_os = "linux")]

@@ -35,13 +35,16 @@ Examples:
 ";
 
 /// The commands that take a rule, and the argument that is it.
-const OF_RULES: [(&str, &str); 6] = [
+const OF_RULES: [(&str, &str); 9] = [
     ("grow", "rule"),
     ("sheet", "rule"),
     ("show", "rule"),
     ("info", "rule"),
     ("cat", "rule"),
     ("check", "files"),
+    ("convert", "rule"),
+    ("compare", "a"),
+    ("compare", "b"),
 ];
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -114,7 +117,8 @@ fn with_rules_for_zsh(script: &str, rules: &str) -> String {
                  _alternative 'rules:rule:({rules})' 'files:file:_files'\n}}\n\n"
             );
         }
-        let wants_rule = line.contains(":rule -- ") || line.contains(":files -- ");
+        let rules = OF_RULES.map(|(_, argument)| format!(":{argument} -- "));
+        let wants_rule = rules.iter().any(|rule| line.contains(rule));
         let line = match line.strip_suffix(r":_files' \") {
             Some(start) if wants_rule => format!(r"{start}:_kfrac_rules' \"),
             _ => line.to_owned(),

@@ -81,11 +81,11 @@ struct Info<'a> {
 }
 
 #[derive(Serialize)]
-struct Corners {
+pub(super) struct Corners {
     #[serde(serialize_with = "coordinates")]
-    min: [f64; 2],
+    pub(super) min: [f64; 2],
     #[serde(serialize_with = "coordinates")]
-    max: [f64; 2],
+    pub(super) max: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -254,7 +254,7 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
     Some(rows)
 }
 
-fn corners(bounds: &Bounds) -> Corners {
+pub(super) fn corners(bounds: &Bounds) -> Corners {
     Corners {
         min: bounds.min().to_array(),
         max: bounds.max().to_array(),

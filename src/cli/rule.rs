@@ -46,7 +46,7 @@ pub(super) struct RuleArguments {
     pub(super) set: Vec<Setting>,
 }
 
-fn setting(text: &str) -> Result<Setting, String> {
+pub(super) fn setting(text: &str) -> Result<Setting, String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
     let program = Expression::parse(value)
         .and_then(|expression| expression.compile(&Scope::new()))
@@ -124,7 +124,11 @@ impl RuleArguments {
     /// Finds, reads and resolves the rule; warnings are said.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
         let source = open(&self.rule, catalogue)?;
-        let document = Document::read(&source, catalogue)?;
+        self.resolve(Document::read(&source, catalogue)?, quiet)
+    }
+
+    /// Resolves the rule when it has been read.
+    pub(super) fn resolve(&self, document: Document, quiet: bool) -> Result<Loaded, Failure> {
         let name = name_of(&self.rule).to_string_lossy().into_owned();
         for setting in &self.set {
             self.check_setting(setting, &document, &name)?;

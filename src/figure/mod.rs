@@ -1,5 +1,6 @@
 //! Figures about a rule: its components, its approximants side by side.
 
+pub mod difference;
 pub mod rule;
 pub mod sheet;
 mod text;

@@ -216,7 +216,7 @@ impl Graph {
 
     /// Objects that surely draw something at every later level or, for the limit, that are drawn
     /// again and again: those that lead to a visible kept object, or for ever to visible ones.
-    fn alive(&self, limit: bool) -> Vec<bool> {
+    pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
         let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
             Replacement::Fixed(production) => {
                 let seeds = production

@@ -39,6 +39,7 @@ mod measure;
 mod moments;
 mod norm;
 mod shape;
+mod system;
 mod walk;
 
 pub use contraction::{Contraction, Verdict};
@@ -50,6 +51,8 @@ pub use map::{Map, about, axes, complex, complex_conjugate, toward};
 pub use measure::{Measure, Part};
 pub use moments::Moments;
 pub use shape::Shape;
+pub use system::System;
+pub(crate) use system::hull;
 pub use walk::{Choice, Step, Walk};
 
 use crate::geometry::{DAffine2, DVec2};

@@ -1,5 +1,12 @@
-//! Dimensions.
+//! Dimensions and distances.
 
+mod cover;
+mod hausdorff;
+mod nearest;
+mod region;
 mod similarity;
 
+pub use cover::{NoCover, Set, around, cover};
+pub use hausdorff::{Distance, Precision, hausdorff};
+pub use region::TooMany;
 pub use similarity::{Similarity, similarity_dimension};
