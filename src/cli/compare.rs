@@ -10,11 +10,10 @@ use serde::Serialize;
 use crate::catalogue::Catalogue;
 use crate::document::{Document, Setting};
 use crate::figure::difference;
-use crate::geometry::Bounds;
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::measure::{
-    Distance, NoCover, Precision, Set, Similarity, around, cover, hausdorff, similarity_dimension,
+    Distance, NoCover, Precision, Set, Similarity, Subject, hausdorff, similarity_dimension,
 };
 use crate::render::{self, Canvas, RenderError, Size};
 use crate::style::{Colour, Style};
@@ -134,27 +133,24 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             ..Growth::steps(steps)
         }),
     };
-    let explain = |which: usize, error| explain(error, &both[which].loaded);
-    let mut bounds = Vec::new();
-    for (which, one) in both.iter().enumerate() {
-        bounds.push(around(&one.graph, &set).map_err(|error| explain(which, error))?);
-    }
-    let mut all = bounds[0];
-    all.add_all(&bounds[1]);
+    let subject = |which: usize| {
+        let One { loaded, graph } = &both[which];
+        Subject::new(graph, set).map_err(|error| explain(error, loaded))
+    };
+    let subjects = [subject(0)?, subject(1)?];
     let precision = Precision {
         tolerance: arguments.tolerance,
         most_points: arguments.max_points,
     };
-    let graphs = [&both[0].graph, &both[1].graph];
-    let distance = hausdorff(graphs, [&set, &set], &all, &precision)
-        .map_err(|(which, error)| explain(which, error))?;
+    let distance = hausdorff([&subjects[0], &subjects[1]], &precision)
+        .map_err(|(which, error)| explain(error, &both[which].loaded))?;
     let side = |which: usize| {
         let One { loaded, graph } = &both[which];
         let Similarity { value, note } = similarity_dimension(graph);
         Side {
             name: &loaded.name,
             kind: loaded.model.kind().name(),
-            bounds: corners(&bounds[which]),
+            bounds: corners(subjects[which].bounds()),
             dimension: Dimension {
                 similarity: value,
                 note,
@@ -173,7 +169,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     // A picture that cannot be made leaves no result behind that looks as if all were well.
     if let Some(path) = &arguments.output {
-        arguments.draw(path, format, &both, &set, &all)?;
+        arguments.draw(path, format, &both, &subjects)?;
     }
     let text = if arguments.json {
         let json = serde_json::to_string_pretty(&comparison);
@@ -224,15 +220,15 @@ impl Arguments {
         path: &Path,
         format: render::Format,
         both: &[One; 2],
-        set: &Set<'_>,
-        bounds: &Bounds,
+        subjects: &[Subject<'_>; 2],
     ) -> Result<(), Failure> {
         const MARGIN: f64 = 8.0;
-        let canvas = Canvas::fit(bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
+        let mut bounds = *subjects[0].bounds();
+        bounds.add_all(subjects[1].bounds());
+        let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
         let points = |which: usize| {
-            let One { loaded, graph } = &both[which];
-            cover(graph, set, difference::pixel(&canvas), self.max_points)
-                .map_err(|error| explain(error, loaded))
+            let points = subjects[which].cover(difference::pixel(&canvas), self.max_points);
+            points.map_err(|error| explain(error, &both[which].loaded))
         };
         let (first, second) = (points(0)?, points(1)?);
         let options = render::Options {

@@ -15,7 +15,7 @@ use crate::digraph::components;
 use crate::document::node::Value;
 use crate::geometry::{DAffine2, DVec2};
 
-use super::number::{is_same, matrix, point, scale};
+use super::number::{is_same, matrix, point, scale, value};
 use super::shape::set;
 use super::structure::{Placed, Structure};
 use super::{Keeps, Refusal};
@@ -105,7 +105,7 @@ fn of_map(map: &DAffine2) -> Entries {
 
 /// For every map, those that may follow it.
 fn edges(edges: &[[usize; 2]], count: usize) -> Value {
-    let number = |map: usize| Value::Text((map + 1).to_string());
+    let number = |map: usize| value(f64::from(u32::try_from(map + 1).unwrap_or(u32::MAX)));
     let entries = (0..count).fold(Entries::default(), |entries, from| {
         let mut following: Vec<usize> = edges
             .iter()
@@ -228,7 +228,7 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
                     system.maps.push(if is_plain {
                         placed.map
                     } else {
-                        map * vertices[inside].frame.inverse()
+                        settled(map * vertices[inside].frame.inverse())
                     });
                     ends.push((number, inside));
                 }
@@ -255,6 +255,23 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
         system.edges.extend(before.map(|from| [from, to]));
     }
     Ok(system)
+}
+
+/// Without what rounding has left of zeros.
+fn settled(map: DAffine2) -> DAffine2 {
+    const ROUNDING: f64 = 1e-15;
+    let columns = [map.matrix2.x_axis, map.matrix2.y_axis, map.translation];
+    let size = columns.map(|column| column.abs().max_element());
+    let size = size.into_iter().fold(0.0, f64::max);
+    let settle = |value: f64| {
+        if value.abs() <= ROUNDING * size {
+            0.0
+        } else {
+            value
+        }
+    };
+    let [x, y, shift] = columns.map(|column| DVec2::new(settle(column.x), settle(column.y)));
+    DAffine2::from_cols(x, y, shift)
 }
 
 /// The objects that every instance of the scene leads to, with ways to them that can be undone.

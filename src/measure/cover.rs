@@ -1,4 +1,5 @@
-//! Points that stand for a set: none of the set is farther than a radius from them, nor they from it.
+//! Points that stand for a set: none of the set is farther than a radius from them, nor are they from
+//! it.
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 use crate::graph::{Graph, NoLimit, Replacement};
@@ -32,65 +33,76 @@ pub enum Set<'a> {
     Approximant(Growth<'a>),
 }
 
-/// Points no farther than `radius` from a set, such that all of the set is within `radius` of one.
+/// A set of points of the plane: what a graph comes to.
 ///
-/// Closed outlines count with what they enclose. Copies that are smaller than the radius become one
-/// point each; it lies in the middle of a disc that holds the copy.
-///
-/// # Errors
-///
-/// If there is no such set, or if it takes more than `most` points.
-pub fn cover(
-    graph: &Graph,
-    set: &Set<'_>,
-    radius: f64,
-    most: usize,
-) -> Result<Vec<DVec2>, NoCover> {
-    let mut region = Region::new(radius, most);
-    match set {
-        Set::Limit => cover_limit(graph, &mut region)?,
-        Set::Approximant(growth) => {
-            let mut visitor = Approximant {
-                graph,
-                region: &mut region,
-            };
-            walk(graph, growth, &mut visitor).map_err(|error| match error {
-                WalkError::Visitor(error) => NoCover::TooMany(error),
-                other => NoCover::Walk(other),
-            })?;
-        }
-    }
-    if region.points.is_empty() {
-        return Err(NoCover::Nothing);
-    }
-    Ok(region.points)
+/// Closed outlines count with what they enclose.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    graph: &'a Graph,
+    set: Set<'a>,
+    bounds: Bounds,
 }
 
-/// A box that holds a set: the smallest, wherever the graph tells it.
-///
-/// # Errors
-///
-/// If there is no such set.
-pub fn around(graph: &Graph, set: &Set<'_>) -> Result<Bounds, NoCover> {
-    let bounds = match set {
-        Set::Limit => {
-            graph.check_limit_set()?;
-            graph.limit_bounds().unwrap_or_else(|| discs(graph))
-        }
-        Set::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
-            WalkError::TooManyElements { limit } => {
-                NoCover::Walk(WalkError::TooManyElements { limit })
+impl<'a> Subject<'a> {
+    /// The set of a graph.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such set.
+    pub fn new(graph: &'a Graph, set: Set<'a>) -> Result<Self, NoCover> {
+        let bounds = match &set {
+            Set::Limit => {
+                graph.check_limit_set()?;
+                graph.limit_bounds().unwrap_or_else(|| discs(graph))
             }
-            WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
-            WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
-            WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
-            WalkError::Visitor(never) => match never {},
-        })?,
-    };
-    if bounds.is_empty() {
-        return Err(NoCover::Nothing);
+            Set::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
+                WalkError::TooManyElements { limit } => {
+                    NoCover::Walk(WalkError::TooManyElements { limit })
+                }
+                WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
+                WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
+                WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
+                WalkError::Visitor(never) => match never {},
+            })?,
+        };
+        if bounds.is_empty() {
+            return Err(NoCover::Nothing);
+        }
+        Ok(Self { graph, set, bounds })
     }
-    Ok(bounds)
+
+    /// A box that holds the set: the smallest, wherever the graph tells it.
+    #[must_use]
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Points no farther than `radius` from the set, such that all of the set is within `radius` of
+    /// one.
+    ///
+    /// Copies that are smaller than that become one point each, in the middle of a disc that holds
+    /// the copy, and of points that are near each other one is kept.
+    ///
+    /// # Errors
+    ///
+    /// If it takes more than `most` points.
+    pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<DVec2>, NoCover> {
+        let mut region = Region::new(&self.bounds, radius, most);
+        match &self.set {
+            Set::Limit => cover_limit(self.graph, &mut region)?,
+            Set::Approximant(growth) => {
+                let mut visitor = Approximant {
+                    graph: self.graph,
+                    region: &mut region,
+                };
+                walk(self.graph, growth, &mut visitor).map_err(|error| match error {
+                    WalkError::Visitor(error) => NoCover::TooMany(error),
+                    other => NoCover::Walk(other),
+                })?;
+            }
+        }
+        Ok(region.points)
+    }
 }
 
 /// A box around discs that hold what becomes of the initiator.
@@ -116,7 +128,6 @@ fn reaches(graph: &Graph) -> Vec<f64> {
 }
 
 fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
-    graph.check_limit_set()?;
     let alive = graph.alive(true);
     let middle = graph.middle();
     let reaches = reaches(graph);

@@ -1,9 +1,8 @@
 //! The Hausdorff distance of two sets: how far a point of one can be from the other.
 
-use crate::geometry::{Bounds, DVec2};
-use crate::graph::Graph;
+use crate::geometry::DVec2;
 
-use super::cover::{NoCover, Set, cover};
+use super::cover::{NoCover, Subject};
 use super::nearest::Nearest;
 
 /// How exactly a distance is told, and for how much work.
@@ -68,14 +67,13 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// # Errors
 ///
-/// If a set is not there, or cannot be covered even by large discs: the number of the graph, 0 or 1,
-/// and why.
+/// If a set cannot be covered even by large discs: its number, 0 or 1, and why.
 pub fn hausdorff(
-    graphs: [&Graph; 2],
-    sets: [&Set<'_>; 2],
-    bounds: &Bounds,
+    sets: [&Subject<'_>; 2],
     precision: &Precision,
 ) -> Result<Distance, (usize, NoCover)> {
+    let mut bounds = *sets[0].bounds();
+    bounds.add_all(sets[1].bounds());
     let size = bounds.size().max_element();
     let far = bounds.min().abs().max(bounds.max().abs()).max_element();
     let rounding = ROUNDING * far.max(f64::MIN_POSITIVE);
@@ -83,7 +81,7 @@ pub fn hausdorff(
     let wanted = (precision.tolerance * size / 2.0).max(rounding);
     let covers = |radius: f64| -> Result<[Vec<DVec2>; 2], (usize, NoCover)> {
         let cover = |which: usize| {
-            let points = cover(graphs[which], sets[which], radius, precision.most_points);
+            let points = sets[which].cover(radius, precision.most_points);
             points.map_err(|error| (which, error))
         };
         Ok([cover(0)?, cover(1)?])

@@ -6,7 +6,7 @@ mod nearest;
 mod region;
 mod similarity;
 
-pub use cover::{NoCover, Set, around, cover};
+pub use cover::{NoCover, Set, Subject};
 pub use hausdorff::{Distance, Precision, hausdorff};
 pub use region::TooMany;
 pub use similarity::{Similarity, similarity_dimension};

@@ -16,23 +16,23 @@ const FEW: usize = 8;
 impl Nearest {
     pub(super) fn new(mut points: Vec<DVec2>) -> Self {
         let mut by_height = vec![false; points.len()];
-        let mut open = vec![0..points.len()];
-        while let Some(range) = open.pop() {
-            if range.len() <= FEW {
+        let mut open = vec![(0, points.len())];
+        while let Some((start, end)) = open.pop() {
+            if end - start <= FEW {
                 continue;
             }
             let mut bounds = Bounds::EMPTY;
-            let part = &mut points[range.clone()];
+            let part = &mut points[start..end];
             part.iter().for_each(|&point| bounds.add(point));
             let size = bounds.size();
             let is_high = size.y > size.x;
             let key = |point: &DVec2| if is_high { point.y } else { point.x };
             let middle = part.len() / 2;
             part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
-            let middle = range.start + middle;
+            let middle = start + middle;
             by_height[middle] = is_high;
-            open.push(range.start..middle);
-            open.push(middle + 1..range.end);
+            open.push((start, middle));
+            open.push((middle + 1, end));
         }
         Self { points, by_height }
     }

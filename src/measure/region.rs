@@ -14,14 +14,74 @@ pub struct TooMany {
 /// The points of a set, so far.
 pub(super) struct Region {
     pub(super) points: Vec<DVec2>,
+    /// How near points that are added must be to the set, and it to them.
     pub(super) radius: f64,
     most: usize,
-    /// What has been done beside points.
+    /// What has been done, in points that were added or copies that were looked into.
     worked: usize,
+    seen: Option<Seen>,
 }
 
-/// More copies than this, as a multiple of the points that are allowed, are not looked into.
-const WORK_A_POINT: usize = 4;
+/// More is not done, as a multiple of the points that are allowed.
+const WORK_A_POINT: usize = 16;
+
+/// Squares of a grid in which there is a point.
+struct Seen {
+    corner: DVec2,
+    side: f64,
+    columns: usize,
+    bits: Vec<u64>,
+}
+
+impl Seen {
+    /// The side of squares, as a multiple of the radius that remains to points after that.
+    const SIDE: f64 = 0.5;
+    const REST: f64 = 1.0 - Self::SIDE * std::f64::consts::SQRT_2;
+
+    /// Grids of more squares than this are not made: 128 mebibytes.
+    const MOST: f64 = 1e9;
+
+    fn new(bounds: &Bounds, radius: f64) -> Option<Self> {
+        let side = Self::SIDE * radius;
+        let corner = bounds.min() - radius;
+        let counts = ((bounds.size() + 2.0 * radius) / side).ceil() + 1.0;
+        let count = counts.x * counts.y;
+        if count.is_nan() || count > Self::MOST {
+            return None;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the counts are positive and small"
+        )]
+        let [columns, rows] = [counts.x as usize, counts.y as usize];
+        Some(Self {
+            corner,
+            side,
+            columns,
+            bits: vec![0; (columns * rows).div_ceil(64)],
+        })
+    }
+
+    /// Whether a point is the first one in its square.
+    fn is_first(&mut self, point: DVec2) -> bool {
+        let place = (point - self.corner) / self.side;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "casts from floats saturate"
+        )]
+        let [column, row] = [place.x as usize, place.y as usize];
+        let square = row * self.columns + column.min(self.columns - 1);
+        let Some(bits) = self.bits.get_mut(square / 64) else {
+            return true;
+        };
+        let bit = 1 << (square % 64);
+        let is_first = *bits & bit == 0;
+        *bits |= bit;
+        is_first
+    }
+}
 
 /// The radius of a disc about a point that holds an outline.
 pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
@@ -37,21 +97,28 @@ pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
 }
 
 impl Region {
-    pub(super) fn new(radius: f64, most: usize) -> Self {
+    /// No point yet of a set in a box. In the end, none of the set may be farther than `radius` from
+    /// a point, nor any point from the set.
+    pub(super) fn new(bounds: &Bounds, radius: f64, most: usize) -> Self {
+        let seen = Seen::new(bounds, radius);
         Self {
             points: Vec::new(),
-            radius,
+            // A point that is left out is no farther from another than a square is wide.
+            radius: seen.as_ref().map_or(radius, |_| Seen::REST * radius),
             most,
             worked: 0,
+            seen,
         }
     }
 
     pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
-        self.points.push(point);
-        if self.points.len() > self.most {
-            return Err(TooMany { most: self.most });
+        if self.seen.as_mut().is_none_or(|seen| seen.is_first(point)) {
+            self.points.push(point);
+            if self.points.len() > self.most {
+                return Err(TooMany { most: self.most });
+            }
         }
-        Ok(())
+        self.work(1)
     }
 
     pub(super) fn work(&mut self, work: usize) -> Result<(), TooMany> {
@@ -78,13 +145,11 @@ impl Region {
         let mut corners = vec![from];
         for piece in outline.pieces() {
             let piece = piece.transformed(map);
-            let before = self.points.len();
             match piece {
                 Piece::Line(end) => self.add_line(from, end, radius)?,
-                Piece::Cubic(a, b, end) => self.add_curve([from, a, b, end], radius)?,
-            }
-            if matches!(piece, Piece::Cubic(..)) {
-                corners.extend(&self.points[before..]);
+                Piece::Cubic(a, b, end) => {
+                    self.add_curve([from, a, b, end], radius, &mut corners)?;
+                }
             }
             from = piece.end();
             corners.push(from);
@@ -116,7 +181,12 @@ impl Region {
 
     /// Adds points of a cubic Bézier curve, in its order: halves it (de Casteljau) until a disc about
     /// the point in its middle holds all control points, and so the curve.
-    fn add_curve(&mut self, curve: [DVec2; 4], radius: f64) -> Result<(), TooMany> {
+    fn add_curve(
+        &mut self,
+        curve: [DVec2; 4],
+        radius: f64,
+        corners: &mut Vec<DVec2>,
+    ) -> Result<(), TooMany> {
         let mut open = vec![curve];
         while let Some([a, b, c, d]) = open.pop() {
             let (ab, bc, cd) = (a.midpoint(b), b.midpoint(c), c.midpoint(d));
@@ -124,6 +194,7 @@ impl Region {
             let middle = abc.midpoint(bcd);
             let away = [a, b, c, d].map(|point| (point - middle).length());
             if away.into_iter().fold(0.0, f64::max) <= radius {
+                corners.push(middle);
                 self.add(middle)?;
             } else {
                 open.push([middle, bcd, cd, d]);
