@@ -6,7 +6,8 @@
 //! object c, which may follow what the instances in c are. For the union of these to be the scene,
 //! every object has to lie where it first stands in the scene, so its coordinates are those of the
 //! scene: with Q_b the way to object b, the map is Q_b f_e Q_c⁻¹. Every object of the scene has a copy
-//! of what it leads to, and edges lead only inside a copy.
+//! of what it leads to, and edges lead only inside a copy. Shapes that do not follow every map, as
+//! condensation sets do, are maps too: those of a line, or of a triangle, to its halves.
 
 use std::collections::VecDeque;
 
@@ -15,6 +16,7 @@ use crate::digraph::components;
 use crate::document::node::Value;
 use crate::geometry::{DAffine2, DVec2};
 
+use super::copies::with_copies;
 use super::number::{is_same, matrix, point, scale, value};
 use super::shape::set;
 use super::structure::{Placed, Structure};
@@ -41,7 +43,12 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
     }
     let system = match direct(structure) {
         Some(system) => system,
-        None => placed(structure)?,
+        None => match placed(structure) {
+            Err(Refusal::ShapesInPart | Refusal::NoMaps) if keeps == Keeps::Limit => {
+                placed(&with_copies(structure)?)?
+            }
+            system => system?,
+        },
     };
     let maps = sequence(system.maps.iter().map(|map| of_map(map).value()));
     let sets: Result<Vec<_>, _> = system

@@ -9,6 +9,7 @@
 //! outlines belong to it with what they enclose. Weights, tints and the order of traversal are not
 //! part of the set and are left behind where the other kind has nothing like them.
 
+mod copies;
 mod ifs;
 mod instancing;
 mod number;
