@@ -38,7 +38,7 @@ struct State {
 struct Reach {
     spread: f64,
     ratio: f64,
-    /// In systems, what is known of every object instead.
+    /// Where ratios do not tell it, what is known of every object instead.
     discs: Option<Discs>,
     /// Objects that surely draw something.
     alive: Vec<bool>,
@@ -143,7 +143,9 @@ impl Graph {
         let reach = Reach {
             spread,
             ratio,
-            discs: self.affine.then(|| self.discs(&pad)).flatten(),
+            discs: (self.affine || ratio >= 1.0)
+                .then(|| self.discs(&pad))
+                .flatten(),
             alive: self.alive(steps.is_none()),
             pads: self.objects.iter().map(pad).collect(),
         };

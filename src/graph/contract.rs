@@ -12,8 +12,8 @@ const MOST_PRODUCTS: usize = 100_000;
 const SHORT_ENOUGH: [f64; 3] = [0.5, 0.9, 0.999];
 
 impl Graph {
-    /// Whether fertile elements become smaller than any length, by the maps of instances alone or,
-    /// in systems, by their products.
+    /// Whether fertile elements become smaller than any length, by the maps of instances alone or by
+    /// their products.
     #[must_use]
     pub fn contracts(&self) -> bool {
         self.longest_ratio() < 1.0 || self.reach_by_products(DVec2::ZERO, 0.0).is_some()
@@ -27,11 +27,14 @@ impl Graph {
     /// Every path of instances begins with a product that stretches by some ratio r < 1 at most. With
     /// s the farthest that a beginning of such a product leads, all lies within s / (1 - r).
     pub(super) fn reach_by_products(&self, centre: DVec2, own: f64) -> Option<f64> {
-        if !self.affine || self.longest_ratio() < 1.0 {
+        if self.longest_ratio() < 1.0 {
             return None;
         }
         if let Some(reach) = self.reach_by_weights(centre, own) {
             return Some(reach);
+        }
+        if !self.affine {
+            return None;
         }
         let reach = SHORT_ENOUGH.map(|enough| move || self.reach_to(centre, own, enough));
         reach.into_iter().find_map(|reach| reach())
