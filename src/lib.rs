@@ -17,12 +17,13 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   similarity dimension
+//!     ├── measure   similarity dimension, Hausdorff distance
+//!     ├── convert   the same set as a file of another kind
 //!     │  grow       a depth-first walk
 //!     ▼
 //!  elements, in order, streamed
 //!     ├── render    pictures: SVG, PNG; estimate: how large they will be
-//!     ├── figure    figures: the rule itself, approximants side by side
+//!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables: CSV, JSON
 //! ```
 //!

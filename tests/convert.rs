@@ -233,6 +233,55 @@ fn a_recurrent_system_becomes_objects_and_a_system_again() {
     assert_eq!(first.ifs().condensation(), second.ifs().condensation());
 }
 
+/// Converts to a system, which must be the same to a hundredth.
+fn as_system(text: &str) -> String {
+    let written = converted(text, Kind::Ifs, Keeps::Limit).unwrap();
+    let graphs = [text, &written].map(|text| model(&document_of(text)).compile(64).unwrap());
+    let [a, b] = [0, 1].map(|which| Subject::new(&graphs[which], Set::Limit).unwrap());
+    let precision = Precision {
+        tolerance: 0.01,
+        ..Precision::default()
+    };
+    let distance = hausdorff([&a, &b], &precision).unwrap();
+    assert!(distance.may_be_same(), "{distance:?}\n{written}");
+    assert!(distance.error < 0.1, "{distance:?}");
+    written
+}
+
+#[test]
+fn shapes_that_are_not_everywhere_become_copies_of_themselves() {
+    // Two trunks, each with a tree of its own: lines are two halves each.
+    let forest = TREE.replace("[[1, 1], [1, 3]]", "[[1, 1], [1, 3], [2, 3]]");
+    let written = as_system(&forest);
+    assert!(!written.contains("condensation"), "{written}");
+    // A polygon with a notch, which does not follow the map: triangles are four quarters each.
+    let notched = "\
+kind: instancing
+objects:
+  A:
+    - {object: A, scale: 1/2}
+    - {object: A, scale: 1/3, translate: [2, 0]}
+    - {segment: [[0, 0], [0, 1]]}
+    - {point: [-1, -1]}
+scene: [A, {polygon: [[3, 0], [5, 0], [5, 2], [4, 0.5], [3, 2]]}]
+";
+    assert!(as_system(notched).contains("-0.5"));
+}
+
+#[test]
+fn a_disk_is_an_ellipse_under_any_map() {
+    let disk = "\
+kind: instancing
+objects:
+  A:
+    - {object: A, scale: 1/2}
+    - {disk: {radius: 1}, matrix: [[1, 0.5], [0, 0.5]], translate: [1, 0]}
+scene: [A]
+";
+    let written = as_system(disk);
+    assert!(written.contains("  - ellipse:"), "{written}");
+}
+
 #[test]
 fn what_cannot_be_written_is_refused_with_the_reason() {
     let shear = "kind: ifs\nmaps:\n  - {scale: 1/2}\n  - {scale: [1/2, 1/4], shift: [1/2, 0]}\n";

@@ -96,7 +96,9 @@ fn with_values(command: Command, name: &str, argument: &str, values: Vec<String>
 
 /// With rules beside files.
 fn with_rules_for_fish(mut script: String, rules: &str) -> String {
-    for (command, _) in OF_RULES {
+    let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
+    commands.dedup();
+    for command in commands {
         // Writing to a string does not fail.
         let _ = writeln!(
             script,

@@ -1,19 +1,20 @@
 //! Straight shapes as unions of smaller copies of themselves.
 //!
-//! A line is two lines of half its length, a triangle four triangles: so what a system cannot have as
-//! a condensation set, since those follow every map, it has as maps.
+//! A line is two lines of half its length, a triangle four triangles, and a point a smaller point: so
+//! what a system cannot have as a condensation set, since those follow every map, it has as maps.
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
 use super::Refusal;
+use super::shape::is_point;
 use super::structure::{Placed, Structure};
 
-/// The structure with straight shapes as instances of a line and of a triangle, which are two more
-/// objects that lead back to themselves.
+/// The structure with straight shapes as instances of a line, a triangle and a point, which are three
+/// more objects that lead back to themselves.
 pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
     let line = structure.objects.len();
-    let triangle = line + 1;
+    let (triangle, point) = (line + 1, line + 2);
     let replaced = |all: &[Placed]| -> Result<Vec<Placed>, Refusal> {
         let mut made = Vec::new();
         for placed in all {
@@ -28,7 +29,14 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
             };
             let outline = &structure.shapes[placed.shape];
             let corners = corners(outline)?;
-            if outline.is_closed() {
+            if is_point(outline) {
+                let at = placed.map.transform_point2(outline.start());
+                made.push(Placed {
+                    map: DAffine2::from_translation(at),
+                    object: Some(point),
+                    ..placed.clone()
+                });
+            } else if outline.is_closed() {
                 let triangles = triangles(&corners).ok_or(Refusal::ShapesInPart)?;
                 made.extend(
                     triangles
@@ -66,6 +74,7 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
         copy(triangle, 0.5, [0.0, 0.5]),
         copy(triangle, -0.5, [0.5, 0.5]),
     ]);
+    objects.push(vec![copy(point, 0.5, [0.0, 0.0])]);
     Ok(Structure {
         shapes: structure.shapes.clone(),
         objects,

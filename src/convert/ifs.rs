@@ -139,7 +139,7 @@ fn direct(structure: &Structure) -> Option<System> {
     let mut all: Vec<usize> = objects.iter().filter_map(|placed| placed.object).collect();
     all.sort_unstable();
     let each_once = all.iter().copied().eq(0..structure.objects.len());
-    if !each_once || !objects.iter().all(is_here) {
+    if all.is_empty() || !each_once || !objects.iter().all(is_here) {
         return None;
     }
     let mut system = System {

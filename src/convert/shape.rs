@@ -60,6 +60,14 @@ pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refu
     })
 }
 
+/// Whether an outline stands for a point: is the shortest line that there is.
+pub(super) fn is_point(outline: &BaseElement) -> bool {
+    let start = outline.start();
+    let small = POINT * (1.0 + start.abs().max_element());
+    let mut ends = outline.pieces().iter().map(Piece::end);
+    ends.all(|end| (end - start).abs().max_element() <= small)
+}
+
 /// The map of the unit disc to an outline, if that is an ellipse.
 fn ellipse(outline: &BaseElement) -> Option<DAffine2> {
     const ROUNDING: f64 = 1e-12;

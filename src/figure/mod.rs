@@ -1,4 +1,4 @@
-//! Figures about a rule: its components, its approximants side by side.
+//! Figures about a rule: its components, its approximants side by side, how it differs from another.
 
 pub mod difference;
 pub mod rule;

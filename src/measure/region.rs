@@ -34,8 +34,9 @@ struct Seen {
 }
 
 impl Seen {
-    /// The side of squares, as a multiple of the radius that remains to points after that.
-    const SIDE: f64 = 0.5;
+    /// The side of squares, as a multiple of the radius, and what is left of that for points: few
+    /// points and few copies to look into.
+    const SIDE: f64 = 0.35;
     const REST: f64 = 1.0 - Self::SIDE * std::f64::consts::SQRT_2;
 
     /// Grids of more squares than this are not made: 128 mebibytes.
