@@ -158,7 +158,7 @@ fn bash_completes() {
         ("kfrac grow koch --palette vi", "viridis"),
         ("kfrac grow koch --cap ''", "round butt square"),
         ("kfrac check hil", "hilbert"),
-        ("kfrac man comp", "completions"),
+        ("kfrac man compl", "completions"),
         ("kfrac grow no-such-rule", ""),
     ] {
         let ask = format!(

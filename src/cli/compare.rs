@@ -64,9 +64,10 @@ pub(super) struct Arguments {
     background: Option<Colour>,
     /// As JSON
     ///
-    /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension (similarity, note); steps is null for
-    /// limit sets; distance, a_to_b and b_to_a (the farthest that a point of one set is from the other)
-    /// are right to within error; same tells whether distance is no more than that.
+    /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension
+    /// (similarity, note); steps is null for limit sets; distance, a_to_b and b_to_a (the farthest that
+    /// a point of one set is from the other) are right to within error; same tells whether distance is
+    /// no more than that.
     #[arg(long)]
     json: bool,
     /// Says nothing but the result and what is wrong
