@@ -77,8 +77,8 @@ pub(super) struct Arguments {
 
 const MORE: &str = "\
 Examples:
-  kfrac compare dragon twindragon
-      Says how far apart two dragons are
+  kfrac compare dragon twindragon --tolerance 0.01
+      Says how far apart two dragons are, to a hundredth of their size
   kfrac compare koch koch-quadratic -o difference.png
       Draws as well what is in one of them only
   kfrac compare koch koch-snowflake --steps 4 --json
