@@ -7,14 +7,12 @@
 )]
 
 use std::num::NonZero;
-use std::sync::Arc;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
 use kfrac::geometry::{DAffine2, DVec2};
-use kfrac::graph::Graph;
 use kfrac::measure::{Bits, BoxCounting, Grid, LimitSet, counts};
 
 fn main() {
@@ -87,11 +85,11 @@ fn ten_million_points(bencher: Bencher, levels: u32) {
 fn limit_set(bencher: Bencher, name: &str) {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
-    let (rule, _) = Document::read(&source, &catalogue)
+    let (model, _) = Document::read(&source, &catalogue)
         .unwrap()
         .resolve(&[])
         .unwrap();
-    let graph = Graph::compile(&Arc::new(rule), 20).unwrap();
+    let graph = model.compile(20).unwrap();
     let set = LimitSet::of(&graph).unwrap();
     let grids = Grid::spread(NonZero::new(8).unwrap());
     let one = NonZero::<usize>::MIN;

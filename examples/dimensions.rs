@@ -9,13 +9,11 @@
 
 use std::error::Error;
 use std::num::NonZero;
-use std::sync::Arc;
 use std::time::Instant;
 
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::Diagnostics;
 use kfrac::document::Document;
-use kfrac::graph::Graph;
 use kfrac::measure::{BoxCounting, Grid, LimitSet, similarity_dimension};
 use kfrac::parallel::all_cores;
 
@@ -35,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let entries = catalogue.entries();
     for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
         let source = catalogue.rule(&entry.name).map_err(Diagnostics::from)?;
-        let (rule, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
-        let graph = Graph::compile(&Arc::new(rule), 64)?;
+        let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
+        let graph = model.compile(64)?;
         let start = Instant::now();
         let known = OVERLAPPING.iter().find(|(name, _)| *name == entry.name);
         let exact = known.map(|(_, exact)| *exact);

@@ -17,12 +17,13 @@
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   dimensions: exactly where they can be, and by boxes
+//!     ├── measure   dimensions: exactly where they can be, and by boxes; distances
+//!     ├── convert   the same set as a file of another kind
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
 //!     ├── render    pictures: SVG, PNG; estimate: how large they will be
-//!     ├── figure    figures: the rule itself, approximants side by side
+//!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables: CSV, JSON
 //! ```
 //!
@@ -45,6 +46,7 @@ pub mod build;
 pub mod catalogue;
 pub mod chaos;
 pub mod cli;
+pub mod convert;
 pub mod diagnostic;
 mod digraph;
 pub mod document;

@@ -9,11 +9,9 @@ mod common;
 mod laws;
 
 use std::num::NonZero;
-use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::graph::Graph;
 use kfrac::measure::{Bits, BoxCounting, Estimate, Grid, LimitSet, Masses, NoLimit};
 
 fn number(number: usize) -> NonZero<usize> {
@@ -131,11 +129,11 @@ fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
 fn limit(name: &str) -> Result<LimitSet, NoLimit> {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
-    let (rule, _) = Document::read(&source, &catalogue)
+    let (model, _) = Document::read(&source, &catalogue)
         .unwrap()
         .resolve(&[])
         .unwrap();
-    LimitSet::of(&Graph::compile(&Arc::new(rule), 20).unwrap())
+    LimitSet::of(&model.compile(20).unwrap())
 }
 
 /// The sizes at which a debug build is quick.

@@ -143,7 +143,7 @@ fn shells_learn_commands_options_and_rules() {
         );
     }
     let zsh = printed(&["completions", "zsh"]);
-    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 7);
+    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 11);
 }
 
 #[cfg(target_os = "linux")]
@@ -158,7 +158,7 @@ fn bash_completes() {
         ("kfrac grow koch --palette vi", "viridis"),
         ("kfrac grow koch --cap ''", "round butt square"),
         ("kfrac check hil", "hilbert"),
-        ("kfrac man comp", "completions"),
+        ("kfrac man compl", "completions"),
         ("kfrac grow no-such-rule", ""),
     ] {
         let ask = format!(

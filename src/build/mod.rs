@@ -59,7 +59,7 @@
 mod elements;
 mod generator;
 mod number;
-mod written;
+pub(crate) mod written;
 
 pub use elements::{Element, Elements};
 pub use generator::{Generator, Move};

@@ -7,7 +7,7 @@ use super::written;
 
 /// A number: a value, or an expression as text.
 #[derive(Clone, Debug)]
-pub struct Number(pub(super) Value);
+pub struct Number(pub(crate) Value);
 
 impl From<f64> for Number {
     fn from(value: f64) -> Self {
@@ -43,7 +43,7 @@ impl From<String> for Number {
 
 /// A point: two numbers, to the right and upwards.
 #[derive(Clone, Debug)]
-pub struct Point(pub(super) Value);
+pub struct Point(pub(crate) Value);
 
 impl<X: Into<Number>, Y: Into<Number>> From<(X, Y)> for Point {
     fn from((x, y): (X, Y)) -> Self {

@@ -9,11 +9,11 @@ use super::{Number, Point};
 
 /// A mapping that is being written.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Entries(Vec<(Key, Node)>);
+pub(crate) struct Entries(Vec<(Key, Node)>);
 
 impl Entries {
     /// With a key's value, in the place of another that it may have.
-    pub(super) fn set(mut self, key: &str, value: Value) -> Self {
+    pub(crate) fn set(mut self, key: &str, value: Value) -> Self {
         let node = Node::from(value);
         match self.0.iter_mut().find(|(known, _)| known.name == key) {
             Some((_, old)) => *old = node,
@@ -22,7 +22,7 @@ impl Entries {
         self
     }
 
-    pub(super) fn set_some(self, key: &str, value: Option<Value>) -> Self {
+    pub(crate) fn set_some(self, key: &str, value: Option<Value>) -> Self {
         match value {
             Some(value) => self.set(key, value),
             None => self,
@@ -30,18 +30,18 @@ impl Entries {
     }
 
     /// With a name that must not be there: if it is, the reader of the file says so.
-    pub(super) fn add(mut self, name: impl Into<String>, value: Value) -> Self {
+    pub(crate) fn add(mut self, name: impl Into<String>, value: Value) -> Self {
         self.0.push((Key::new(name), value.into()));
         self
     }
 
     /// With the entries of another mapping behind its own.
-    pub(super) fn and(mut self, other: Self) -> Self {
+    pub(crate) fn and(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
@@ -55,16 +55,16 @@ impl Entries {
         self
     }
 
-    pub(super) fn value(self) -> Value {
+    pub(crate) fn value(self) -> Value {
         Value::Mapping(self.0)
     }
 }
 
-pub(super) fn sequence(values: impl IntoIterator<Item = Value>) -> Value {
+pub(crate) fn sequence(values: impl IntoIterator<Item = Value>) -> Value {
     Value::Sequence(values.into_iter().map(Node::from).collect())
 }
 
-pub(super) fn base_element(element: &BaseElement) -> Value {
+pub(crate) fn base_element(element: &BaseElement) -> Value {
     let start = element.start();
     let mut pieces = element.pieces();
     // The last side of a polygon is what `closed` says.
@@ -88,7 +88,7 @@ pub(super) fn base_element(element: &BaseElement) -> Value {
         .value()
 }
 
-pub(super) fn description(entries: Entries, description: &Description) -> Entries {
+pub(crate) fn description(entries: Entries, description: &Description) -> Entries {
     let Description {
         title,
         about,
@@ -105,7 +105,7 @@ pub(super) fn description(entries: Entries, description: &Description) -> Entrie
 }
 
 /// What of a style is not as it is if nothing is said.
-pub(super) fn style(style: &Style) -> Entries {
+pub(crate) fn style(style: &Style) -> Entries {
     let entries = |style: &Style| {
         let colour = |colour: Option<Colour>| colour.map(colour_text);
         let width = match style.width {
@@ -141,7 +141,7 @@ fn palette(palette: &Palette) -> Value {
 }
 
 /// What of a view is not as it is if nothing is said.
-pub(super) fn view(view: &View) -> Entries {
+pub(crate) fn view(view: &View) -> Entries {
     let number = |value| Number::from(value).0;
     let entries = |view: &View| {
         let window = view.window.map(|window| sequence(window.map(number)));

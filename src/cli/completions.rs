@@ -35,7 +35,7 @@ Examples:
 ";
 
 /// The commands that take a rule, and the argument that is it.
-const OF_RULES: [(&str, &str); 8] = [
+const OF_RULES: [(&str, &str); 11] = [
     ("grow", "rule"),
     ("sheet", "rule"),
     ("show", "rule"),
@@ -44,6 +44,9 @@ const OF_RULES: [(&str, &str); 8] = [
     ("dim", "rule"),
     ("cat", "rule"),
     ("check", "files"),
+    ("convert", "rule"),
+    ("compare", "a"),
+    ("compare", "b"),
 ];
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -97,7 +100,9 @@ fn with_values(command: Command, name: &str, argument: &str, values: Vec<String>
 
 /// With rules beside files.
 fn with_rules_for_fish(mut script: String, rules: &str) -> String {
-    for (command, _) in OF_RULES {
+    let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
+    commands.dedup();
+    for command in commands {
         // Writing to a string does not fail.
         let _ = writeln!(
             script,
@@ -118,7 +123,8 @@ fn with_rules_for_zsh(script: &str, rules: &str) -> String {
                  _alternative 'rules:rule:({rules})' 'files:file:_files'\n}}\n\n"
             );
         }
-        let wants_rule = line.contains(":rule -- ") || line.contains(":files -- ");
+        let rules = OF_RULES.map(|(_, argument)| format!(":{argument} -- "));
+        let wants_rule = rules.iter().any(|rule| line.contains(rule));
         let line = match line.strip_suffix(r":_files' \") {
             Some(start) if wants_rule => format!(r"{start}:_kfrac_rules' \"),
             _ => line.to_owned(),

@@ -87,9 +87,9 @@ struct Info<'a> {
 #[derive(Serialize)]
 pub(super) struct Corners {
     #[serde(serialize_with = "coordinates")]
-    min: [f64; 2],
+    pub(super) min: [f64; 2],
     #[serde(serialize_with = "coordinates")]
-    max: [f64; 2],
+    pub(super) max: [f64; 2],
 }
 
 /// To twelve decimals.

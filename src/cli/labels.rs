@@ -34,6 +34,26 @@ pub(super) fn labels(
     }
 }
 
+/// The same of a picture of two: the values of the parameters and the rules with all their components.
+pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
+    let mut provenance = format!("# kfrac {}\n", env!("CARGO_PKG_VERSION"));
+    for loaded in [a, b] {
+        provenance.push_str(&format!("---\n# {}\n", quoted(&loaded.name)));
+        for parameter in &loaded.model.heading().parameters {
+            provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
+        }
+        provenance.push_str(&loaded.document.to_yaml());
+    }
+    render::Labels {
+        title: format!("{} and {}", a.name, b.name),
+        description: format!(
+            "The difference of two sets. Orange: {} alone. Blue: {} alone. Grey: both.",
+            a.name, b.name
+        ),
+        provenance,
+    }
+}
+
 /// The command that makes the picture again from the rule as resolved.
 fn command(
     loaded: &Loaded,

@@ -2,7 +2,9 @@
 
 mod cat;
 mod check;
+mod compare;
 mod completions;
+mod convert;
 mod count;
 mod dim;
 mod family;
@@ -65,6 +67,8 @@ enum Command {
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
+    Convert(convert::Arguments),
+    Compare(compare::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
     Schema(schema::Arguments),
@@ -186,6 +190,8 @@ pub fn run() -> ExitCode {
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
+        Command::Convert(arguments) => convert::run(arguments, &catalogue),
+        Command::Compare(arguments) => compare::run(arguments, &catalogue),
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),

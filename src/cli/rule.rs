@@ -167,7 +167,8 @@ impl RuleArguments {
         members.collect()
     }
 
-    fn resolve(
+    /// Resolves the rule when it has been read.
+    pub(super) fn resolve(
         &self,
         document: Document,
         settings: Vec<Setting>,

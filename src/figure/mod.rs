@@ -1,5 +1,6 @@
-//! Figures about a rule: its components, its approximants side by side.
+//! Figures about a rule: its components, its approximants side by side, how it differs from another.
 
+pub mod difference;
 pub mod dimension;
 pub mod rule;
 pub mod sheet;

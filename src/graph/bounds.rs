@@ -38,7 +38,7 @@ struct State {
 struct Reach {
     spread: f64,
     ratio: f64,
-    /// In systems, what is known of every object instead.
+    /// Where ratios do not tell it, what is known of every object instead.
     discs: Option<Discs>,
     /// Objects that surely draw something.
     alive: Vec<bool>,
@@ -143,7 +143,9 @@ impl Graph {
         let reach = Reach {
             spread,
             ratio,
-            discs: self.affine.then(|| self.discs(&pad)).flatten(),
+            discs: (self.affine || ratio >= 1.0)
+                .then(|| self.discs(&pad))
+                .flatten(),
             alive: self.alive(steps.is_none()),
             pads: self.objects.iter().map(pad).collect(),
         };
@@ -213,7 +215,7 @@ impl Graph {
 
     /// Objects that surely draw something at every later level or, for the limit, that are drawn
     /// again and again: those that lead to a visible kept object, or for ever to visible ones.
-    fn alive(&self, limit: bool) -> Vec<bool> {
+    pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
         let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
             Replacement::Fixed(production) => {
                 let seeds = production

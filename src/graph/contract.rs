@@ -12,8 +12,8 @@ const MOST_PRODUCTS: usize = 100_000;
 const SHORT_ENOUGH: [f64; 3] = [0.5, 0.9, 0.999];
 
 impl Graph {
-    /// Whether fertile elements become smaller than any length, by the maps of instances alone or,
-    /// in systems, by their products.
+    /// Whether fertile elements become smaller than any length, by the maps of instances alone or by
+    /// their products.
     #[must_use]
     pub fn contracts(&self) -> bool {
         self.longest_ratio() < 1.0 || self.reach_by_products(DVec2::ZERO, 0.0).is_some()
@@ -27,11 +27,61 @@ impl Graph {
     /// Every path of instances begins with a product that stretches by some ratio r < 1 at most. With
     /// s the farthest that a beginning of such a product leads, all lies within s / (1 - r).
     pub(super) fn reach_by_products(&self, centre: DVec2, own: f64) -> Option<f64> {
-        if !self.affine || self.longest_ratio() < 1.0 {
+        if self.longest_ratio() < 1.0 {
+            return None;
+        }
+        if let Some(reach) = self.reach_by_weights(centre, own) {
+            return Some(reach);
+        }
+        if !self.affine {
             return None;
         }
         let reach = SHORT_ENOUGH.map(|enough| move || self.reach_to(centre, own, enough));
         reach.into_iter().find_map(|reach| reach())
+    }
+
+    /// The same where every way that leads back to its object shrinks by what its single maps stretch,
+    /// as in structures whose objects are drawn to scales of their own: with weights u such that no
+    /// instance stretches by more than λ u(o) / u(c) from its object c to the one o that it is in,
+    /// λ < 1. They are the largest products of stretches over λ along any way (Bellman 1958).
+    fn reach_by_weights(&self, centre: DVec2, own: f64) -> Option<f64> {
+        const FACTORS: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
+        let fertile = |object: usize| {
+            let children = self.children(object).map(|(_, instance)| instance);
+            children.filter(|instance| {
+                !matches!(self.objects[instance.object].replacement, Replacement::Kept)
+            })
+        };
+        let count = self.objects.len();
+        let weights = |factor: f64| {
+            let mut weights = vec![1.0f64; count];
+            for _ in 0..=count {
+                let mut changes = false;
+                for object in (0..count).rev() {
+                    let grown = fertile(object)
+                        .map(|instance| instance.length / factor * weights[instance.object]);
+                    let most = grown.fold(weights[object], f64::max);
+                    changes |= most > weights[object];
+                    weights[object] = most;
+                }
+                if !changes {
+                    return Some((factor, weights));
+                }
+                if weights.iter().any(|weight| *weight > 1e100) {
+                    break;
+                }
+            }
+            None
+        };
+        let (factor, weights) = FACTORS.into_iter().find_map(weights)?;
+        let away = |object: usize| {
+            let away = fertile(object)
+                .map(|instance| (instance.frame.map.transform_point2(centre) - centre).length());
+            away.fold(0.0, f64::max) + own
+        };
+        let far = (0..count).map(|object| away(object) / weights[object]);
+        let longest = weights.iter().copied().fold(0.0, f64::max);
+        Some(far.fold(0.0, f64::max) / (1.0 - factor) * longest)
     }
 
     /// Points of what every object comes to in the limit, if it contracts: a point inside each of the

@@ -20,6 +20,7 @@ mod forecast;
 mod ifs;
 mod instancing;
 mod limit;
+mod no_limit;
 mod reach;
 mod state;
 
@@ -27,6 +28,7 @@ pub use count::Count;
 pub use error::CompileError;
 pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
+pub use no_limit::NoLimit;
 
 use std::sync::Arc;
 

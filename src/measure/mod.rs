@@ -4,7 +4,8 @@
 //! plane, and the [`LimitSet`] of a graph, with nothing drawn in between (or what is [`grown`] of it,
 //! where maps are drawn by chance). Every size of boxes is counted on several [`Grid`]s, of which the
 //! least cover counts. [`BoxCounting`] is the slope of the counts with its error and its evidence;
-//! [`Masses`] tell the other dimensions D_q, and lacunarity.
+//! [`Masses`] tell the other dimensions D_q, and lacunarity. [`hausdorff`] tells how far two sets are
+//! apart.
 //!
 //! The axes are those of the sets: x to the right and y up, but rows of pictures from the top down.
 //!
@@ -13,6 +14,7 @@
 mod bits;
 mod box_counting;
 mod cover;
+mod distance;
 pub mod exact;
 mod grown;
 mod limit;
@@ -25,6 +27,7 @@ mod similarity;
 pub use bits::Bits;
 pub use box_counting::{BoxCounting, Boxes, Window};
 pub use cover::{Grid, Scale};
+pub use distance::{Distance, NoCover, Precision, Set, Subject, TooMany, hausdorff};
 pub use grown::{Grown, grown};
 pub use limit::{LimitSet, NoLimit};
 pub use mass::{Generalised, Lacunarity, Masses};

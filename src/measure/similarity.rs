@@ -51,7 +51,7 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     let Some(edges) = edges else {
         return Similarity::none("there is no limit set: seeds are placed as the initiator");
     };
-    if edges.iter().any(|edge| edge.ratio >= 1.0) {
+    if !graph.contracts() {
         return Similarity::none("there is no limit set: a generator does not shrink");
     }
     // The spectral radius of the whole is the largest of those of its strongly connected parts.

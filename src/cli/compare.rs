@@ -1,0 +1,350 @@
+//! `kfrac compare`: whether two fractals are the same.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use clap::ValueHint;
+use serde::Serialize;
+
+use crate::catalogue::Catalogue;
+use crate::document::{Document, Setting};
+use crate::figure::difference;
+use crate::graph::Graph;
+use crate::grow::{Growth, WalkError};
+use crate::measure::{
+    Distance, NoCover, Precision, Set, Similarity, Subject, hausdorff, similarity_dimension,
+};
+use crate::render::{self, Canvas, RenderError, Size};
+use crate::style::{Colour, Style};
+use crate::wording;
+
+use super::family::{Assignment, assignment};
+use super::info::{Corners, corners};
+use super::labels::labels_of_two;
+use super::rule::{self, Loaded, RuleArguments};
+use super::{Failure, format, help, output, picture, steps, stop, text};
+
+/// Says whether two fractals are the same: how far apart their limit sets are
+///
+/// The Hausdorff distance is the farthest that a point of one set is from the other. It is told with a
+/// bound of its error; two sets are the same, as far as can be told, if it is not more than that.
+/// Closed outlines count with what they enclose. The exit status is 0 whether or not they are.
+#[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
+pub(super) struct Arguments {
+    /// A rule file, the name of a rule in the library, or - for standard input
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// What to compare it with, likewise
+    #[arg(value_name = "B")]
+    b: PathBuf,
+    /// Sets a parameter of A and of B, of whichever has it; it may be given several times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    set: Vec<Assignment>,
+    /// Compares what this step draws, not the limit sets
+    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
+    steps: Option<u32>,
+    /// The error of the distance, as a multiple of the size of the larger set
+    #[arg(long, value_name = "E", default_value = "0.001", value_parser = tolerance)]
+    tolerance: f64,
+    /// The most points that may stand for each set; with too few, the error is larger
+    #[arg(long, value_name = "N", default_value_t = 4_000_000)]
+    max_points: usize,
+    /// A picture of the difference: A alone is orange, B alone blue, both grey
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
+    /// The format of the picture [default: from the extension of the file]
+    #[arg(long, value_parser = picture::named::<render::Format>())]
+    format: Option<render::Format>,
+    /// The long side of the picture in pixels, or WIDTHxHEIGHT
+    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = picture::size)]
+    size: Size,
+    /// The colour behind the picture
+    #[arg(long, value_name = "COLOR", value_parser = picture::colour)]
+    background: Option<Colour>,
+    /// As JSON
+    ///
+    /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension
+    /// (similarity, note); steps is null for limit sets; distance, a_to_b and b_to_a (the farthest that
+    /// a point of one set is from the other) are right to within error; same tells whether distance is
+    /// no more than that.
+    #[arg(long)]
+    json: bool,
+    /// Says nothing but the result and what is wrong
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac compare dragon twindragon --tolerance 0.01
+      Says how far apart two dragons are, to a hundredth of their size
+  kfrac compare koch koch-quadratic -o difference.png
+      Draws as well what is in one of them only
+  kfrac compare koch koch-snowflake --steps 4 --json
+      Compares approximants, for another program
+";
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(tolerance) if (1e-9..=1.0).contains(&tolerance) => Ok(tolerance),
+        _ => Err("this is a number from 1e-9 to 1".into()),
+    }
+}
+
+#[derive(Serialize)]
+struct Comparison<'a> {
+    a: Side<'a>,
+    b: Side<'a>,
+    steps: Option<u32>,
+    distance: f64,
+    error: f64,
+    a_to_b: f64,
+    b_to_a: f64,
+    same: bool,
+}
+
+#[derive(Serialize)]
+struct Side<'a> {
+    name: &'a str,
+    kind: &'static str,
+    bounds: Corners,
+    dimension: Dimension,
+}
+
+#[derive(Serialize)]
+struct Dimension {
+    similarity: Option<f64>,
+    note: Option<String>,
+}
+
+/// One of the two.
+struct One {
+    loaded: Loaded,
+    graph: Graph,
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let format = format::choose(arguments.format, arguments.output.as_deref())?;
+    let both = arguments.load(catalogue)?;
+    let set = match arguments.steps {
+        None => Set::Limit,
+        Some(steps) => Set::Approximant(Growth {
+            cancel: Some(stop::flag()),
+            ..Growth::steps(steps)
+        }),
+    };
+    let subject = |which: usize| {
+        let One { loaded, graph } = &both[which];
+        Subject::new(graph, set).map_err(|error| explain(error, loaded))
+    };
+    let subjects = [subject(0)?, subject(1)?];
+    let precision = Precision {
+        tolerance: arguments.tolerance,
+        most_points: arguments.max_points,
+    };
+    let distance = hausdorff([&subjects[0], &subjects[1]], &precision)
+        .map_err(|(which, error)| explain(error, &both[which].loaded))?;
+    let side = |which: usize| {
+        let One { loaded, graph } = &both[which];
+        let Similarity { value, note } = similarity_dimension(graph);
+        Side {
+            name: &loaded.name,
+            kind: loaded.model.kind().name(),
+            bounds: corners(subjects[which].bounds()),
+            dimension: Dimension {
+                similarity: value,
+                note,
+            },
+        }
+    };
+    let comparison = Comparison {
+        a: side(0),
+        b: side(1),
+        steps: arguments.steps,
+        distance: distance.value(),
+        error: distance.error,
+        a_to_b: distance.there,
+        b_to_a: distance.back,
+        same: distance.may_be_same(),
+    };
+    // A picture that cannot be made leaves no result behind that looks as if all were well.
+    if let Some(path) = &arguments.output {
+        arguments.draw(path, format, &both, &subjects)?;
+    }
+    let text = if arguments.json {
+        let json = serde_json::to_string_pretty(&comparison);
+        format!("{}\n", json.map_err(anyhow::Error::from)?)
+    } else {
+        described(&comparison, &distance)
+    };
+    Ok(output::print(&text)?)
+}
+
+impl Arguments {
+    /// Reads both; every setting is for whichever has the parameter.
+    fn load(&self, catalogue: &Catalogue) -> Result<[One; 2], Failure> {
+        let paths = [&self.a, &self.b];
+        if paths.iter().all(|path| *path == Path::new("-")) {
+            let message = "only one of the two can come from standard input";
+            return Err(Failure::Usage(message.into()));
+        }
+        let read = |path: &Path| -> Result<Document, Failure> {
+            let source = rule::open(path, catalogue)?;
+            Ok(Document::read(&source, catalogue)?)
+        };
+        let documents = [read(paths[0])?, read(paths[1])?];
+        let has = |document: &Document, setting: &Setting| {
+            let mut params = document.heading().params.iter();
+            params.any(|param| param.name.value == setting.name)
+        };
+        let nobody = |setting: &&Setting| !documents.iter().any(|it| has(it, setting));
+        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::setting).collect();
+        let settings = settings?;
+        let lost: Vec<_> = settings.iter().filter(nobody).cloned().collect();
+        let mut both = Vec::new();
+        for (path, document) in paths.into_iter().zip(documents) {
+            let own = settings.iter().filter(|setting| has(&document, setting));
+            let arguments = RuleArguments {
+                rule: path.clone(),
+                set: Vec::new(),
+                omit: Vec::new(),
+            };
+            // What is no parameter of either is told as that of the first.
+            let settings = own.chain(&lost).cloned().collect();
+            let loaded = arguments.resolve(document, settings, self.quiet || self.json)?;
+            let graph = loaded.compile(self.steps.unwrap_or(STEPS))?;
+            both.push(One { loaded, graph });
+        }
+        both.try_into()
+            .map_err(|_| anyhow!("two fractals are compared").into())
+    }
+
+    fn draw(
+        &self,
+        path: &Path,
+        format: render::Format,
+        both: &[One; 2],
+        subjects: &[Subject<'_>; 2],
+    ) -> Result<(), Failure> {
+        const MARGIN: f64 = 8.0;
+        let mut bounds = *subjects[0].bounds();
+        bounds.add_all(subjects[1].bounds());
+        let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
+        let points = |which: usize| {
+            let points = subjects[which].cover(difference::pixel(&canvas), self.max_points);
+            points.map_err(|error| explain(error, &both[which].loaded))
+        };
+        let (first, second) = (points(0)?, points(1)?);
+        let options = render::Options {
+            format,
+            style: Style {
+                background: self.background,
+                ..Style::default()
+            },
+            labels: labels_of_two(&both[0].loaded, &both[1].loaded),
+            ..render::Options::default()
+        };
+        let (pixels, bytes) = output::write(path, true, |out, _| {
+            difference::write(canvas, [&first, &second], &options, out).map_err(|error| match error
+            {
+                RenderError::Io(error) => output::failed(error, path),
+                other => anyhow::Error::new(other).into(),
+            })
+        })?;
+        if !self.quiet {
+            let [width, height] = canvas.size();
+            let [first, second, shared] = pixels.map(|count| wording::grouped(&count.into()));
+            text::say(&format!(
+                "{}: {width} x {height} pixels, {first} of A alone, {second} of B alone, \
+                 {shared} of both, {}",
+                output::called(path),
+                wording::bytes(bytes),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Steps that graphs are compiled for where the limit is asked for.
+const STEPS: u32 = 64;
+
+fn explain(error: NoCover, loaded: &Loaded) -> Failure {
+    match error {
+        NoCover::Walk(WalkError::Cancelled) => Failure::Interrupted,
+        NoCover::Walk(WalkError::NotFinite(error)) => loaded.model.diagnostic(&error).into(),
+        NoCover::NoLimit(reason) => anyhow!(
+            "{} cannot be compared: {reason}; --steps N compares approximants",
+            loaded.name
+        )
+        .into(),
+        NoCover::TooMany(_) => anyhow!(
+            "{} cannot be compared: {error}; --max-points allows more",
+            loaded.name
+        )
+        .into(),
+        _ => anyhow!("{} cannot be compared: {error}", loaded.name).into(),
+    }
+}
+
+/// For people.
+fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
+    let mut text = String::new();
+    let Comparison { a, b, .. } = comparison;
+    let what = match comparison.steps {
+        None => "limit sets".into(),
+        Some(steps) => format!("step {steps}"),
+    };
+    let verdict = if comparison.same {
+        "the same, as far as can be told"
+    } else {
+        "different"
+    };
+    let mut line = |label: &str, value: &str| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{label:<12}{value}");
+    };
+    line("compared", &format!("{what} of {} and {}", a.name, b.name));
+    line("verdict", verdict);
+    let error = distance.error;
+    line(
+        "distance",
+        &format!("{} ± {error:.2e}", told(distance.value(), error)),
+    );
+    for (label, one, other, way) in [
+        ("A to B", a, b, distance.there),
+        ("B to A", b, a, distance.back),
+    ] {
+        let way = told(way, error);
+        line(
+            label,
+            &format!("{way} from {} to {}, at most", one.name, other.name),
+        );
+    }
+    for (label, side) in [("box of A", a), ("box of B", b)] {
+        let [x0, y0] = side.bounds.min;
+        let [x1, y1] = side.bounds.max;
+        line(label, &format!("{x0:.6} to {x1:.6}, {y0:.6} to {y1:.6}"));
+    }
+    let dimension = |side: &Side<'_>| match side.dimension.similarity {
+        Some(value) => format!("{value:.6}"),
+        None => side.dimension.note.clone().unwrap_or_default(),
+    };
+    line(
+        "dimension",
+        &format!("{} and {}", dimension(a), dimension(b)),
+    );
+    text
+}
+
+/// A figure to the digits that its error leaves.
+fn told(value: f64, error: f64) -> String {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "there are few digits"
+    )]
+    let digits = (1.0 - libm::log10(error).floor()).clamp(0.0, 15.0) as usize;
+    format!("{value:.digits$}")
+}

@@ -1,0 +1,102 @@
+//! `kfrac convert`: a fractal written in another way.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::ValueHint;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use crate::catalogue::Catalogue;
+use crate::convert::{ConvertError, Keeps, Refusal, convert};
+use crate::model::Kind;
+
+use super::rule::{Loaded, RuleArguments};
+use super::{Failure, help, output};
+
+/// Writes a fractal in another way: as a system of maps, objects or a rule
+///
+/// The file that is written has the same limit set: where steps without end lead to, with all that
+/// stays as it is on the way. Fertile elements become maps, visible infertile ones condensation
+/// sets. Weights, tints and the order of elements are left behind where the other kind has nothing
+/// like them, and parameters become numbers. Where the other kind has no way to write it, kfrac says why.
+#[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    rule: RuleArguments,
+    /// The kind of file to write
+    #[arg(long, value_name = "KIND", value_parser = kind())]
+    to: Kind,
+    /// Keeps what every step draws, not only the limit set
+    #[arg(long)]
+    approximants: bool,
+    /// The file to write, or - for standard output
+    #[arg(long, short, value_name = "FILE", default_value = "-", value_hint = ValueHint::FilePath)]
+    output: PathBuf,
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac convert koch --to ifs
+      Shows the four maps of the Koch curve
+  kfrac convert pythagoras --set angle=30 --to instancing -o tree.yaml
+      Writes a tree as objects that instance each other, into a file to grow
+  kfrac convert koch --to ifs --approximants > maps.yaml
+      Writes a system of which kfrac grow draws the same at every step
+";
+
+fn kind() -> impl TypedValueParser<Value = Kind> {
+    let kinds = Kind::ALL.map(|kind| {
+        PossibleValue::new(kind.name()).help(match kind {
+            Kind::Rule => "A production rule; all maps must be similarities",
+            Kind::Ifs => "An iterated function system, recurrent where it has to be",
+            Kind::Instancing => "Objects that instance each other",
+        })
+    });
+    PossibleValuesParser::new(kinds).try_map(|name| {
+        let mut kinds = Kind::ALL.into_iter();
+        kinds.find(|kind| kind.name() == name).ok_or("unknown")
+    })
+}
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let loaded = arguments.rule.load(catalogue, false)?;
+    let keeps = if arguments.approximants {
+        Keeps::Approximants
+    } else {
+        Keeps::Limit
+    };
+    let document = convert(&loaded.model, arguments.to, keeps)
+        .map_err(|error| failure(error, &loaded, arguments.to))?;
+    write(&arguments.output, &document.to_yaml())
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Ok(output::print(text)?);
+    }
+    output::write(path, true, |out, _| {
+        out.write_all(text.as_bytes())
+            .map_err(|error| output::failed(error, path))
+    })?;
+    Ok(())
+}
+
+fn failure(error: ConvertError, loaded: &Loaded, to: Kind) -> Failure {
+    let name = &loaded.name;
+    match error {
+        ConvertError::Compile(error) => loaded.model.diagnostic(&error).into(),
+        ConvertError::Refused(Refusal::SameKind(_)) => {
+            Failure::Usage(format!("{name} is not converted: {error}"))
+        }
+        _ => anyhow::anyhow!("{name} does not become {}: {error}", with_article(to)).into(),
+    }
+}
+
+fn with_article(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Rule => "a production rule",
+        Kind::Ifs => "an iterated function system",
+        Kind::Instancing => "an instancing structure",
+    }
+}

@@ -1,0 +1,387 @@
+//! As an iterated function system.
+//!
+//! A system with a digraph has a set A_j for every map, with A_j = f_j(C) ∪ ⋃ f_j(A_i), and is drawn
+//! as the union of all of them. Objects of which every instance has the object's own map are such
+//! sets as they stand. Of all others, every instance becomes a map: f_e(K_c) for an instance e of
+//! object c, which may follow what the instances in c are. For the union of these to be the scene,
+//! every object has to lie where it first stands in the scene, so its coordinates are those of the
+//! scene: with Q_b the way to object b, the map is Q_b f_e Q_c⁻¹. Every object of the scene has a copy
+//! of what it leads to, and edges lead only inside a copy. Shapes that do not follow every map, as
+//! condensation sets do, are maps too: those of a line, or of a triangle, to its halves.
+
+use std::collections::VecDeque;
+
+use crate::build::written::{Entries, sequence};
+use crate::digraph::components;
+use crate::document::node::Value;
+use crate::geometry::{DAffine2, DVec2};
+
+use super::copies::with_copies;
+use super::number::{is_same, matrix, point, scale, value};
+use super::shape::set;
+use super::structure::{Placed, Structure};
+use super::{Keeps, Refusal};
+
+/// A system of more maps is refused.
+const MOST_MAPS: usize = 1_000;
+
+/// A system with a digraph.
+#[derive(Default)]
+struct System {
+    maps: Vec<DAffine2>,
+    /// From which map to which.
+    edges: Vec<[usize; 2]>,
+    /// The condensation sets.
+    sets: Vec<Placed>,
+    /// Where the initial set lies.
+    initial: DAffine2,
+}
+
+pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
+    if keeps == Keeps::Approximants {
+        check_steps(structure)?;
+    }
+    let system = match direct(structure) {
+        Some(system) => system,
+        None => match placed(structure) {
+            Err(Refusal::ShapesInPart | Refusal::NoMaps) if keeps == Keeps::Limit => {
+                placed(&with_copies(structure)?)?
+            }
+            system => system?,
+        },
+    };
+    let maps = sequence(system.maps.iter().map(|map| of_map(map).value()));
+    let sets: Result<Vec<_>, _> = system
+        .sets
+        .iter()
+        .map(|placed| set(&structure.shapes[placed.shape], &placed.map))
+        .collect();
+    let sets = sets?.into_iter().map(Entries::value);
+    let initial = structure.initial().flatten().map(|shape| {
+        let initial = set(&structure.shapes[shape], &system.initial);
+        initial.map(Entries::value)
+    });
+    let initial = match initial {
+        Some(Err(refusal)) if keeps == Keeps::Approximants => return Err(refusal),
+        // The limit does not hang on it.
+        Some(initial) => initial.ok(),
+        None => None,
+    };
+    let count = system.maps.len();
+    let edges = (system.edges.len() < count * count).then(|| edges(&system.edges, count));
+    Ok(Entries::default()
+        .set("maps", maps)
+        .set_some("edges", edges)
+        .set_some(
+            "condensation",
+            (!system.sets.is_empty()).then(|| sequence(sets)),
+        )
+        .set_some("initial", initial))
+}
+
+/// Refuses what is drawn otherwise at some step.
+fn check_steps(structure: &Structure) -> Result<(), Refusal> {
+    let refuse = |what| Err(Refusal::Steps(what));
+    if structure.objects.len() != 1 || structure.scene.len() != 1 {
+        return refuse("a system draws one initial set at first, in one place");
+    }
+    match structure.initial() {
+        Some(Some(_)) => Ok(()),
+        Some(None) => refuse("what is replaced is not drawn, and an initial set is"),
+        None => refuse("what is replaced does not all look the same, as an initial set does"),
+    }
+}
+
+/// A map in the shortest of its forms.
+fn of_map(map: &DAffine2) -> Entries {
+    let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
+    let entries = Entries::default();
+    let linear = if let Some(factor) = scale(map.matrix2) {
+        entries.set("scale", factor)
+    } else if y == x.perp() {
+        entries.set("times", point(x))
+    } else if y == -x.perp() {
+        let conjugate = Value::Bool(true);
+        entries.set("times", point(x)).set("conjugate", conjugate)
+    } else {
+        entries.set("matrix", matrix(map.matrix2))
+    };
+    let shift = map.translation;
+    linear.set_some("shift", (shift != DVec2::ZERO).then(|| point(shift)))
+}
+
+/// For every map, those that may follow it.
+fn edges(edges: &[[usize; 2]], count: usize) -> Value {
+    let number = |map: usize| value(f64::from(u32::try_from(map + 1).unwrap_or(u32::MAX)));
+    let entries = (0..count).fold(Entries::default(), |entries, from| {
+        let mut following: Vec<usize> = edges
+            .iter()
+            .filter(|edge| edge[0] == from)
+            .map(|edge| edge[1])
+            .collect();
+        following.sort_unstable();
+        entries.add(
+            (from + 1).to_string(),
+            sequence(following.into_iter().map(number)),
+        )
+    });
+    entries.value()
+}
+
+/// The system whose maps are the objects, if every object is the image of others under one map.
+fn direct(structure: &Structure) -> Option<System> {
+    let is_here = |placed: &Placed| placed.map == DAffine2::IDENTITY;
+    let (objects, sets): (Vec<_>, Vec<_>) = structure
+        .scene
+        .iter()
+        .cloned()
+        .partition(|placed| placed.object.is_some());
+    let mut all: Vec<usize> = objects.iter().filter_map(|placed| placed.object).collect();
+    all.sort_unstable();
+    let each_once = all.iter().copied().eq(0..structure.objects.len());
+    if all.is_empty() || !each_once || !objects.iter().all(is_here) {
+        return None;
+    }
+    let mut system = System {
+        sets,
+        ..System::default()
+    };
+    for (number, object) in structure.objects.iter().enumerate() {
+        let map = object.iter().find(|placed| placed.object.is_some())?.map;
+        let mut befores: Vec<usize> = Vec::new();
+        let mut kept: Vec<&Placed> = Vec::new();
+        for placed in object {
+            match placed.object {
+                Some(before) => {
+                    if !is_same(&placed.map, &map) || befores.contains(&before) {
+                        return None;
+                    }
+                    befores.push(before);
+                }
+                None => kept.push(placed),
+            }
+        }
+        let moved = |set: &Placed| Placed {
+            map: map * set.map,
+            ..set.clone()
+        };
+        let moved: Vec<_> = system.sets.iter().map(moved).collect();
+        if !is_union(&kept.into_iter().cloned().collect::<Vec<_>>(), &moved) {
+            return None;
+        }
+        system.maps.push(map);
+        let edges = befores.into_iter().map(|before| [before, number]);
+        system.edges.extend(edges);
+    }
+    let left = |map: usize| system.edges.iter().any(|edge| edge[0] == map);
+    (0..system.maps.len()).all(left).then_some(system)
+}
+
+/// Whether two lists of shapes hold the same.
+fn is_union(a: &[Placed], b: &[Placed]) -> bool {
+    let within = |a: &[Placed], b: &[Placed]| {
+        a.iter().all(|one| {
+            let mut all = b.iter();
+            all.any(|other| other.shape == one.shape && is_same(&one.map, &other.map))
+        })
+    };
+    within(a, b) && within(b, a)
+}
+
+/// An object where it stands in the scene.
+struct Vertex {
+    /// The instance of the scene that it descends from.
+    copy: usize,
+    object: usize,
+    /// The way to it.
+    frame: DAffine2,
+    /// What stands there, with the number of the vertex for what is replaced.
+    instances: Vec<(Placed, Option<usize>)>,
+}
+
+/// The system whose maps are the instances.
+fn placed(structure: &Structure) -> Result<System, Refusal> {
+    let expanded = expanded(structure)?;
+    let (roots, loose): (Vec<_>, Vec<_>) = expanded
+        .scene
+        .into_iter()
+        .partition(|placed| placed.object.is_some());
+    let mut distinct: Vec<Placed> = Vec::new();
+    for root in roots {
+        let same = |known: &Placed| known.object == root.object && is_same(&known.map, &root.map);
+        if !distinct.iter().any(same) {
+            distinct.push(root);
+        }
+    }
+    if distinct.is_empty() {
+        return Err(Refusal::NoMaps);
+    }
+    let vertices = vertices(structure, &distinct, &expanded.objects)?;
+    let mut system = System {
+        initial: distinct[0].map,
+        ..System::default()
+    };
+    // The maps, with the vertex that each is of and the one that it is an image of.
+    let mut ends = Vec::new();
+    let mut sets: Option<Vec<Placed>> = None;
+    for (number, vertex) in vertices.iter().enumerate() {
+        let mut own = Vec::new();
+        for (placed, inside) in &vertex.instances {
+            let map = vertex.frame * placed.map;
+            match *inside {
+                Some(inside) => {
+                    let is_plain = vertex.frame == DAffine2::IDENTITY
+                        && vertices[inside].frame == DAffine2::IDENTITY;
+                    system.maps.push(if is_plain {
+                        placed.map
+                    } else {
+                        settled(map * vertices[inside].frame.inverse())
+                    });
+                    ends.push((number, inside));
+                }
+                None => own.push(Placed {
+                    map,
+                    ..placed.clone()
+                }),
+            }
+        }
+        match &sets {
+            None => sets = Some(own),
+            Some(known) if is_union(known, &own) => {}
+            Some(_) => return Err(Refusal::ShapesInPart),
+        }
+    }
+    system.sets = sets.unwrap_or_default();
+    // What lies loose in the scene would follow every map.
+    let with_loose: Vec<_> = system.sets.iter().chain(&loose).cloned().collect();
+    if !is_union(&with_loose, &system.sets) {
+        return Err(Refusal::ShapesInPart);
+    }
+    for (to, &(_, inside)) in ends.iter().enumerate() {
+        let before = (0..ends.len()).filter(|&from| ends[from].0 == inside);
+        system.edges.extend(before.map(|from| [from, to]));
+    }
+    Ok(system)
+}
+
+/// Without what rounding has left of zeros.
+fn settled(map: DAffine2) -> DAffine2 {
+    const ROUNDING: f64 = 1e-15;
+    let columns = [map.matrix2.x_axis, map.matrix2.y_axis, map.translation];
+    let size = columns.map(|column| column.abs().max_element());
+    let size = size.into_iter().fold(0.0, f64::max);
+    let settle = |value: f64| {
+        if value.abs() <= ROUNDING * size {
+            0.0
+        } else {
+            value
+        }
+    };
+    let [x, y, shift] = columns.map(|column| DVec2::new(settle(column.x), settle(column.y)));
+    DAffine2::from_cols(x, y, shift)
+}
+
+/// The objects that every instance of the scene leads to, with ways to them that can be undone.
+fn vertices(
+    structure: &Structure,
+    roots: &[Placed],
+    objects: &[Vec<Placed>],
+) -> Result<Vec<Vertex>, Refusal> {
+    let mut vertices: Vec<Vertex> = Vec::new();
+    let mut maps = 0;
+    for (copy, root) in roots.iter().enumerate() {
+        let first = vertices.len();
+        let is_flat = |map: &DAffine2| map.matrix2.determinant() == 0.0;
+        if is_flat(&root.map) {
+            return Err(Refusal::Flat("an instance of the scene".into()));
+        }
+        let mut open = VecDeque::new();
+        open.extend(root.object.map(|object| (object, root.map)));
+        // Maps that flatten come to an object last, if nothing else does.
+        let mut flat = None;
+        while let Some((object, frame)) = open.pop_front() {
+            let known = |vertex: &Vertex| vertex.object == object;
+            if vertices[first..].iter().any(known) {
+                continue;
+            }
+            for (number, placed) in objects[object].iter().enumerate() {
+                maps += usize::from(placed.object.is_some());
+                let way = frame * placed.map;
+                if let Some(inside) = placed.object {
+                    if is_flat(&way) {
+                        flat = flat.or(Some((object, number, inside)));
+                    } else {
+                        open.push_back((inside, way));
+                    }
+                }
+            }
+            if maps > MOST_MAPS {
+                return Err(Refusal::TooManyMaps(MOST_MAPS));
+            }
+            vertices.push(Vertex {
+                copy,
+                object,
+                frame,
+                instances: Vec::new(),
+            });
+        }
+        for number in first..vertices.len() {
+            let mut instances = Vec::new();
+            for placed in &objects[vertices[number].object] {
+                let inside = placed.object.map(|object| {
+                    let mut all = vertices[first..].iter();
+                    let inside = all.position(|vertex| vertex.object == object);
+                    inside.map(|inside| first + inside)
+                });
+                if let (Some(None), Some((object, number, _))) = (inside, flat) {
+                    return Err(Refusal::Flat(structure.called(Some(object), number)));
+                }
+                instances.push((placed.clone(), inside.flatten()));
+            }
+            vertices[number].instances = instances;
+        }
+    }
+    debug_assert!(vertices.is_sorted_by_key(|vertex| vertex.copy));
+    Ok(vertices)
+}
+
+struct Expanded {
+    scene: Vec<Placed>,
+    objects: Vec<Vec<Placed>>,
+}
+
+/// With only those objects that lead back to themselves: others give way to what stands in them.
+fn expanded(structure: &Structure) -> Result<Expanded, Refusal> {
+    let inside = |object: &Vec<Placed>| object.iter().filter_map(|placed| placed.object).collect();
+    let targets: Vec<Vec<usize>> = structure.objects.iter().map(inside).collect();
+    let components = components(&targets);
+    let leads_back = |object: usize| {
+        let mut targets = targets[object].iter();
+        targets.any(|&target| components[target] == components[object])
+    };
+    let expand = |all: &[Placed]| -> Result<Vec<Placed>, Refusal> {
+        let mut open: Vec<Placed> = all.iter().rev().cloned().collect();
+        let mut made = Vec::new();
+        while let Some(placed) = open.pop() {
+            match placed.object {
+                Some(object) if !leads_back(object) => {
+                    let inside = structure.objects[object].iter().rev();
+                    open.extend(inside.map(|inside| Placed {
+                        map: placed.map * inside.map,
+                        ..inside.clone()
+                    }));
+                }
+                _ => made.push(placed),
+            }
+            if made.len() + open.len() > MOST_MAPS {
+                return Err(Refusal::TooManyMaps(MOST_MAPS));
+            }
+        }
+        Ok(made)
+    };
+    let objects = structure.objects.iter().map(|object| expand(object));
+    Ok(Expanded {
+        scene: expand(&structure.scene)?,
+        objects: objects.collect::<Result<_, _>>()?,
+    })
+}

@@ -1,0 +1,101 @@
+//! As a structure of objects that instance each other.
+
+use crate::build::written::{Entries, sequence};
+use crate::document::node::Value;
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::instancing::Tint;
+
+use super::number::{matrix, point, scale, value};
+use super::shape::set;
+use super::structure::{Placed, Structure};
+use super::{Keeps, Refusal};
+
+pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
+    let has_shapes = structure.instances().any(|placed| placed.object.is_none());
+    let initial = match structure.initial() {
+        Some(Some(shape)) => Some(set(&structure.shapes[shape], &DAffine2::IDENTITY)),
+        // Where there are shapes, nothing is drawn in the place of objects.
+        Some(None) | None
+            if keeps == Keeps::Limit || has_shapes && structure.objects.is_empty() =>
+        {
+            None
+        }
+        Some(None) if has_shapes => None,
+        _ => {
+            let what = "what is replaced does not all look the same, as an initial set does";
+            return Err(Refusal::Steps(what));
+        }
+    };
+    let initial = match initial {
+        Some(Err(refusal)) if keeps == Keeps::Approximants => return Err(refusal),
+        Some(initial) => initial.ok(),
+        None => None,
+    };
+    let mut entries = Entries::default();
+    let mut objects = Entries::default();
+    for (number, object) in structure.objects.iter().enumerate() {
+        let name = name(structure, number);
+        objects = objects.add(name, instances(structure, object)?);
+    }
+    if structure.objects.is_empty() {
+        // A structure has an object: here the scene is one.
+        objects = objects.add("A", instances(structure, &structure.scene)?);
+        entries = entries
+            .set("objects", objects.value())
+            .set("scene", sequence([Value::Text("A".into())]));
+    } else {
+        entries = entries
+            .set("objects", objects.value())
+            .set("scene", instances(structure, &structure.scene)?);
+    }
+    Ok(entries.set_some("initial", initial.map(Entries::value)))
+}
+
+fn name(structure: &Structure, object: usize) -> String {
+    match structure.objects.len() {
+        1 => "A".into(),
+        _ => format!("A{}", object + 1),
+    }
+}
+
+fn instances(structure: &Structure, all: &[Placed]) -> Result<Value, Refusal> {
+    let instances: Result<Vec<_>, _> = all
+        .iter()
+        .map(|placed| instance(structure, placed))
+        .collect();
+    Ok(sequence(instances?))
+}
+
+fn instance(structure: &Structure, placed: &Placed) -> Result<Value, Refusal> {
+    let master = match placed.object {
+        Some(object) => {
+            let name = Value::Text(name(structure, object));
+            if placed.map == DAffine2::IDENTITY && placed.tint.is_none() {
+                return Ok(name);
+            }
+            Entries::default().set("object", name)
+        }
+        None => set(&structure.shapes[placed.shape], &DAffine2::IDENTITY)?,
+    };
+    let DAffine2 {
+        matrix2,
+        translation,
+    } = placed.map;
+    let turned = match scale(matrix2) {
+        _ if matrix2 == DMat2::IDENTITY => master,
+        Some(factor) => master.set("scale", factor),
+        None => master.set("matrix", matrix(matrix2)),
+    };
+    let shift = (translation != DVec2::ZERO).then(|| point(translation));
+    Ok(turned
+        .set_some("translate", shift)
+        .set_some("tint", placed.tint.map(tint))
+        .value())
+}
+
+fn tint(tint: Tint) -> Value {
+    Entries::default()
+        .set("color", Value::Text(format!("{:#}", tint.colour)))
+        .set("alpha", value(tint.alpha))
+        .value()
+}

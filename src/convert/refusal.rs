@@ -1,0 +1,50 @@
+use crate::graph::NoLimit;
+use crate::model::Kind;
+
+/// Why a kind has no way to write a fractal. Maps and elements are numbered from 1 in messages.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// It is of that kind already.
+    #[error("it is of the kind '{}' already: `kfrac cat --inline` shows all of it", .0.name())]
+    SameKind(Kind),
+    /// There is no limit set.
+    #[error(transparent)]
+    NoLimit(#[from] NoLimit),
+    /// There is nothing that could become a map.
+    #[error("nothing in it is replaced by copies of itself: a system needs a map")]
+    NoMaps,
+    /// A map cannot be undone that would have to be.
+    #[error("{0} flattens the plane, so what stands in it cannot be described from outside")]
+    Flat(String),
+    /// A map that changes shapes.
+    #[error(
+        "{what} is no similarity: it stretches by {longest:.6} one way and by {shortest:.6} another, and an element of a rule keeps its shape"
+    )]
+    Shear {
+        /// The map.
+        what: String,
+        /// By how much it stretches, at most and at least.
+        longest: f64,
+        /// At least.
+        shortest: f64,
+    },
+    /// A map that leaves nothing.
+    #[error("{0} shrinks everything to a point, and an element of a rule has a length")]
+    Point(String),
+    /// Shapes that do not follow every map.
+    #[error(
+        "its infertile elements do not stand in all parts alike, and every map of a system follows a condensation set"
+    )]
+    ShapesInPart,
+    /// A round shape that is no ellipse.
+    #[error(
+        "a base element in it is round, and sets of this kind have straight sides or are ellipses"
+    )]
+    Round,
+    /// It would be too long.
+    #[error("it would have more than {0} maps")]
+    TooManyMaps(usize),
+    /// Its steps would be others.
+    #[error("its approximants cannot be kept: {0}")]
+    Steps(&'static str),
+}

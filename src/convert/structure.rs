@@ -1,0 +1,211 @@
+//! What all kinds have in common: objects, and the instances in their place.
+
+use crate::geometry::DAffine2;
+use crate::graph::{Graph, Instance, NoLimit, Replacement};
+use crate::ifs::Ifs;
+use crate::instancing::Tint;
+use crate::rule::BaseElement;
+
+use super::{Keeps, Refusal};
+
+/// An instance: a map, and what stands there.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    pub(super) map: DAffine2,
+    /// What it looks like as long as it is not replaced, by number.
+    pub(super) shape: usize,
+    pub(super) visible: bool,
+    pub(super) tint: Option<Tint>,
+    /// The object that it is one of; none if it stays as it is.
+    pub(super) object: Option<usize>,
+}
+
+/// A model taken apart.
+pub(super) struct Structure {
+    /// What instances look like.
+    pub(super) shapes: Vec<BaseElement>,
+    /// What stands in the place of every object; never nothing.
+    pub(super) objects: Vec<Vec<Placed>>,
+    /// Approximant 0; never nothing.
+    pub(super) scene: Vec<Placed>,
+    /// What messages call an instance of an object.
+    pub(super) words: Words,
+}
+
+/// What the parts of a file are called.
+#[derive(Clone, Copy)]
+pub(super) enum Words {
+    Maps,
+    Instances,
+    Elements,
+}
+
+impl Structure {
+    /// The objects of a graph, one for each behaviour. For the limit, what comes to nothing is left
+    /// out.
+    pub(super) fn of_graph(graph: &Graph, keeps: Keeps) -> Result<Self, Refusal> {
+        let alive = match keeps {
+            Keeps::Limit => graph.alive(true),
+            Keeps::Approximants => vec![true; graph.objects().len()],
+        };
+        let placed = |instance: &Instance| {
+            let object = &graph.objects()[instance.object];
+            let is_kept = matches!(object.replacement, Replacement::Kept);
+            Placed {
+                map: instance.frame.map,
+                shape: object.base_element,
+                visible: object.visible,
+                tint: object.tint,
+                object: (!is_kept).then_some(object.behaviour),
+            }
+        };
+        let mut live = vec![false; graph.behaviours().count()];
+        for (object, alive) in graph.objects().iter().zip(&alive) {
+            live[object.behaviour] |= alive;
+        }
+        // What is not drawn and stays as it is adds nothing at any step.
+        let stays = |instance: &&Instance| {
+            let object = &graph.objects()[instance.object];
+            match object.replacement {
+                Replacement::Kept => object.visible,
+                _ => live[object.behaviour],
+            }
+        };
+        let mut objects = Vec::new();
+        for object in graph.behaviours() {
+            objects.push(match &object.replacement {
+                Replacement::Fixed(production) => {
+                    let all = production.placed_instances().map(|(_, instance)| instance);
+                    all.filter(&stays).map(placed).collect()
+                }
+                _ => Vec::new(),
+            });
+        }
+        let initiator = graph.initiator().instances.iter();
+        let structure = Self {
+            shapes: graph.base_elements().to_vec(),
+            objects,
+            scene: initiator.filter(&stays).map(placed).collect(),
+            words: if graph.is_affine() {
+                Words::Instances
+            } else {
+                Words::Elements
+            },
+        }
+        .renumbered();
+        if structure.scene.is_empty() {
+            return Err(NoLimit::Empty.into());
+        }
+        if structure.objects.iter().any(Vec::is_empty) {
+            return Err(Refusal::Steps("an element in it vanishes"));
+        }
+        Ok(structure)
+    }
+
+    /// The objects of a system, as Hart (1992, section 3.3) makes them of its digraph: one for what
+    /// every map has just moved, or a single one where any map may follow any other. `shapes` are
+    /// the initial set and the condensation sets.
+    pub(super) fn of_ifs(ifs: &Ifs, shapes: Vec<BaseElement>) -> Self {
+        let placed = |map: DAffine2, shape: usize, object: Option<usize>| Placed {
+            map,
+            shape,
+            visible: true,
+            tint: None,
+            object,
+        };
+        let sets = || 1..=ifs.condensation().len();
+        let drawn = || sets().map(|set| placed(DAffine2::IDENTITY, set, None));
+        let maps = ifs.maps().iter().map(|map| map.affine);
+        let (objects, scene) = if let Some(successors) = ifs.successors() {
+            let mut objects: Vec<Vec<Placed>> = vec![Vec::new(); ifs.maps().len()];
+            for (before, successors) in successors.iter().enumerate() {
+                for &map in successors {
+                    objects[map].push(placed(ifs.maps()[map].affine, 0, Some(before)));
+                }
+            }
+            for (object, map) in objects.iter_mut().zip(maps) {
+                object.extend(sets().map(|set| placed(map, set, None)));
+            }
+            let all = (0..objects.len()).map(|object| placed(DAffine2::IDENTITY, 0, Some(object)));
+            let scene = all.chain(drawn()).collect();
+            (objects, scene)
+        } else {
+            let maps = maps.map(|map| placed(map, 0, Some(0)));
+            let scene = vec![placed(DAffine2::IDENTITY, 0, Some(0))];
+            (vec![maps.chain(drawn()).collect()], scene)
+        };
+        Self {
+            shapes,
+            objects,
+            scene,
+            words: Words::Maps,
+        }
+    }
+
+    /// With only those objects that the scene leads to, in the order in which it does.
+    fn renumbered(self) -> Self {
+        let mut numbers = vec![None; self.objects.len()];
+        let mut order = Vec::new();
+        let mut visit = |placed: &Placed, order: &mut Vec<usize>| {
+            if let Some(object) = placed.object
+                && numbers[object].is_none()
+            {
+                numbers[object] = Some(order.len());
+                order.push(object);
+            }
+        };
+        self.scene
+            .iter()
+            .for_each(|placed| visit(placed, &mut order));
+        let mut done = 0;
+        while let Some(&object) = order.get(done) {
+            let placed = self.objects[object].iter();
+            placed.for_each(|placed| visit(placed, &mut order));
+            done += 1;
+        }
+        let renumbered = |all: &[Placed]| -> Vec<Placed> {
+            let all = all.iter().cloned();
+            all.map(|placed| Placed {
+                object: placed.object.and_then(|object| numbers[object]),
+                ..placed
+            })
+            .collect()
+        };
+        Self {
+            objects: order
+                .iter()
+                .map(|&object| renumbered(&self.objects[object]))
+                .collect(),
+            scene: renumbered(&self.scene),
+            ..self
+        }
+    }
+
+    /// All instances, those of the scene first.
+    pub(super) fn instances(&self) -> impl Iterator<Item = &Placed> {
+        self.scene.iter().chain(self.objects.iter().flatten())
+    }
+
+    /// What all that is replaced looks like before, if it all looks the same: nothing, or a shape.
+    pub(super) fn initial(&self) -> Option<Option<usize>> {
+        let fertile = self.instances().filter(|placed| placed.object.is_some());
+        let mut looks = fertile.map(|placed| placed.visible.then_some(placed.shape));
+        let first = looks.next()?;
+        looks.all(|look| look == first).then_some(first)
+    }
+
+    /// `map 2`, `instance 3 of object 1`, `element 1 of the initiator`; `object` is none in the scene.
+    pub(super) fn called(&self, object: Option<usize>, number: usize) -> String {
+        let (what, scene, of) = match self.words {
+            Words::Maps => return format!("map {}", number + 1),
+            Words::Instances => ("instance", "the scene", "object"),
+            Words::Elements => ("element", "the initiator", "generator"),
+        };
+        let number = number + 1;
+        match object {
+            None => format!("{what} {number} of {scene}"),
+            Some(_) if self.objects.len() == 1 => format!("{what} {number} of the {of}"),
+            Some(object) => format!("{what} {number} of {of} {}", object + 1),
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! The difference of two sets: what is in one of them only, and what is in both, in three colours.
+
+use std::io::Write;
+
+use crate::geometry::DVec2;
+use crate::parallel::Team;
+use crate::render::{
+    Canvas, Drawing, FINE, Options, Paint, Pen, RenderError, Surface, position, write_drawing,
+};
+use crate::style::{Cap, Colour, Join};
+
+/// What is in the first set only, in the second only, and in both: told apart by all eyes (Okabe and
+/// Ito 2008).
+pub const COLOURS: [Colour; 3] = [
+    Colour::of_rgba([0xd5, 0x5e, 0x00, 255]),
+    Colour::of_rgba([0x00, 0x72, 0xb2, 255]),
+    Colour::of_rgba([0x99, 0x99, 0x99, 255]),
+];
+
+/// Draws the pixels that hold points of two sets; tells the number of pixels of every colour.
+///
+/// The points must lie closer than a pixel: see [`pixel`]. A pixel counts as one of both sets if one
+/// beside it, corners included, is of the other: so rounding and points that stand for discs make
+/// no difference.
+///
+/// # Errors
+///
+/// If the picture is too large, or `out` fails.
+pub fn write(
+    canvas: Canvas,
+    sets: [&[DVec2]; 2],
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<[u64; 3], RenderError> {
+    let planes = sets.map(|points| plane(&canvas, points));
+    let difference = Difference {
+        canvas,
+        classes: classes(&canvas, &planes),
+        background: options.style.background,
+    };
+    let counts = [0, 1, 2].map(|class| {
+        let of_class = difference.classes.iter().filter(|found| **found == class);
+        of_class.count() as u64
+    });
+    write_drawing(
+        &difference,
+        options.format,
+        &options.labels,
+        options.threads,
+        out,
+    )?;
+    Ok(counts)
+}
+
+/// The radius to cover sets by for a picture: half a pixel.
+#[must_use]
+pub fn pixel(canvas: &Canvas) -> f64 {
+    0.5 / canvas.scale()
+}
+
+/// No set.
+const NONE: u8 = 3;
+
+fn plane(canvas: &Canvas, points: &[DVec2]) -> Vec<bool> {
+    let [width, height] = canvas.size().map(|side| side as usize);
+    let mut plane = vec![false; width * height];
+    for &point in points {
+        let pixel = canvas.pixel(point);
+        if pixel.min_element() < 0.0 {
+            continue;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "casts from floats saturate"
+        )]
+        let [column, row] = [pixel.x, pixel.y].map(|at| at as usize);
+        if column < width && row < height {
+            plane[row * width + column] = true;
+        }
+    }
+    plane
+}
+
+/// For every pixel, in which set it is.
+fn classes(canvas: &Canvas, planes: &[Vec<bool>; 2]) -> Vec<u8> {
+    let [width, height] = canvas.size().map(|side| side as usize);
+    let near = |plane: &[bool], place: usize| {
+        let (column, row) = (place % width, place / width);
+        let around = |at: usize, most: usize| at.saturating_sub(1)..(at + 2).min(most);
+        let mut rows = around(row, height);
+        rows.any(|row| around(column, width).any(|column| plane[row * width + column]))
+    };
+    let class = |place: usize| match [planes[0][place], planes[1][place]] {
+        [true, true] => 2,
+        [true, false] if near(&planes[1], place) => 2,
+        [false, true] if near(&planes[0], place) => 2,
+        [true, false] => 0,
+        [false, true] => 1,
+        [false, false] => NONE,
+    };
+    (0..width * height).map(class).collect()
+}
+
+struct Difference {
+    canvas: Canvas,
+    classes: Vec<u8>,
+    background: Option<Colour>,
+}
+
+impl Drawing for Difference {
+    fn size(&self) -> [u32; 2] {
+        self.canvas.size()
+    }
+
+    fn background(&self) -> Option<Colour> {
+        self.background
+    }
+
+    fn pen(&self) -> Pen {
+        Pen {
+            width: 1.0,
+            cap: Cap::Round,
+            join: Join::Round,
+            dash: 0.0,
+        }
+    }
+
+    fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
+        let width = self.canvas.size()[0] as usize;
+        for (class, colour) in (0..).zip(COLOURS) {
+            surface.begin(&Paint {
+                fill: Some(colour),
+                stroke: None,
+            })?;
+            for (row, pixels) in (0u32..).zip(self.classes.chunks(width)) {
+                let mut column = 0u32;
+                for run in pixels.chunk_by(|a, b| a == b) {
+                    let end = column + u32::try_from(run.len()).unwrap_or_default();
+                    if run[0] == class {
+                        rectangle(surface, [column, row], [end, row + 1]);
+                    }
+                    column = end;
+                }
+                surface.hand_on()?;
+            }
+            surface.end()?;
+        }
+        Ok(())
+    }
+}
+
+fn rectangle(surface: &mut impl Surface, from: [u32; 2], to: [u32; 2]) {
+    let corner = |x: u32, y: u32| position(DVec2::new(f64::from(x), f64::from(y)) * FINE);
+    surface.move_to(corner(from[0], from[1]));
+    surface.line_to(corner(to[0], from[1]));
+    surface.line_to(corner(to[0], to[1]));
+    surface.line_to(corner(from[0], to[1]));
+    surface.close();
+}

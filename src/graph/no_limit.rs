@@ -1,0 +1,58 @@
+//! Whether there is a limit set that the graph tells.
+
+use super::Graph;
+
+/// Why a graph tells no limit set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoLimit {
+    /// It is another one for every seed.
+    #[error("numbers are drawn in it at random, so it has no one limit set")]
+    Draws,
+    /// What becomes of an element hangs on how many stand before it.
+    #[error("what becomes of its elements hangs on their index, which no map tells")]
+    CountsIndex,
+    /// There are ever more kinds of elements.
+    #[error("what replaces an element changes from step to step without end")]
+    Endless,
+    /// Seeds stand as the initiator.
+    #[error("it has no limit set: its seeds are placed as the initiator, so nothing shrinks")]
+    Resets,
+    /// Elements do not become smaller.
+    #[error("it has no limit set: its elements do not shrink")]
+    DoesNotShrink,
+    /// The limit set is empty.
+    #[error("nothing of it is drawn in the limit")]
+    Empty,
+}
+
+impl Graph {
+    /// Whether the graph tells the limit set: that of the approximants as drawn, to which infertile
+    /// visible elements belong.
+    ///
+    /// # Errors
+    ///
+    /// Why it does not.
+    pub fn check_limit_set(&self) -> Result<(), NoLimit> {
+        if self.draws() {
+            return Err(NoLimit::Draws);
+        }
+        if !self.is_regular() || !self.is_plain() {
+            return Err(NoLimit::CountsIndex);
+        }
+        if self.depth().is_some() {
+            return Err(NoLimit::Endless);
+        }
+        if self.resets().contains(&true) {
+            return Err(NoLimit::Resets);
+        }
+        if !self.contracts() {
+            return Err(NoLimit::DoesNotShrink);
+        }
+        let alive = self.alive(true);
+        let mut initiator = self.initiator().instances.iter();
+        if !initiator.any(|instance| alive[instance.object]) {
+            return Err(NoLimit::Empty);
+        }
+        Ok(())
+    }
+}

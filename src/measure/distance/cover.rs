@@ -1,0 +1,185 @@
+//! Points that stand for a set: none of the set is farther than a radius from them, nor are they from
+//! it.
+
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
+use crate::graph::{Graph, NoLimit, Replacement};
+use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, extent, walk};
+
+use super::region::{Region, TooMany, radius_of};
+
+/// Why a set is not covered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoCover {
+    /// There is no limit set, or it is not known.
+    #[error(transparent)]
+    NoLimit(#[from] NoLimit),
+    /// It takes more points than are allowed.
+    #[error(transparent)]
+    TooMany(#[from] TooMany),
+    /// The approximant is not grown.
+    #[error(transparent)]
+    Walk(WalkError<TooMany>),
+    /// Nothing is visible in the approximant.
+    #[error("nothing is drawn at this step")]
+    Nothing,
+}
+
+/// What is compared of a graph.
+#[derive(Clone, Copy, Debug)]
+pub enum Set<'a> {
+    /// The limit set.
+    Limit,
+    /// What an approximant draws.
+    Approximant(Growth<'a>),
+}
+
+/// A set of points of the plane: what a graph comes to.
+///
+/// Closed outlines count with what they enclose.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    graph: &'a Graph,
+    set: Set<'a>,
+    bounds: Bounds,
+}
+
+impl<'a> Subject<'a> {
+    /// The set of a graph.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such set.
+    pub fn new(graph: &'a Graph, set: Set<'a>) -> Result<Self, NoCover> {
+        let bounds = match &set {
+            Set::Limit => {
+                graph.check_limit_set()?;
+                graph.limit_bounds().unwrap_or_else(|| discs(graph))
+            }
+            Set::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
+                WalkError::TooManyElements { limit } => {
+                    NoCover::Walk(WalkError::TooManyElements { limit })
+                }
+                WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
+                WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
+                WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
+                WalkError::Visitor(never) => match never {},
+            })?,
+        };
+        if bounds.is_empty() {
+            return Err(NoCover::Nothing);
+        }
+        Ok(Self { graph, set, bounds })
+    }
+
+    /// A box that holds the set: the smallest, wherever the graph tells it.
+    #[must_use]
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Points no farther than `radius` from the set, such that all of the set is within `radius` of
+    /// one.
+    ///
+    /// Copies that are smaller than that become one point each, in the middle of a disc that holds
+    /// the copy, and of points that are near each other one is kept.
+    ///
+    /// # Errors
+    ///
+    /// If it takes more than `most` points.
+    pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<DVec2>, NoCover> {
+        let mut region = Region::new(&self.bounds, radius, most);
+        match &self.set {
+            Set::Limit => cover_limit(self.graph, &mut region)?,
+            Set::Approximant(growth) => {
+                let mut visitor = Approximant {
+                    graph: self.graph,
+                    region: &mut region,
+                };
+                walk(self.graph, growth, &mut visitor).map_err(|error| match error {
+                    WalkError::Visitor(error) => NoCover::TooMany(error),
+                    other => NoCover::Walk(other),
+                })?;
+            }
+        }
+        Ok(region.points)
+    }
+}
+
+/// A box around discs that hold what becomes of the initiator.
+fn discs(graph: &Graph) -> Bounds {
+    let reaches = reaches(graph);
+    let mut bounds = Bounds::EMPTY;
+    for instance in &graph.initiator().instances {
+        let middle = instance.frame.map.transform_point2(graph.middle());
+        let reach = instance.frame.stretch() * reaches[instance.object];
+        bounds.add(middle - reach);
+        bounds.add(middle + reach);
+    }
+    bounds
+}
+
+/// The radius of a disc about the graph's middle that holds what becomes of each object.
+fn reaches(graph: &Graph) -> Vec<f64> {
+    let middle = graph.middle();
+    graph.reaches(|object| match object.replacement {
+        Replacement::Kept => radius_of(&graph.base_elements()[object.base_element], middle),
+        _ => 0.0,
+    })
+}
+
+fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
+    let alive = graph.alive(true);
+    let middle = graph.middle();
+    let reaches = reaches(graph);
+    let mut open: Vec<(usize, DAffine2)> = Vec::new();
+    let initiator = graph.initiator().instances.iter().rev();
+    open.extend(initiator.map(|instance| (instance.object, instance.frame.map)));
+    while let Some((number, map)) = open.pop() {
+        if !alive[number] {
+            continue;
+        }
+        let object = &graph.objects()[number];
+        let frame = Frame { map, ..Frame::UNIT };
+        if frame.stretch() * reaches[number] <= region.radius {
+            region.add(map.transform_point2(middle))?;
+            continue;
+        }
+        match &object.replacement {
+            Replacement::Fixed(production) => {
+                let children = production.placed_instances();
+                open.extend(
+                    children.map(|(_, instance)| (instance.object, map * instance.frame.map)),
+                );
+                region.work(1)?;
+            }
+            _ => region.add_outline(&graph.base_elements()[object.base_element], &map)?,
+        }
+    }
+    Ok(())
+}
+
+struct Approximant<'a> {
+    graph: &'a Graph,
+    region: &'a mut Region,
+}
+
+impl Visitor for Approximant<'_> {
+    type Error = TooMany;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), TooMany> {
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), TooMany> {
+        let object = &self.graph.objects()[element.object];
+        if !object.visible {
+            return Ok(());
+        }
+        let outline = &self.graph.base_elements()[object.base_element];
+        self.region.add_outline(outline, &element.frame.map)
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), TooMany> {
+        Ok(())
+    }
+}

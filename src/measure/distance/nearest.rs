@@ -1,0 +1,116 @@
+//! The nearest of many points: a k-d tree (Bentley 1975).
+
+use crate::geometry::{Bounds, DVec2};
+
+/// Points to look for the nearest among. The tree is the order of the points: the middle one of a
+/// range parts it.
+pub(super) struct Nearest {
+    points: Vec<DVec2>,
+    /// Whether the point at this place parts its range by height.
+    by_height: Vec<bool>,
+}
+
+/// Ranges of no more points than this are looked through.
+const FEW: usize = 8;
+
+impl Nearest {
+    pub(super) fn new(mut points: Vec<DVec2>) -> Self {
+        let mut by_height = vec![false; points.len()];
+        let mut open = vec![(0, points.len())];
+        while let Some((start, end)) = open.pop() {
+            if end - start <= FEW {
+                continue;
+            }
+            let mut bounds = Bounds::EMPTY;
+            let part = &mut points[start..end];
+            part.iter().for_each(|&point| bounds.add(point));
+            let size = bounds.size();
+            let is_high = size.y > size.x;
+            let key = |point: &DVec2| if is_high { point.y } else { point.x };
+            let middle = part.len() / 2;
+            part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+            let middle = start + middle;
+            by_height[middle] = is_high;
+            open.push((start, middle));
+            open.push((middle + 1, end));
+        }
+        Self { points, by_height }
+    }
+
+    /// The points, in an order in which neighbours are mostly near each other.
+    pub(super) fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// The place of the nearest point and the square of its distance, or of one that is within the
+    /// distance whose square is `enough`; `guess` is the place of a point that may be near.
+    pub(super) fn find(&self, point: DVec2, enough: f64, guess: usize) -> (usize, f64) {
+        let mut best = (guess, (self.points[guess] - point).length_squared());
+        // Ranges with the square of the least distance that they may have.
+        let mut open = vec![(0, self.points.len(), 0.0)];
+        while let Some((start, end, away)) = open.pop() {
+            if best.1 <= enough {
+                break;
+            }
+            if away >= best.1 {
+                continue;
+            }
+            let mut look = |place: usize| {
+                let square = (self.points[place] - point).length_squared();
+                if square < best.1 {
+                    best = (place, square);
+                }
+            };
+            if end - start <= FEW {
+                (start..end).for_each(look);
+                continue;
+            }
+            let middle = start + (end - start) / 2;
+            look(middle);
+            let beyond = point - self.points[middle];
+            let beyond = if self.by_height[middle] {
+                beyond.y
+            } else {
+                beyond.x
+            };
+            let far = away.max(beyond * beyond);
+            let (low, high) = ((start, middle), (middle + 1, end));
+            let (near, other) = if beyond < 0.0 {
+                (low, high)
+            } else {
+                (high, low)
+            };
+            open.push((other.0, other.1, far));
+            open.push((near.0, near.1, away));
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_is_found() {
+        // Points on a line, on a grid, and scattered by a linear congruence.
+        let line = (0..100).map(|x| DVec2::new(f64::from(x) / 7.0, 0.5));
+        let grid = (0..400).map(|n| DVec2::new(f64::from(n % 20), f64::from(n / 20)));
+        let scattered = (0..500u32).map(|n| {
+            let n = n.wrapping_mul(2_654_435_761);
+            DVec2::new(f64::from(n >> 16), f64::from(n & 0xffff)) / 4096.0
+        });
+        let sets: [Vec<DVec2>; 3] = [line.collect(), grid.collect(), scattered.clone().collect()];
+        for set in sets {
+            let tree = Nearest::new(set.clone());
+            for point in scattered.clone() {
+                let squares = set.iter().map(|other| (*other - point).length_squared());
+                let expected = squares.fold(f64::INFINITY, f64::min);
+                assert_eq!(tree.find(point, 0.0, 3).1, expected);
+                let (place, square) = tree.find(point, 4.0, 0);
+                assert!(square <= expected.max(4.0));
+                assert_eq!((tree.points()[place] - point).length_squared(), square);
+            }
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Outlines, and what they enclose, as points.
+
+use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::rule::{BaseElement, Piece};
+
+/// A set that takes more points than are allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it takes more than {most} points to tell the set that exactly")]
+pub struct TooMany {
+    /// The most that are allowed.
+    pub most: usize,
+}
+
+/// The points of a set, so far.
+pub(super) struct Region {
+    pub(super) points: Vec<DVec2>,
+    /// How near points that are added must be to the set, and it to them.
+    pub(super) radius: f64,
+    most: usize,
+    /// What has been done, in points that were added or copies that were looked into.
+    worked: usize,
+    seen: Option<Seen>,
+}
+
+/// More is not done, as a multiple of the points that are allowed.
+const WORK_A_POINT: usize = 16;
+
+/// Squares of a grid in which there is a point.
+struct Seen {
+    corner: DVec2,
+    side: f64,
+    columns: usize,
+    bits: Vec<u64>,
+}
+
+impl Seen {
+    /// The side of squares, as a multiple of the radius, and what is left of that for points: few
+    /// points and few copies to look into.
+    const SIDE: f64 = 0.35;
+    const REST: f64 = 1.0 - Self::SIDE * std::f64::consts::SQRT_2;
+
+    /// Grids of more squares than this are not made: 128 mebibytes.
+    const MOST: f64 = 1e9;
+
+    fn new(bounds: &Bounds, radius: f64) -> Option<Self> {
+        let side = Self::SIDE * radius;
+        let corner = bounds.min() - radius;
+        let counts = ((bounds.size() + 2.0 * radius) / side).ceil() + 1.0;
+        let count = counts.x * counts.y;
+        if count.is_nan() || count > Self::MOST {
+            return None;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the counts are positive and small"
+        )]
+        let [columns, rows] = [counts.x as usize, counts.y as usize];
+        Some(Self {
+            corner,
+            side,
+            columns,
+            bits: vec![0; (columns * rows).div_ceil(64)],
+        })
+    }
+
+    /// Whether a point is the first one in its square.
+    fn is_first(&mut self, point: DVec2) -> bool {
+        let place = (point - self.corner) / self.side;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "casts from floats saturate"
+        )]
+        let [column, row] = [place.x as usize, place.y as usize];
+        let square = row * self.columns + column.min(self.columns - 1);
+        let Some(bits) = self.bits.get_mut(square / 64) else {
+            return true;
+        };
+        let bit = 1 << (square % 64);
+        let is_first = *bits & bit == 0;
+        *bits |= bit;
+        is_first
+    }
+}
+
+/// The radius of a disc about a point that holds an outline.
+pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
+    let pieces = outline.pieces().iter();
+    let points = pieces.flat_map(|piece| match *piece {
+        Piece::Line(end) => [end; 3],
+        Piece::Cubic(a, b, end) => [a, b, end],
+    });
+    let points = points.chain([outline.start()]);
+    points
+        .map(|point| (point - middle).length())
+        .fold(0.0, f64::max)
+}
+
+impl Region {
+    /// No point yet of a set in a box. In the end, none of the set may be farther than `radius` from
+    /// a point, nor any point from the set.
+    pub(super) fn new(bounds: &Bounds, radius: f64, most: usize) -> Self {
+        let seen = Seen::new(bounds, radius);
+        Self {
+            points: Vec::new(),
+            // A point that is left out is no farther from another than a square is wide.
+            radius: seen.as_ref().map_or(radius, |_| Seen::REST * radius),
+            most,
+            worked: 0,
+            seen,
+        }
+    }
+
+    pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
+        if self.seen.as_mut().is_none_or(|seen| seen.is_first(point)) {
+            self.points.push(point);
+            if self.points.len() > self.most {
+                return Err(TooMany { most: self.most });
+            }
+        }
+        self.work(1)
+    }
+
+    pub(super) fn work(&mut self, work: usize) -> Result<(), TooMany> {
+        self.worked += work;
+        if self.worked > WORK_A_POINT * self.most {
+            return Err(TooMany { most: self.most });
+        }
+        Ok(())
+    }
+
+    /// Adds the image of an outline; of a closed one, with what it encloses.
+    pub(super) fn add_outline(
+        &mut self,
+        outline: &BaseElement,
+        map: &DAffine2,
+    ) -> Result<(), TooMany> {
+        // The inside is known to half the radius from the line, and that to the other half.
+        let radius = if outline.is_closed() {
+            self.radius / 2.0
+        } else {
+            self.radius
+        };
+        let mut from = map.transform_point2(outline.start());
+        let mut corners = vec![from];
+        for piece in outline.pieces() {
+            let piece = piece.transformed(map);
+            match piece {
+                Piece::Line(end) => self.add_line(from, end, radius)?,
+                Piece::Cubic(a, b, end) => {
+                    self.add_curve([from, a, b, end], radius, &mut corners)?;
+                }
+            }
+            from = piece.end();
+            corners.push(from);
+        }
+        if outline.is_closed() {
+            self.add_inside(&corners)?;
+        }
+        Ok(())
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a count of parts, which saturates"
+    )]
+    fn add_line(&mut self, from: DVec2, to: DVec2, radius: f64) -> Result<(), TooMany> {
+        let length = (to - from).length();
+        let parts = (length / (2.0 * radius)).ceil().max(1.0);
+        for part in 0..parts as u64 {
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "there are fewer parts than that"
+            )]
+            let at = (part as f64 + 0.5) / parts;
+            self.add(from.lerp(to, at))?;
+        }
+        Ok(())
+    }
+
+    /// Adds points of a cubic Bézier curve, in its order: halves it (de Casteljau) until a disc about
+    /// the point in its middle holds all control points, and so the curve.
+    fn add_curve(
+        &mut self,
+        curve: [DVec2; 4],
+        radius: f64,
+        corners: &mut Vec<DVec2>,
+    ) -> Result<(), TooMany> {
+        let mut open = vec![curve];
+        while let Some([a, b, c, d]) = open.pop() {
+            let (ab, bc, cd) = (a.midpoint(b), b.midpoint(c), c.midpoint(d));
+            let (abc, bcd) = (ab.midpoint(bc), bc.midpoint(cd));
+            let middle = abc.midpoint(bcd);
+            let away = [a, b, c, d].map(|point| (point - middle).length());
+            if away.into_iter().fold(0.0, f64::max) <= radius {
+                corners.push(middle);
+                self.add(middle)?;
+            } else {
+                open.push([middle, bcd, cd, d]);
+                open.push([a, ab, abc, middle]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds points of a grid that lie in a polygon, under the nonzero rule. What is in the polygon
+    /// has a point of the grid within half the radius, or the outline is as near as that.
+    fn add_inside(&mut self, corners: &[DVec2]) -> Result<(), TooMany> {
+        let step = self.radius * std::f64::consts::FRAC_1_SQRT_2;
+        let mut bounds = Bounds::EMPTY;
+        corners.iter().for_each(|&corner| bounds.add(corner));
+        let (min, max) = (bounds.min(), bounds.max());
+        let mut crossings: Vec<(f64, i32)> = Vec::new();
+        let mut y = min.y + step / 2.0;
+        while y < max.y {
+            crossings.clear();
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            for (&from, &to) in sides {
+                if (from.y <= y) != (to.y <= y) {
+                    let x = from.x + (to.x - from.x) * ((y - from.y) / (to.y - from.y));
+                    crossings.push((x, if to.y > from.y { 1 } else { -1 }));
+                }
+            }
+            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut turns = 0;
+            for pair in crossings.windows(2) {
+                turns += pair[0].1;
+                if turns == 0 {
+                    continue;
+                }
+                // The next point of the grid.
+                let mut x = min.x + ((pair[0].0 - min.x) / step).ceil() * step;
+                while x <= pair[1].0 {
+                    self.add(DVec2::new(x, y))?;
+                    x += step;
+                }
+            }
+            y += step;
+            self.work(corners.len())?;
+        }
+        Ok(())
+    }
+}

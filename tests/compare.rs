@@ -1,0 +1,273 @@
+//! How far fractals are apart, against what is known and against brute force.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use std::process::{Command, Output};
+
+use common::{compiled, document, document_of, grown, resolved};
+use kfrac::geometry::DVec2;
+use kfrac::graph::Graph;
+use kfrac::grow::Growth;
+use kfrac::measure::{Distance, Precision, Set, Subject, hausdorff};
+
+const KOCH: &str = "\
+kind: ifs
+maps:
+  - {scale: 1/3}
+  - {scale: 1/3, rotate: 60, shift: [1/3, 0]}
+  - {scale: 1/3, rotate: -60, shift: [1/2, sqrt(3)/6]}
+  - {scale: 1/3, shift: [2/3, 0]}
+";
+
+fn graph(text: &str) -> Graph {
+    let (model, _) = document_of(text)
+        .resolve(&[])
+        .unwrap_or_else(|errors| panic!("{}", errors.render(false)));
+    model.compile(64).unwrap()
+}
+
+fn rule(name: &str) -> Graph {
+    compiled(&resolved(&document(name), &[]), 64)
+}
+
+fn distance(a: &Graph, b: &Graph, tolerance: f64) -> Distance {
+    let [a, b] = [a, b].map(|graph| Subject::new(graph, Set::Limit).unwrap());
+    let precision = Precision {
+        tolerance,
+        ..Precision::default()
+    };
+    hausdorff([&a, &b], &precision).unwrap()
+}
+
+/// Asserts that a distance is what it should be, to within an error that is small.
+fn assert_is(found: &Distance, expected: f64, most: f64) {
+    assert!((found.value() - expected).abs() <= found.error, "{found:?}");
+    assert!(found.error <= most, "{found:?}");
+}
+
+#[test]
+fn koch_is_one_set_as_a_rule_and_as_a_system() {
+    let found = distance(&rule("koch"), &graph(KOCH), 1e-3);
+    assert!(found.may_be_same(), "{found:?}");
+    assert!(found.error < 1.1e-3, "{found:?}");
+}
+
+#[test]
+fn a_set_that_is_moved_is_as_far_as_it_is_moved() {
+    let moved = "initiator: [[0.1, 0], [1.1, 0]]\ngenerator: koch\n";
+    // (0, 0) has nothing nearer than (0.1, 0).
+    assert_is(&distance(&rule("koch"), &graph(moved), 1e-3), 0.1, 1.3e-3);
+}
+
+#[test]
+fn the_middle_of_a_segment_is_far_from_the_cantor_set() {
+    let cantor = "kind: ifs\nmaps: [{scale: 1/3}, {scale: 1/3, shift: [2/3, 0]}]\n";
+    let segment = "kind: ifs\nmaps: [{scale: 1/2}, {scale: 1/2, shift: [1/2, 0]}]\n";
+    let found = distance(&graph(cantor), &graph(segment), 1e-4);
+    assert_is(&found, 1.0 / 6.0, 1.1e-4);
+    assert!(
+        found.there <= found.error,
+        "the Cantor set lies in the segment: {found:?}"
+    );
+}
+
+#[test]
+fn what_an_outline_encloses_belongs_to_it() {
+    // A square as four of its quarters, and as a condensation set of something that is in it.
+    let quarters = "kind: ifs\nvertices: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], shrink: 1/2}\n";
+    let filled = "\
+kind: ifs
+maps: [{scale: 1/2}]
+condensation:
+  - polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]
+";
+    let found = distance(&graph(quarters), &graph(filled), 1e-2);
+    assert!(found.may_be_same() && found.error < 1.5e-2, "{found:?}");
+    // The centre of a disc is as far from its circle as that is large.
+    let disk = "kind: ifs\nmaps: [{scale: 1/2}]\ncondensation:\n  - disk: {radius: 1}\n";
+    let point = "kind: ifs\nmaps: [{scale: 1/2}]\n";
+    assert_is(&distance(&graph(disk), &graph(point), 1e-2), 1.0, 3e-2);
+}
+
+#[test]
+fn two_dragons_differ() {
+    let found = distance(&rule("dragon"), &rule("twindragon"), 1e-2);
+    assert!(!found.may_be_same() && found.value() > 0.1, "{found:?}");
+}
+
+/// The corners of an approximant.
+fn corners(graph: &Graph, steps: u32) -> Vec<DVec2> {
+    let fractals = grown(graph, &Growth::steps(steps));
+    let elements = fractals.iter().flat_map(|fractal| &fractal.elements);
+    elements.flat_map(|element| element.frame.ends()).collect()
+}
+
+#[test]
+fn a_perturbed_map_is_as_far_as_brute_force_says() {
+    let (steps, side) = (5, 1.0 / 243.0);
+    for (name, text) in [
+        (
+            "height",
+            "initiator: segment\ngenerator: [[0, 0], [1/3, 0], [0.5, 0.2986], [2/3, 0], [1, 0]]\n",
+        ),
+        (
+            "foot",
+            "initiator: segment\ngenerator: [[0, 0], [0.3433, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]\n",
+        ),
+    ] {
+        let (a, b) = (rule("koch"), graph(text));
+        let found = distance(&a, &b, 5e-4);
+        let (a, b) = (corners(&a, steps), corners(&b, steps));
+        let far = |from: &[DVec2], to: &[DVec2]| {
+            let nearest = |point: &DVec2| {
+                let squares = to.iter().map(|other| (*other - *point).length_squared());
+                squares.fold(f64::INFINITY, f64::min)
+            };
+            from.iter().map(nearest).fold(0.0, f64::max).sqrt()
+        };
+        let brute = far(&a, &b).max(far(&b, &a));
+        // Corners are of the sets, and no point of them is farther than half a side from a corner:
+        // sides of the perturbed curve are a few hundredths longer at most.
+        let error = found.error + 1.3 * side;
+        assert!(
+            (found.value() - brute).abs() <= error,
+            "{name}: {found:?}, {brute}"
+        );
+        assert!(!found.may_be_same(), "{name}: {found:?}");
+    }
+}
+
+fn kfrac(arguments: &[&str]) -> Output {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("kfrac"));
+    command.env_remove("KFRAC_LIBRARY").args(arguments);
+    command.output().unwrap()
+}
+
+#[test]
+fn the_command_says_what_it_found() {
+    let output = kfrac(&[
+        "compare",
+        "koch",
+        "cesaro",
+        "--set",
+        "angle=60",
+        "--json",
+        "--tolerance",
+        "0.01",
+    ]);
+    assert!(output.status.success(), "{output:?}");
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["a"]["name"], "koch");
+    assert_eq!(found["b"]["kind"], "rule");
+    assert_eq!(found["steps"], serde_json::Value::Null);
+    assert!(found["error"].as_f64().unwrap() < 0.011, "{found}");
+    assert!(
+        found["distance"].is_number() && found["same"].is_boolean(),
+        "{found}"
+    );
+    let output = kfrac(&[
+        "compare",
+        "koch",
+        "koch",
+        "--steps",
+        "3",
+        "--tolerance",
+        "0.01",
+    ]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.starts_with(
+            "compared    step 3 of koch and koch\nverdict     the same, as far as can be told\n"
+        ),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_picture_shows_the_difference() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("difference.png");
+    let path = path.to_str().unwrap();
+    let two = folder.path().join("two.yaml");
+    std::fs::write(
+        &two,
+        "initiator: [[0, 0], [1, 0], [2, 0]]\ngenerator: koch\n",
+    )
+    .unwrap();
+    let two = two.to_str().unwrap();
+    let output = kfrac(&[
+        "compare",
+        "koch",
+        two,
+        "--tolerance",
+        "0.01",
+        "-o",
+        path,
+        "--size",
+        "64",
+    ]);
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains(" 0 of A alone, "),
+        "one of two copies is all in them: {said}"
+    );
+    let pixmap = tiny_skia::Pixmap::load_png(path).unwrap();
+    let colours: std::collections::BTreeSet<_> = pixmap
+        .pixels()
+        .iter()
+        .filter(|pixel| pixel.alpha() > 0)
+        .map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+        .collect();
+    let expected = [[0x00, 0x72, 0xb2], [0x99, 0x99, 0x99]];
+    assert_eq!(colours, expected.into());
+}
+
+#[test]
+fn what_cannot_be_compared_is_told() {
+    for (arguments, status, said) in [
+        (
+            &["compare", "koch", "random-tree"][..],
+            1,
+            "random-tree cannot be compared: numbers are drawn in it at random",
+        ),
+        (
+            &["compare", "koch", "dragon", "--set", "angel=3"],
+            2,
+            "koch has no parameter 'angel'",
+        ),
+        (
+            &["compare", "-", "-"],
+            2,
+            "only one of the two can come from standard input",
+        ),
+        (
+            &["compare", "koch", "koch", "--tolerance", "0"],
+            2,
+            "this is a number from 1e-9 to 1",
+        ),
+        (
+            &["compare", "dragon", "dragon", "--max-points", "10"],
+            1,
+            "--max-points allows more",
+        ),
+        (
+            &["convert", "koch", "--to", "rule"],
+            2,
+            "koch is not converted: it is of the kind 'rule' already",
+        ),
+        (
+            &["convert", "random-tree", "--to", "ifs"],
+            1,
+            "random-tree does not become an iterated function system: numbers",
+        ),
+    ] {
+        let output = kfrac(arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{errors}");
+        assert!(errors.contains(said), "{errors}");
+        assert!(output.stdout.is_empty());
+    }
+}

@@ -1,0 +1,353 @@
+//! Fractals written in another way, against what they were.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::document_of;
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::convert::{ConvertError, Keeps, Refusal, convert};
+use kfrac::document::Document;
+use kfrac::graph::{Graph, NoLimit};
+use kfrac::grow::Growth;
+use kfrac::measure::{Precision, Set, Subject, hausdorff, similarity_dimension};
+use kfrac::model::{Kind, Model};
+
+fn model(document: &Document) -> Model {
+    let resolved = document.resolve(&[]);
+    resolved
+        .unwrap_or_else(|errors| panic!("{}", errors.render(false)))
+        .0
+}
+
+/// All that can be grown, with its name.
+fn library() -> Vec<(String, Model)> {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries().into_iter();
+    let grown = entries.filter(|entry| Shelf::grown().contains(&entry.shelf));
+    grown
+        .map(|entry| {
+            let source = catalogue.component(entry.shelf, &entry.name).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            (entry.name, model(&document))
+        })
+        .collect()
+}
+
+/// Holds a set of two graphs against each other; covers of few points show the large.
+fn assert_same(name: &str, graphs: [&Graph; 2], set: Set<'_>) {
+    let subjects = graphs.map(|graph| {
+        let subject = Subject::new(graph, set);
+        subject.unwrap_or_else(|error| panic!("{name}: {error}"))
+    });
+    let [a, b] = [0, 1].map(|which| *subjects[which].bounds());
+    let size = a.size().max_element();
+    for (a, b) in [(a.min(), b.min()), (a.max(), b.max())] {
+        let off = (a - b).abs().max_element();
+        assert!(off <= 1e-9 * size, "{name}: {a} and {b}");
+    }
+    let precision = Precision {
+        tolerance: 1.0 / 16.0,
+        most_points: 100_000,
+    };
+    let distance = hausdorff([&subjects[0], &subjects[1]], &precision).unwrap();
+    assert!(distance.may_be_same(), "{name}: {distance:?}");
+}
+
+#[test]
+fn all_of_the_library_keeps_its_limit_set() {
+    let mut converted: BTreeMap<_, usize> = BTreeMap::new();
+    for (name, model) in library() {
+        let graph = model.compile(64).unwrap();
+        for to in Kind::ALL {
+            if to == model.kind() {
+                continue;
+            }
+            let document = match convert(&model, to, Keeps::Limit) {
+                Ok(document) => document,
+                Err(ConvertError::Refused(refusal)) => {
+                    let is_limit = matches!(refusal, Refusal::NoLimit(_));
+                    assert_eq!(is_limit, graph.check_limit_set().is_err(), "{name}");
+                    continue;
+                }
+                Err(error) => panic!("{name} to {to:?}: {error}"),
+            };
+            *converted.entry((model.kind(), to)).or_default() += 1;
+            let other = self::model(&document);
+            let other = other.compile(64).unwrap();
+            assert_same(&name, [&graph, &other], Set::Limit);
+            let dimensions = [&graph, &other].map(similarity_dimension);
+            if let [Some(a), Some(b)] = [dimensions[0].value, dimensions[1].value] {
+                // Shapes that have become maps of lines and triangles have dimensions of their own.
+                let may_be = [a, a.max(1.0), a.max(2.0)];
+                let is_one = may_be.iter().any(|may| (may - b).abs() < 1e-9);
+                assert!(is_one, "{name} to {to:?}: {a} and {b}");
+            }
+        }
+    }
+    let count = |from, to| converted.get(&(from, to)).copied().unwrap_or_default();
+    assert!(count(Kind::Rule, Kind::Ifs) >= 25, "{converted:?}");
+    assert!(count(Kind::Rule, Kind::Instancing) >= 30, "{converted:?}");
+    assert!(count(Kind::Instancing, Kind::Ifs) >= 2, "{converted:?}");
+}
+
+#[test]
+fn all_of_the_library_keeps_its_approximants() {
+    let mut converted = 0;
+    for (name, model) in library() {
+        let graph = model.compile(64).unwrap();
+        for to in Kind::ALL {
+            let Ok(document) = convert(&model, to, Keeps::Approximants) else {
+                continue;
+            };
+            converted += 1;
+            let other = self::model(&document).compile(64).unwrap();
+            for steps in 0..3 {
+                let set = Set::Approximant(Growth::steps(steps));
+                if Subject::new(&graph, set).is_err() {
+                    assert!(
+                        Subject::new(&other, set).is_err(),
+                        "{name} to {to:?}: step {steps}"
+                    );
+                    continue;
+                }
+                assert_same(&format!("{name} to {to:?}"), [&graph, &other], set);
+            }
+        }
+    }
+    assert!(converted >= 40, "{converted}");
+}
+
+fn converted(text: &str, to: Kind, keeps: Keeps) -> Result<String, String> {
+    let model = model(&document_of(text));
+    let converted = convert(&model, to, keeps);
+    converted
+        .map(|document| document.to_yaml())
+        .map_err(|error| error.to_string())
+}
+
+const KOCH: &str = "\
+title: Koch curve
+initiator: segment
+generator: [[0, 0], [1/3, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]
+style: {width: 2}
+";
+
+#[test]
+fn a_rule_becomes_a_system_of_maps() {
+    let expected = "\
+kind: ifs
+title: Koch curve
+maps:
+  - {scale: 1/3}
+  - {times: [0.16666666666666669, 0.28867513459481287], shift: [1/3, 0]}
+  - times: [0.16666666666666663, -0.28867513459481287]
+    shift: [0.5, 0.28867513459481287]
+  - {scale: 0.33333333333333337, shift: [2/3, 0]}
+initial:
+  segment:
+    - [0, 0]
+    - [1, 0]
+style: {width: 2}
+";
+    let written = converted(KOCH, Kind::Ifs, Keeps::Approximants).unwrap();
+    assert_eq!(written, expected);
+}
+
+/// A tree with a trunk that stays, from an initiator that is turned and moved.
+const TREE: &str = "\
+initiator: [[1, 1], [1, 3]]
+generator:
+  elements:
+    - {from: [0, 0], to: [1, 0], fertile: false}
+    - {from: [1, 0], to: [1.4, 0.3]}
+    - {from: [1, 0], to: [1.3, -0.4], direction: 2}
+";
+
+#[test]
+fn what_stays_becomes_a_condensation_set() {
+    let written = converted(TREE, Kind::Ifs, Keeps::Approximants).unwrap();
+    let segment = "segment:\n      - [1, 1]\n      - [1, 3]\n";
+    assert!(
+        written.contains(&format!("condensation:\n  - {segment}")),
+        "{written}"
+    );
+    let initial = "initial:\n  segment:\n    - [1, 1]\n    - [1, 3]\n";
+    assert!(written.contains(initial), "{written}");
+}
+
+#[test]
+fn an_initiator_of_several_elements_becomes_a_recurrent_system() {
+    let text = KOCH.replace("initiator: segment", "initiator: triangle");
+    let written = converted(&text, Kind::Ifs, Keeps::Limit).unwrap();
+    assert_eq!(
+        written.matches("  - {scale").count()
+            + written.matches("  - scale").count()
+            + written.matches("times:").count(),
+        12,
+        "{written}"
+    );
+    // Copies are kept apart: what follows a map of the second side are those of the second side.
+    assert!(
+        written.contains("  \"5\": [\"5\", \"6\", \"7\", \"8\"]")
+            || written.contains("5: [5, 6, 7, 8]"),
+        "{written}"
+    );
+}
+
+/// The golden rectangle's dust: 1 may not follow 2 after itself, and not the other way round.
+const RECURRENT: &str = "\
+kind: ifs
+maps:
+  - {scale: 1/2}
+  - {times: [0.25, 0.25], shift: [1/2, 0]}
+  - {matrix: [[0.5, 0.125], [0, 0.375]], shift: [0, 1/2]}
+edges: {1: [2, 3], 2: [1], 3: [1, 2, 3]}
+condensation:
+  - segment: [[0, 0], [0.25, 0.5]]
+";
+
+#[test]
+fn a_recurrent_system_becomes_objects_and_a_system_again() {
+    let objects = converted(RECURRENT, Kind::Instancing, Keeps::Limit).unwrap();
+    assert!(objects.contains("A2:"), "{objects}");
+    let again = converted(&objects, Kind::Ifs, Keeps::Limit).unwrap();
+    let (Model::Ifs(first), Model::Ifs(second)) =
+        (model(&document_of(RECURRENT)), model(&document_of(&again)))
+    else {
+        panic!("{again}");
+    };
+    let edges = |model: &kfrac::ifs::Ifs| {
+        let mut edges: Vec<_> = model
+            .edges()
+            .unwrap()
+            .map(|(edge, _)| (edge.from, edge.to))
+            .collect();
+        edges.sort_unstable();
+        edges
+    };
+    assert_eq!(first.ifs().maps(), second.ifs().maps());
+    assert_eq!(edges(first.ifs()), edges(second.ifs()));
+    assert_eq!(first.ifs().condensation(), second.ifs().condensation());
+}
+
+/// Converts to a system, which must be the same to a hundredth.
+fn as_system(text: &str) -> String {
+    let written = converted(text, Kind::Ifs, Keeps::Limit).unwrap();
+    let graphs = [text, &written].map(|text| model(&document_of(text)).compile(64).unwrap());
+    let [a, b] = [0, 1].map(|which| Subject::new(&graphs[which], Set::Limit).unwrap());
+    let precision = Precision {
+        tolerance: 0.01,
+        ..Precision::default()
+    };
+    let distance = hausdorff([&a, &b], &precision).unwrap();
+    assert!(distance.may_be_same(), "{distance:?}\n{written}");
+    assert!(distance.error < 0.1, "{distance:?}");
+    written
+}
+
+#[test]
+fn shapes_that_are_not_everywhere_become_copies_of_themselves() {
+    // Two trunks, each with a tree of its own: lines are two halves each.
+    let forest = TREE.replace("[[1, 1], [1, 3]]", "[[1, 1], [1, 3], [2, 3]]");
+    let written = as_system(&forest);
+    assert!(!written.contains("condensation"), "{written}");
+    // A polygon with a notch, which does not follow the map: triangles are four quarters each.
+    let notched = "\
+kind: instancing
+objects:
+  A:
+    - {object: A, scale: 1/2}
+    - {object: A, scale: 1/3, translate: [2, 0]}
+    - {segment: [[0, 0], [0, 1]]}
+    - {point: [-1, -1]}
+scene: [A, {polygon: [[3, 0], [5, 0], [5, 2], [4, 0.5], [3, 2]]}]
+";
+    assert!(as_system(notched).contains("-0.5"));
+}
+
+#[test]
+fn a_disk_is_an_ellipse_under_any_map() {
+    let disk = "\
+kind: instancing
+objects:
+  A:
+    - {object: A, scale: 1/2}
+    - {disk: {radius: 1}, matrix: [[1, 0.5], [0, 0.5]], translate: [1, 0]}
+scene: [A]
+";
+    let written = as_system(disk);
+    assert!(written.contains("  - ellipse:"), "{written}");
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_with_the_reason() {
+    let shear = "kind: ifs\nmaps:\n  - {scale: 1/2}\n  - {scale: [1/2, 1/4], shift: [1/2, 0]}\n";
+    let seeds = "\
+initiator: segment
+generator:
+  parts:
+    - {elements: [[0, 0], [0.5, 0]]}
+    - {seeds: true, placed: initiator, elements: [[0, 0], [0.5, 0]]}
+";
+    let grows = "initiator: segment\ngenerator: [[0, 0], [1, 1], [1, 0]]\n";
+    let forest = TREE.replace("[[1, 1], [1, 3]]", "[[1, 1], [1, 3], [2, 3]]");
+    let random = "initiator: segment\ngenerator:\n  random: {h: \"uniform(0, 1)\"}\n  elements: [[0, 0], [0.5, h/4], [1, 0]]\n";
+    for (text, to, keeps, said) in [
+        (
+            shear,
+            Kind::Rule,
+            Keeps::Limit,
+            "map 2 is no similarity: it stretches by 0.500000 one way and by 0.250000 another",
+        ),
+        (
+            seeds,
+            Kind::Ifs,
+            Keeps::Limit,
+            "its seeds are placed as the initiator",
+        ),
+        (
+            grows,
+            Kind::Instancing,
+            Keeps::Limit,
+            "its elements do not shrink",
+        ),
+        (
+            &forest,
+            Kind::Ifs,
+            Keeps::Approximants,
+            "a system draws one initial set at first, in one place",
+        ),
+        (
+            random,
+            Kind::Ifs,
+            Keeps::Limit,
+            "numbers are drawn in it at random",
+        ),
+        (
+            KOCH,
+            Kind::Rule,
+            Keeps::Limit,
+            "it is of the kind 'rule' already",
+        ),
+        (RECURRENT, Kind::Instancing, Keeps::Approximants, ""),
+    ] {
+        match converted(text, to, keeps) {
+            Err(error) => assert!(!said.is_empty() && error.contains(said), "{error}"),
+            Ok(written) => assert!(said.is_empty(), "{written}"),
+        }
+    }
+    let flat = model(&document_of(
+        "initiator: segment\ngenerator: [[0, 0], {to: [1, 0], visible: false, fertile: false}]\n",
+    ));
+    let error = convert(&flat, Kind::Ifs, Keeps::Limit).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            ConvertError::Refused(Refusal::NoLimit(NoLimit::Empty))
+        ),
+        "{error}"
+    );
+}
