@@ -2,6 +2,7 @@
 
 mod input;
 mod report;
+mod series;
 
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,9 @@ use crate::measure::{BoxCounting, Generalised, Grid, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels, RenderError};
 
+use self::series::Series;
 use super::family::{Assignment, assignment};
+use super::rule::RuleArguments;
 use super::{Failure, format, help, output, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
@@ -38,6 +41,11 @@ pub(super) struct Arguments {
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
     omit: Vec<u32>,
+    /// So many values of a parameter that is set to a range: --set ratio=0.5..0.7
+    ///
+    /// Of several values of a parameter, the exact dimensions are told, and drawn.
+    #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    samples: u32,
     /// As JSON, with every count
     #[arg(long)]
     json: bool,
@@ -87,6 +95,8 @@ Examples:
       Measures the Koch curve
   kfrac dim koch --plot koch-dimension.svg
       Draws the counts, the fit and the local slopes as well
+  kfrac dim cesaro --set angle=60..89 --samples 7
+      Tells the dimension as a function of a parameter
   kfrac grow koch --steps 6 --format csv -o - | kfrac dim - --columns x0,y0 --json
       Measures points of an approximant, for another program
   kfrac grow dragon --size 2048 --format png -o - | kfrac dim -
@@ -121,6 +131,21 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let plot = arguments.plot.as_deref();
     let plot = plot.map(|path| Ok::<_, Failure>((path, format::choose(None, Some(path))?)));
     let plot = plot.transpose()?;
+    let family = arguments
+        .rules()
+        .load_family(catalogue, true, arguments.samples)?;
+    if !family.is_empty() {
+        let series = Series::of(&family)?;
+        if let Some((path, format)) = plot {
+            series.draw(path, format)?;
+        }
+        let said = if arguments.json {
+            series.json()?
+        } else {
+            series.described()
+        };
+        return Ok(output::print(&said)?);
+    }
     let mut measured = input::measure(arguments, catalogue)?;
     report::warn(&mut measured);
     if let Some((path, format)) = plot {
@@ -159,6 +184,14 @@ fn draw(measured: &Measured, path: &Path, format: render::Format) -> Result<(), 
 }
 
 impl Arguments {
+    fn rules(&self) -> RuleArguments {
+        RuleArguments {
+            rule: self.rule.clone(),
+            set: self.set.clone(),
+            omit: self.omit.clone(),
+        }
+    }
+
     fn grids(&self) -> Vec<Grid> {
         Grid::spread(self.grids)
     }

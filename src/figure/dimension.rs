@@ -2,6 +2,9 @@
 //! slopes below.
 
 mod axis;
+mod series;
+
+pub use series::write_series;
 
 use std::io::{self, Write};
 use std::num::NonZero;

@@ -17,23 +17,19 @@ use crate::measure::exact::dimensions_of_graph;
 use crate::measure::{Bits, BoxCounting, LimitSet, Masses, NoExtent, NoLimit, Points, grown};
 
 use super::super::Failure;
-use super::super::rule::{Loaded, RuleArguments};
+use super::super::rule::Loaded;
 use super::super::stop;
 use super::{Arguments, Measured};
 
 /// Graphs whose number of objects does not settle are resolved for so many steps.
-const STEPS: u32 = 64;
+pub(super) const STEPS: u32 = 64;
 
 /// Files of pictures are no longer than this.
 const MOST_BYTES: u64 = 1 << 31;
 
 pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Measured, Failure> {
     let path = &arguments.rule;
-    let rules = || RuleArguments {
-        rule: path.clone(),
-        set: arguments.set.clone(),
-        omit: arguments.omit.clone(),
-    };
+    let rules = || arguments.rules();
     let is_standard = path == Path::new("-");
     if !is_standard && !path.is_file() {
         // A name of the library, or nothing.

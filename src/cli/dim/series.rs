@@ -1,0 +1,115 @@
+//! Dimensions over the values of a parameter.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::document::Setting;
+use crate::figure::dimension;
+use crate::measure::exact::{Dimensions, Grown, dimensions_of_graph};
+use crate::render::{self, Labels, RenderError};
+
+use super::super::rule::Loaded;
+use super::super::{Failure, output};
+use super::input::STEPS;
+
+/// Rules that differ in one parameter, and what is known of them.
+pub(super) struct Series {
+    name: String,
+    title: String,
+    parameter: String,
+    samples: Vec<(f64, Grown)>,
+}
+
+impl Series {
+    pub(super) fn of(family: &[(Setting, Loaded)]) -> Result<Self, Failure> {
+        let (setting, first) = &family[0];
+        let title = first.model.heading().description.title.clone();
+        let samples = family.iter().map(|(setting, loaded)| {
+            let graph = loaded.compile(STEPS)?;
+            Ok((setting.value, dimensions_of_graph(&graph)))
+        });
+        Ok(Self {
+            name: first.name.clone(),
+            title: title.unwrap_or_else(|| first.name.clone()),
+            parameter: setting.name.clone(),
+            samples: samples.collect::<Result<_, Failure>>()?,
+        })
+    }
+
+    pub(super) fn json(&self) -> Result<String, Failure> {
+        let samples = self.samples.iter().map(|(value, known)| {
+            let dimensions = known.dimensions.as_ref();
+            let hausdorff = dimensions.map(|it| &it.hausdorff);
+            json!({
+                "value": value,
+                "similarity": similarity(known),
+                "hausdorff": hausdorff.and_then(|it| it.value),
+                "overlap": hausdorff.map(|it| it.overlap.to_string()),
+                "notes": known.notes,
+            })
+        });
+        let said = json!({
+            "name": self.name,
+            "parameter": self.parameter,
+            "samples": samples.collect::<Vec<_>>(),
+        });
+        let mut text = serde_json::to_string_pretty(&said).map_err(anyhow::Error::from)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    pub(super) fn described(&self) -> String {
+        let parameter = &self.parameter;
+        let mut text = format!(
+            "{parameter:>14}  {:>14}  {:>14}  overlap\n",
+            "similarity", "Hausdorff"
+        );
+        for (value, known) in &self.samples {
+            let hausdorff = known.dimensions.as_ref().map(|it| &it.hausdorff);
+            let told =
+                |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.12}"));
+            // Writing to a string does not fail.
+            let _ = writeln!(
+                text,
+                "{value:>14}  {:>14}  {:>14}  {}",
+                told(similarity(known)),
+                told(hausdorff.and_then(|it| it.value)),
+                hausdorff.map_or("-".into(), |it| it.overlap.to_string()),
+            );
+        }
+        text
+    }
+
+    /// Draws the similarity dimension.
+    pub(super) fn draw(&self, path: &Path, format: render::Format) -> Result<(), Failure> {
+        let points: Vec<_> = self
+            .samples
+            .iter()
+            .map(|(value, known)| (*value, similarity(known)))
+            .collect();
+        let options = dimension::Options {
+            format,
+            unit: None,
+            labels: Labels {
+                title: self.title.clone(),
+                description: format!("The similarity dimension over {}.", self.parameter),
+                provenance: format!("# kfrac {}\n", env!("CARGO_PKG_VERSION")),
+            },
+        };
+        output::write(path, true, |out, _| {
+            let written = dimension::write_series(&self.parameter, &points, &options, out);
+            written.map_err(|error| match error {
+                RenderError::Io(error) => output::failed(error, path),
+                other => anyhow::Error::new(other).into(),
+            })
+        })?;
+        Ok(())
+    }
+}
+
+fn similarity(known: &Grown) -> Option<f64> {
+    let similar = |dimensions: &Dimensions| dimensions.similarity.as_ref().map(|it| it.value);
+    known.dimensions.as_ref().and_then(similar)
+}
