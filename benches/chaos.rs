@@ -10,8 +10,9 @@ use std::num::NonZero;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kfrac::chaos::{ClassBy, Game, Map, System, Window, play};
+use kfrac::chaos::{ClassBy, Game, System, Window, play};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
+use kfrac::ifs::{Definition, Edge, Ifs, Map};
 
 fn main() {
     divan::main();
@@ -27,12 +28,20 @@ const FERN: [[f64; 7]; 4] = [
     [-0.15, 0.28, 0.26, 0.24, 0.0, 0.44, 0.07],
 ];
 
-fn fern() -> Vec<(Map, f64)> {
+fn fern() -> Vec<Map> {
     let map = |[a, b, c, d, e, f, weight]: [f64; 7]| {
-        let map = DAffine2::from_cols_array(&[a, c, b, d, e, f]);
-        (Map::Affine(map), weight)
+        Map::new(DAffine2::from_cols_array(&[a, c, b, d, e, f])).weighing(weight)
     };
     FERN.map(map).into()
+}
+
+fn system(maps: Vec<Map>, edges: Option<Vec<Edge>>) -> System {
+    let definition = Definition {
+        maps,
+        edges,
+        ..Definition::default()
+    };
+    System::of(&Ifs::new(definition).unwrap()).unwrap()
 }
 
 /// The window of the fern in a square picture.
@@ -62,19 +71,30 @@ fn bench(bencher: Bencher, system: &System, side: u32, classes: ClassBy, threads
 /// No cache holds the counters of 8192 x 8192 pixels.
 #[divan::bench(args = [(1024, 1), (1024, 2), (8192, 1)])]
 fn fern_by_side_and_threads(bencher: Bencher, (side, threads): (u32, usize)) {
-    let system = System::new(fern()).unwrap();
+    let system = system(fern(), None);
     bench(bencher, &system, side, ClassBy::One, threads);
 }
 
 #[divan::bench]
 fn fern_by_last_map(bencher: Bencher) {
-    let system = System::new(fern()).unwrap();
+    let system = system(fern(), None);
     bench(bencher, &system, 1024, ClassBy::Map { ago: 0 }, 1);
 }
 
 #[divan::bench]
 fn recurrent_fern(bencher: Bencher) {
-    let transitions = (0..4).map(|map| vec![1.0, 9.0, f64::from(map), 2.0]);
-    let system = System::recurrent(fern(), transitions.collect()).unwrap();
+    let edges = (0..16).map(|edge| Edge {
+        from: edge / 4,
+        to: edge % 4,
+        weight: Some([1.0, 9.0, 3.0, 2.0][edge % 4]),
+    });
+    let system = system(fern(), Some(edges.collect()));
     bench(bencher, &system, 1024, ClassBy::One, 1);
+}
+
+/// The fern's maps over and over, with their weights shared among them.
+#[divan::bench(args = [5, 8, 12, 16, 32])]
+fn more_maps(bencher: Bencher, count: usize) {
+    let maps = fern().into_iter().cycle().take(count).collect();
+    bench(bencher, &system(maps, None), 1024, ClassBy::One, 1);
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free, on the same fractals: ratios of time, peak memory, and the targets.
+"""kfrac beside Context Free and flam3, on the same fractals: ratios of time, peak memory, and the targets.
 
 On a fresh Debian:
 
-    apt-get install --no-install-recommends contextfree python3
+    apt-get install --no-install-recommends contextfree flam3-utils python3
     cargo build --release
     python3 benches/peers.py            # some ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; only what is small
@@ -14,7 +14,8 @@ says where it is; a folder in memory leaves the disk out). Peak memory is that o
 not less than this script's own, some 15 MiB.
 
 The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
-Colours are switched off: cfdg draws black bars, and so does kfrac.
+Colours are switched off: cfdg draws black bars, and so does kfrac. Both
+kfrac and flam3 get one thread, then two; flam3 is left out where it is not installed.
 """
 
 import argparse
@@ -40,6 +41,9 @@ BESIDE = [
     ("tree 2^23 to PNG 1024²", HERE / "peers/tree.yaml", 22, "tree", 22, "png", 1, 75, 64, False),
 ]
 
+# Threads, and the least ratio of times beside flam3.
+RANDOM = [(1, 10), (2, 20)]
+
 # What is done, the command, and the most milliseconds.
 ALONE = [
     ("info koch --steps 2000 --json", ["info", "koch", "--steps", "2000", "--json"], 20),
@@ -48,11 +52,15 @@ ALONE = [
 ]
 
 
-def run(command):
+def run(command, source=None, environment=None):
     """Seconds and MiB of a command that must succeed."""
     start = time.perf_counter()
     process = subprocess.Popen(
-        [str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        [str(part) for part in command],
+        stdin=source,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        env=environment and {**os.environ, **environment},
     )
     errors = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)
@@ -103,6 +111,31 @@ def beside(kfrac, folder, quick):
         )
 
 
+def beside_flam3(kfrac, folder, quick):
+    """The fern by random iteration: as many points as flam3 draws, 100 a pixel of 1024²."""
+    print()
+    row("beside flam3", "kfrac", "flam3", "ratio", "target", "", "memory")
+    for threads, ratio in RANDOM:
+        ours, theirs = [], []
+        for _ in range(1 if quick else 3):
+            command = [kfrac, "grow", "barnsley-fern-four", "--method", "chaos", "--quiet"]
+            command += ["--points", 100 * 1024**2, "--size", "1024x1024", "--threads", threads]
+            ours.append(run([*command, "-o", folder / "ours.png"]))
+            with open(HERE / "peers/fern.flame") as flame:
+                settings = {"nthreads": str(threads), "out": str(folder / "theirs.png")}
+                theirs.append(run(["flam3-render"], flame, settings))
+        seconds, peer = (statistics.median(time for time, _ in each) for each in (ours, theirs))
+        row(
+            f"fern, 105 M points, {threads} thread{'s' if threads > 1 else ''}",
+            f"{seconds:.3f} s",
+            f"{peer:.2f} s",
+            f"{peer / seconds:.1f} x",
+            f"{ratio} x",
+            verdict(peer / seconds >= ratio),
+            f"{max(memory for _, memory in ours):.0f} MiB",
+        )
+
+
 def streamed(kfrac, folder, quick):
     """Segments a second to a file, and memory that does not grow with the steps."""
     steps, fewer = (22, 18) if quick else (26, 22)
@@ -147,6 +180,8 @@ def main():
         sys.exit("there is no cfdg: run apt-get install contextfree")
     with tempfile.TemporaryDirectory() as folder:
         beside(kfrac, Path(folder), arguments.quick)
+        if shutil.which("flam3-render") is not None:
+            beside_flam3(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)
         alone(kfrac, arguments.quick)
 

@@ -121,6 +121,8 @@ pub enum ColorBy {
     FirstMap,
     /// The map of a system that is applied last, the outermost one: the tiling.
     LastMap,
+    /// How often random iteration comes to a pixel. Approximants are of one colour for all.
+    Hits,
 }
 
 /// The names of the variants of an enumeration, as files and the command line write them.
@@ -177,6 +179,7 @@ impl Named for ColorBy {
         ("direction", Self::Direction),
         ("first-map", Self::FirstMap),
         ("last-map", Self::LastMap),
+        ("hits", Self::Hits),
     ];
 }
 

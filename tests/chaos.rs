@@ -5,9 +5,10 @@
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
 
-use kfrac::chaos::{ClassBy, Game, GameError, Histogram, Map, Shape, Start, System, Window, play};
+use kfrac::chaos::{ClassBy, Game, GameError, Histogram, Points, Start, System, Window, play};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::grow::Progress;
+use kfrac::ifs::{Condensation, Definition, Edge, Ifs, Map, Moments, Shape};
 use kfrac::render::{Density, Labels, Shades, Tone, write_density};
 use kfrac::style::{Colour, Palette};
 
@@ -19,20 +20,66 @@ const FERN: [[f64; 7]; 4] = [
 ];
 
 /// Maps x → ax + by + e, y → cx + dy + f with their weights.
-fn maps(table: &[[f64; 7]]) -> Vec<(Map, f64)> {
+fn maps(table: &[[f64; 7]]) -> Vec<Map> {
     let map = |&[a, b, c, d, e, f, weight]: &[f64; 7]| {
-        let map = DAffine2::from_cols_array(&[a, c, b, d, e, f]);
-        (Map::Affine(map), weight)
+        Map::new(DAffine2::from_cols_array(&[a, c, b, d, e, f])).weighing(weight)
     };
     table.iter().map(map).collect()
 }
 
+fn ifs(maps: Vec<Map>) -> Ifs {
+    Ifs::new(Definition {
+        maps,
+        ..Definition::default()
+    })
+    .unwrap()
+}
+
+/// A recurrent system by the weights with which a column's map follows a row's.
+fn recurrent(maps: Vec<Map>, transitions: &[Vec<f64>]) -> Ifs {
+    let rows = transitions.iter().enumerate();
+    let edges = rows.flat_map(|(from, row)| {
+        let weights = row.iter().copied().enumerate();
+        let edges = weights.filter(|(_, weight)| *weight > 0.0);
+        edges.map(move |(to, weight)| Edge {
+            from,
+            to,
+            weight: Some(weight),
+        })
+    });
+    let edges = Some(edges.collect());
+    Ifs::new(Definition {
+        maps,
+        edges,
+        ..Definition::default()
+    })
+    .unwrap()
+}
+
+/// A system with condensation sets, each with its weight.
+fn condensed(maps: Vec<Map>, sets: Vec<(Shape, f64)>) -> Ifs {
+    let sets = sets.into_iter().map(|(shape, weight)| Condensation {
+        shape,
+        weight: Some(weight),
+    });
+    Ifs::new(Definition {
+        maps,
+        condensation: sets.collect(),
+        ..Definition::default()
+    })
+    .unwrap()
+}
+
+fn system(ifs: &Ifs) -> System {
+    System::of(ifs).unwrap()
+}
+
 fn fern() -> System {
-    System::new(maps(&FERN)).unwrap()
+    system(&ifs(maps(&FERN)))
 }
 
 /// x → (x + digit)/3, so that points are ternary fractions; the last map gives the first digit.
-fn digit(digit: u32, weight: f64) -> (Map, f64) {
+fn digit(digit: u32, weight: f64) -> Map {
     let shift = f64::from(digit) / 3.0;
     maps(&[[1.0 / 3.0, 0.0, 0.0, 0.0, shift, 0.5, weight]]).remove(0)
 }
@@ -64,9 +111,9 @@ fn game(points: u64) -> Game<'static> {
     }
 }
 
-/// The mean and the covariance of a histogram, in the units of the plane. Half a pixel's error in a
-/// point is none in the mean of many.
-fn moments(histogram: &Histogram, window: &Window) -> (DVec2, DMat2) {
+/// The moments of a histogram, in the units of the plane. Half a pixel's error in a point is none in
+/// the mean of many.
+fn moments(histogram: &Histogram, window: &Window) -> Moments {
     let back = window.to_pixels.inverse();
     let width = histogram.size()[0] as usize;
     let (mut mass, mut first, mut second) = (0.0, DVec2::ZERO, DMat2::ZERO);
@@ -80,38 +127,39 @@ fn moments(histogram: &Histogram, window: &Window) -> (DVec2, DMat2) {
     }
     let mean = first / mass;
     let square = DMat2::from_cols(mean * mean.x, mean * mean.y);
-    (mean, second * (1.0 / mass) - square)
+    let covariance = second * (1.0 / mass) - square;
+    Moments { mean, covariance }
 }
 
 /// What is counted of a million points must agree with the exact moments to a 40th of a standard
 /// deviation: steps of the fern are correlated over some ten steps, so that is eight standard errors.
-fn assert_moments(system: &System, window: &Window) {
-    let exact = system.moments().unwrap();
-    let histogram = play(system, window, &game(1_000_000)).unwrap();
+fn assert_moments(ifs: &Ifs, window: &Window) {
+    let exact = ifs.measure().unwrap().moments;
+    let histogram = play(&system(ifs), window, &game(1_000_000)).unwrap();
     assert_eq!(histogram.inside(), 1_000_000);
-    let (mean, covariance) = moments(&histogram, window);
+    let counted = moments(&histogram, window);
     let variance = exact.covariance.x_axis.x + exact.covariance.y_axis.y;
-    let off = (mean - exact.mean).length();
-    assert!(off < 0.025 * variance.sqrt(), "{mean} {}", exact.mean);
+    let off = (counted.mean - exact.mean).length();
+    assert!(off < 0.025 * variance.sqrt(), "{counted:?} {exact:?}");
+    let close = counted.covariance;
     assert!(
-        covariance.abs_diff_eq(exact.covariance, 0.03 * variance),
-        "{covariance} {}",
-        exact.covariance
+        close.abs_diff_eq(exact.covariance, 0.03 * variance),
+        "{counted:?} {exact:?}"
     );
 }
 
 #[test]
 fn the_measure_has_its_moments() {
-    assert_moments(&fern(), &fern_window(512));
+    assert_moments(&ifs(maps(&FERN)), &fern_window(512));
     // In double precision: the plane is far away from its origin.
     let mut far = fern_window(512);
     let shift = DAffine2::from_translation(DVec2::splat(1e5));
     far.to_pixels *= shift.inverse();
-    let maps = maps(&FERN).into_iter().map(|(map, weight)| match map {
-        Map::Affine(map) => (Map::Affine(shift * map * shift.inverse()), weight),
-        Map::Condensation(_) => unreachable!(),
-    });
-    assert_moments(&System::new(maps.collect()).unwrap(), &far);
+    let mut maps = maps(&FERN);
+    for map in &mut maps {
+        map.affine = shift * map.affine * shift.inverse();
+    }
+    assert_moments(&ifs(maps), &far);
 }
 
 #[test]
@@ -122,7 +170,7 @@ fn the_measure_of_a_gasket_with_weights_has_its_moments() {
         [0.5, 0.0, 0.0, 0.5, 0.25, 0.4330127018922193, 1.0],
     ];
     let window = window(DVec2::new(-0.01, 1.0), 500.0, [512; 2]);
-    assert_moments(&System::new(maps(&table)).unwrap(), &window);
+    assert_moments(&ifs(maps(&table)), &window);
 }
 
 #[test]
@@ -133,23 +181,24 @@ fn the_measure_of_a_recurrent_system_has_its_moments() {
         vec![0.0, 4.0, 1.0, 0.0],
         vec![1.0, 3.0, 3.0, 0.0],
     ];
-    let system = System::recurrent(maps(&FERN), transitions).unwrap();
+    let system = recurrent(maps(&FERN), &transitions);
     assert_moments(&system, &fern_window(512));
 }
 
 #[test]
 fn the_measure_of_a_condensed_system_has_its_moments() {
     let mut maps = maps(&FERN);
-    let disk = DAffine2::from_scale_angle_translation(DVec2::new(0.5, 1.0), 0.3, DVec2::Y * 3.0);
-    maps[0].0 = Map::Condensation(Shape::polyline(&[DVec2::ZERO, DVec2::Y * 1.6]).unwrap());
-    maps.push((Map::Condensation(Shape::ellipse(disk).unwrap()), 0.1));
-    assert_moments(&System::new(maps).unwrap(), &fern_window(512));
+    let stem = Shape::polyline(&[DVec2::ZERO, DVec2::Y * 1.6]).unwrap();
+    let disk = Shape::ellipse(DVec2::Y * 3.0, DVec2::new(0.5, 1.0), 17.0).unwrap();
+    maps.remove(0);
+    let system = condensed(maps, vec![(stem, 0.01), (disk, 0.1)]);
+    assert_moments(&system, &fern_window(512));
 }
 
 #[test]
 fn threads_do_not_tell() {
-    let recurrent = vec![vec![1.0, 9.0, 2.0, 2.0]; 4];
-    let recurrent = System::recurrent(maps(&FERN), recurrent).unwrap();
+    let recurrent = recurrent(maps(&FERN), &vec![vec![1.0, 9.0, 2.0, 2.0]; 4]);
+    let recurrent = system(&recurrent);
     let starts = Start::Points {
         points: vec![DVec2::new(4.0, 1.0), DVec2::new(-4.0, 9.0)],
         steps: NonZero::new(700).unwrap(),
@@ -199,7 +248,7 @@ fn counts_are_pinned() {
 
 #[test]
 fn nothing_lies_in_the_gaps_of_the_cantor_set() {
-    let system = System::new(vec![digit(0, 1.0), digit(2, 1.0)]).unwrap();
+    let system = system(&ifs(vec![digit(0, 1.0), digit(2, 1.0)]));
     let histogram = play(&system, &ternary(6), &game(640_000)).unwrap();
     let mut columns = vec![0u32; 729];
     for (place, count) in histogram.counts(0).iter().enumerate() {
@@ -248,7 +297,7 @@ fn points_lie_on_the_gasket() {
         [0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 1.0],
         [0.5, 0.0, 0.0, 0.5, 0.25, 0.4330127018922193, 1.0],
     ];
-    let system = System::new(maps(&table)).unwrap();
+    let system = system(&ifs(maps(&table)));
     // Pixels of 1e-4 around the middle of the left side.
     let scale = 1e4;
     let window = window(DVec2::new(0.235, 0.45), scale, [300; 2]);
@@ -285,7 +334,7 @@ fn columns(histogram: &Histogram) -> Vec<Vec<u32>> {
 fn weights_are_honoured_and_classes_are_tiles() {
     let weights = [2.0, 5.0, 1.0];
     let digits = (0..3).map(|place| digit(place, weights[place as usize]));
-    let system = System::new(digits.collect()).unwrap();
+    let system = system(&ifs(digits.collect()));
     for ago in 0..2 {
         let game = Game {
             classes: ClassBy::Map { ago },
@@ -321,7 +370,7 @@ fn transitions_lead_from_the_row_to_the_column() {
         vec![0.0, 1.0, 1.0],
         vec![0.3, 0.0, 0.0],
     ];
-    let system = System::recurrent(digits, transitions).unwrap();
+    let system = system(&recurrent(digits, &transitions));
     let columns = columns(&play(&system, &ternary(2), &game(400_000)).unwrap());
     // 10 after 01, 11 and 21 after 1, 02 after 2.
     let expected = [0, 0, 1, 1, 1, 0, 0, 1, 0];
@@ -336,13 +385,9 @@ fn transitions_lead_from_the_row_to_the_column() {
 
 #[test]
 fn condensation_sets_are_drawn_at_every_level() {
-    let point = Shape::point(DVec2::new(0.5, 0.5)).unwrap();
-    let maps = vec![
-        digit(0, 1.0),
-        (Map::Condensation(point), 2.0),
-        digit(2, 1.0),
-    ];
-    let system = System::new(maps).unwrap();
+    let point = Shape::Point(DVec2::new(0.5, 0.5));
+    let maps = vec![digit(0, 1.0), digit(2, 1.0)];
+    let system = system(&condensed(maps, vec![(point, 2.0)]));
     let game = Game {
         classes: ClassBy::Map { ago: 0 },
         ..game(400_000)
@@ -350,9 +395,9 @@ fn condensation_sets_are_drawn_at_every_level() {
     let columns = columns(&play(&system, &ternary(3), &game).unwrap());
     // Half of the points, then an eighth in the middle of either third, and so on.
     let about = |count: u32, expected: f64| (f64::from(count) - expected).abs() < 1_500.0;
-    assert_eq!(columns[1].iter().sum::<u32>(), columns[1][13]);
-    assert!(about(columns[1][13], 200_000.0));
-    assert!(about(columns[0][4], 50_000.0) && about(columns[2][22], 50_000.0));
+    assert_eq!(columns[2].iter().sum::<u32>(), columns[2][13]);
+    assert!(about(columns[2][13], 200_000.0));
+    assert!(about(columns[0][4], 50_000.0) && about(columns[1][22], 50_000.0));
     assert!(about(columns[0][1], 12_500.0) && about(columns[0][7], 12_500.0));
     assert_eq!(columns[0][3] + columns[0][5], 0);
 }
@@ -360,7 +405,7 @@ fn condensation_sets_are_drawn_at_every_level() {
 /// Demko et al. 1985, section 3.2: the walk from 2 by f, f, g, f passes 2/3, 2/9, 20/27 and 20/81.
 #[test]
 fn walks_from_given_starts_are_drawn_whole() {
-    let system = System::new(vec![digit(0, 1.0), digit(2, 1.0)]).unwrap();
+    let system = system(&ifs(vec![digit(0, 1.0), digit(2, 1.0)]));
     let walk = |steps| {
         let start = Start::Points {
             points: vec![DVec2::new(2.02, 0.0)],
@@ -459,8 +504,9 @@ fn no_points_are_an_empty_histogram() {
 
 /// The pixels of a picture of two points in a row of three, the second one hit three times as often.
 fn pixels(density: &Density, classes: ClassBy) -> Vec<[u8; 4]> {
-    let point = |x| Map::Condensation(Shape::point(DVec2::new(x, 0.5)).unwrap());
-    let system = System::new(vec![(point(0.5), 1.0), (point(1.5), 3.0)]).unwrap();
+    // Two maps to a point each.
+    let point = |x: f64, weight: f64| maps(&[[0.0, 0.0, 0.0, 0.0, x, 0.5, weight]]).remove(0);
+    let system = system(&ifs(vec![point(0.5, 1.0), point(1.5, 3.0)]));
     let game = Game {
         classes,
         ..game(100_000)
@@ -518,4 +564,36 @@ fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
     let drawn = pixels(&palette, ClassBy::One);
     assert_eq!(drawn[1], Palette::default().at(1.0).rgba());
     assert_eq!(drawn[2], [255; 4]);
+}
+
+/// The list is another walk by the same chances.
+#[test]
+fn points_can_be_listed() {
+    let weights = [2.0, 5.0, 1.0];
+    let digits = (0..3).map(|place| digit(place, weights[place as usize]));
+    let system = system(&ifs(digits.collect()));
+    let mut counts = [0; 3];
+    for point in Points::new(&system, &Start::Attractor, 7).take(80_000) {
+        counts[point.map] += 1;
+        assert_eq!(point.map as f64, (point.place.x * 3.0 + 1e-9).floor());
+    }
+    for (count, weight) in counts.into_iter().zip(weights) {
+        assert!(
+            (f64::from(count) - 10_000.0 * weight).abs() < 700.0,
+            "{count}"
+        );
+    }
+    let start = Start::Points {
+        points: vec![DVec2::new(2.0, 0.0), DVec2::new(5.0, 0.0)],
+        steps: NonZero::new(2).unwrap(),
+    };
+    let [first, second, third, _, fifth] = Points::new(&system, &start, 0)
+        .take(5)
+        .map(|point| point.place.x * 3.0 - point.map as f64)
+        .collect::<Vec<_>>()[..]
+    else {
+        panic!("there is no end")
+    };
+    assert!((first - 2.0).abs() < 1e-12 && (third - 5.0).abs() < 1e-12);
+    assert!((0.0..2.0).contains(&second) && (fifth - 2.0).abs() < 1e-12);
 }

@@ -2,8 +2,8 @@ use crate::geometry::{DAffine2, DVec2};
 
 use super::alias::AliasTable;
 use super::random::{LANES, Scalar};
-use super::system::System;
-use super::{ClassBy, Game, Map, Start, Window};
+use super::system::{Map, System};
+use super::{ClassBy, Game, Start, Window};
 
 /// Steps of a walker that starts on the attractor, before another one starts: enough walks for all
 /// threads, and long enough that the warm-up takes little.
@@ -11,7 +11,7 @@ const STEPS: u64 = 1 << 15;
 
 /// Steps that such a walker takes before its points count: the walkers all start at one point, and
 /// must forget it, and know all their past that may be asked for.
-const WARM_UP: u32 = 256;
+pub(super) const WARM_UP: u32 = 256;
 
 /// Steps of the walk that tells how large rounding errors become.
 const PILOT: u32 = 10_000;
@@ -93,13 +93,10 @@ impl<'a> Course<'a> {
     /// Where a walker of a wave starts, in pixels, and after which map: the number of maps where
     /// there has been none.
     pub(super) fn start(&self, wave: u64, lane: usize) -> (DVec2, usize) {
-        let (point, last) = match self.start {
-            Start::Points { points, .. } if !points.is_empty() => {
-                let walk = wave.wrapping_mul(LANES as u64).wrapping_add(lane as u64);
-                let turn = usize::try_from(walk % points.len() as u64).unwrap_or_default();
-                (points[turn], self.maps.len())
-            }
-            _ => {
+        let walk = wave.wrapping_mul(LANES as u64).wrapping_add(lane as u64);
+        let (point, last) = match self.start.walk(walk) {
+            Some(point) => (point, self.maps.len()),
+            None => {
                 let start = self.system.start();
                 (start.point, start.last)
             }
@@ -117,7 +114,9 @@ impl<'a> Course<'a> {
         let mut error = DVec2::ZERO;
         let mut worst = 0.0f64;
         for _ in 0..PILOT {
-            last = self.choice.choose(last, random.word());
+            last = self
+                .choice
+                .choose(self.system.state_after(last), random.word());
             match (&self.maps[last], &self.system.maps()[last]) {
                 (Some(map), _) => {
                     let matrix = map.matrix2.abs();

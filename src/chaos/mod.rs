@@ -1,9 +1,10 @@
 //! Random iteration, the *chaos game*: the attractor of an iterated function system, and the
 //! P-balanced measure on it, from random walks (Barnsley & Demko 1985; Demko, Hodges & Naylor 1985).
 //!
-//! A [`System`] has maps with weights. At each step a walker is moved by one of them, chosen at
-//! random; the fraction of its steps that end in a part of the plane tends to the measure of that
-//! part. [`play`] counts them, pixel by pixel, as a [`Histogram`].
+//! A [`System`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of
+//! its maps, chosen at random, or set down in a condensation set; the fraction of its steps that end
+//! in a part of the plane tends to the measure of that part. [`play`] counts them, pixel by pixel, as
+//! a [`Histogram`]; [`Points`] lists them.
 //!
 //! Walkers walk side by side, in waves that have their own random numbers each, so neither the
 //! order of waves nor the number of threads tells in the result; it is the same on every machine.
@@ -13,18 +14,17 @@
 mod alias;
 mod course;
 mod histogram;
-mod moments;
+mod points;
 mod random;
 mod real;
-mod shape;
+mod sampler;
 mod system;
 mod tally;
 mod walkers;
 
 pub use histogram::{Histogram, Window};
-pub use moments::Moments;
-pub use shape::{NoExtent, Shape};
-pub use system::{Map, System, SystemError};
+pub use points::{Point, Points};
+pub use system::{System, SystemError};
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -52,6 +52,17 @@ pub enum Start {
         /// The steps of a walk. The fewer, the more of them are on the way.
         steps: NonZero<u32>,
     },
+}
+
+impl Start {
+    /// Where a walk starts, if not on the attractor.
+    fn walk(&self, number: u64) -> Option<DVec2> {
+        let Self::Points { points, .. } = self else {
+            return None;
+        };
+        let turn = number.checked_rem(points.len() as u64)?;
+        points.get(usize::try_from(turn).ok()?).copied()
+    }
 }
 
 /// What points are told apart by.
@@ -109,7 +120,7 @@ impl Default for Game<'_> {
 pub enum GameError {
     /// The histogram is larger than memory should be asked to hold.
     #[error(
-        "{0} x {1} pixels in {classes} classes take more than {most} counters",
+        "{0} x {1} pixels take more than {most} counters, with one for each class ({classes})",
         size[0], size[1], most = MOST_BINS
     )]
     TooManyBins {
@@ -119,7 +130,7 @@ pub enum GameError {
         classes: usize,
     },
     /// The window has no pixel, more than 2²² on a side, or a map that has no inverse.
-    #[error("the window is empty, too large or flat")]
+    #[error("the window is empty or flat, or what it shows is too large or too small for numbers")]
     Window,
     /// A start is not finite.
     #[error("start {start} is not finite")]
@@ -151,7 +162,7 @@ pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogr
     check(window, game)?;
     let classes = match game.classes {
         ClassBy::One => 1,
-        ClassBy::Map { .. } => system.maps().len(),
+        ClassBy::Map { .. } => system.classes(),
     };
     let size @ [width, height] = window.size;
     let pixels = u64::from(width) * u64::from(height);
@@ -215,6 +226,7 @@ fn check(window: &Window, game: &Game<'_>) -> Result<(), GameError> {
 mod tests {
     use super::*;
     use crate::geometry::{DAffine2, DMat2};
+    use crate::ifs::{Definition, Ifs, Map};
 
     /// The fern: steep, slow to contract, and with maps of all kinds.
     fn fern() -> System {
@@ -225,10 +237,13 @@ mod tests {
             [-0.15, 0.28, 0.26, 0.24, 0.0, 0.44, 0.07],
         ];
         let maps = table.map(|[a, b, c, d, e, f, weight]| {
-            let map = DAffine2::from_cols_array(&[a, c, b, d, e, f]);
-            (Map::Affine(map), weight)
+            Map::new(DAffine2::from_cols_array(&[a, c, b, d, e, f])).weighing(weight)
         });
-        System::new(maps.into()).unwrap()
+        let definition = Definition {
+            maps: maps.into(),
+            ..Definition::default()
+        };
+        System::of(&Ifs::new(definition).unwrap()).unwrap()
     }
 
     fn window(side: u32, scale: f64) -> Window {

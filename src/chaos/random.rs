@@ -70,6 +70,7 @@ impl Lanes {
 }
 
 /// A generator for what is drawn now and then.
+#[derive(Clone, Debug)]
 pub(super) struct Scalar(Pcg64Mcg);
 
 impl Scalar {

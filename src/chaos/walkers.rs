@@ -7,13 +7,14 @@ use multiversion::multiversion;
 
 use crate::geometry::DAffine2;
 
+use super::ClassBy;
 use super::alias::AliasTable;
 use super::course::Course;
 use super::random::{LANES, Lanes, Scalar};
 use super::real::Real;
-use super::system::Map;
+use super::sampler::Sampler;
+use super::system::{Map, System};
 use super::tally::{Cancelled, Tally};
-use super::{ClassBy, Shape};
 
 /// Steps that are walked before they are counted.
 const STEPS: usize = 64;
@@ -46,19 +47,41 @@ fn walk_in<T: Real>(
     wave: u64,
     tally: &mut Tally<'_>,
 ) -> Result<(), Cancelled> {
-    let is_plain = course.classes == ClassBy::One && !course.system.is_recurrent();
     let maps = course.maps.iter().copied().collect::<Option<Vec<_>>>();
-    match maps {
-        Some(maps) if is_plain && maps.len() <= 2 => {
-            run(course, wave, &mut Few::<T, 2>::new(course), tally)
+    let is_free = !course.system.is_recurrent();
+    match (maps, course.classes) {
+        (Some(maps), ClassBy::One) if is_free && maps.len() <= MOST => {
+            walk_few::<T, false>(course, wave, maps.len(), tally)
         }
-        Some(maps) if is_plain && maps.len() == 3 => {
-            run(course, wave, &mut Few::<T, 3>::new(course), tally)
-        }
-        Some(maps) if is_plain && maps.len() == 4 => {
-            run(course, wave, &mut Few::<T, 4>::new(course), tally)
+        (Some(maps), ClassBy::Map { ago: 0 }) if is_free && maps.len() <= MOST => {
+            walk_few::<T, true>(course, wave, maps.len(), tally)
         }
         _ => run(course, wave, &mut Any::<T>::new(course, wave), tally),
+    }
+}
+
+/// The most maps all of which are applied. More are faster looked up.
+const MOST: usize = 16;
+
+#[inline(always)]
+fn walk_few<T: Real, const BY_LAST: bool>(
+    course: &Course<'_>,
+    wave: u64,
+    maps: usize,
+    tally: &mut Tally<'_>,
+) -> Result<(), Cancelled> {
+    match maps {
+        ..=2 => run(course, wave, &mut Few::<T, BY_LAST, 2>::new(course), tally),
+        3 => run(course, wave, &mut Few::<T, BY_LAST, 3>::new(course), tally),
+        4 => run(course, wave, &mut Few::<T, BY_LAST, 4>::new(course), tally),
+        5..=6 => run(course, wave, &mut Few::<T, BY_LAST, 6>::new(course), tally),
+        7..=8 => run(course, wave, &mut Few::<T, BY_LAST, 8>::new(course), tally),
+        _ => run(
+            course,
+            wave,
+            &mut Few::<T, BY_LAST, MOST>::new(course),
+            tally,
+        ),
     }
 }
 
@@ -167,17 +190,20 @@ impl<T: Real> Affine<T> {
 }
 
 /// A few affine maps, any of which may follow: all are applied, and one is taken.
-struct Few<T, const N: usize> {
+struct Few<T, const BY_LAST: bool, const N: usize> {
     raster: Raster<T>,
     maps: [Affine<T>; N],
+    /// The first bin of the class of a map, if the last map tells classes apart.
+    classes: [u32; N],
     /// A map is taken where the word is not below its own threshold, but below the next one's.
     thresholds: [u32; N],
 }
 
-impl<T: Real, const N: usize> Few<T, N> {
+impl<T: Real, const BY_LAST: bool, const N: usize> Few<T, BY_LAST, N> {
     fn new(course: &Course<'_>) -> Self {
-        let weights = course.system.weights_after(0);
+        let weights = course.system.probabilities();
         let total: f64 = weights.iter().sum();
+        let mut classes = [0; N];
         let mut below = 0.0;
         let mut thresholds = [0; N];
         let mut maps = [Affine::of(&DAffine2::IDENTITY); N];
@@ -190,9 +216,10 @@ impl<T: Real, const N: usize> Few<T, N> {
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
-                reason = "a part of all words; casts saturate"
+                reason = "few maps, and a part of all words; casts saturate"
             )]
             {
+                classes[place] = map as u32 * course.stride;
                 thresholds[place] = (below / total * 2f64.powi(32)) as u32;
             }
             below += weights.get(place).unwrap_or(&0.0);
@@ -200,31 +227,42 @@ impl<T: Real, const N: usize> Few<T, N> {
         Self {
             raster: Raster::new(course),
             maps,
+            classes,
             thresholds,
         }
     }
 }
 
-impl<T: Real, const N: usize> Walk<T> for Few<T, N> {
+impl<T: Real, const BY_LAST: bool, const N: usize> Walk<T> for Few<T, BY_LAST, N> {
     #[inline(always)]
     fn step(&mut self, words: &[u32; LANES], places: &mut Places<T>, bins: &mut [u32; LANES]) {
         let Self {
             raster,
             maps,
+            classes,
             thresholds,
         } = *self;
         for lane in 0..LANES {
             let (x, y, word) = (places.x[lane], places.y[lane], words[lane]);
             let [mut next_x, mut next_y] = maps[0].apply(x, y);
+            let mut class = 0;
             for place in 1..N {
                 let [new_x, new_y] = maps[place].apply(x, y);
                 let is_taken = word >= thresholds[place];
                 next_x = if is_taken { new_x } else { next_x };
                 next_y = if is_taken { new_y } else { next_y };
+                if BY_LAST {
+                    class = if is_taken { classes[place] } else { class };
+                }
             }
             places.x[lane] = next_x;
             places.y[lane] = next_y;
-            bins[lane] = raster.bin(next_x, next_y);
+            let bin = raster.bin(next_x, next_y);
+            bins[lane] = if BY_LAST {
+                bin.wrapping_add(class)
+            } else {
+                bin
+            };
         }
     }
 }
@@ -232,10 +270,11 @@ impl<T: Real, const N: usize> Walk<T> for Few<T, N> {
 /// Any system: maps are looked up.
 struct Any<'a, T> {
     raster: Raster<T>,
+    system: &'a System,
     choice: &'a AliasTable,
     maps: Vec<Affine<T>>,
     /// The condensation sets.
-    shapes: Vec<Option<&'a Shape>>,
+    shapes: Vec<Option<&'a Sampler>>,
     to_pixels: DAffine2,
     random: Scalar,
     /// The map before.
@@ -264,6 +303,7 @@ impl<'a, T: Real> Any<'a, T> {
         };
         Self {
             raster: Raster::new(course),
+            system: course.system,
             choice: &course.choice,
             maps: maps
                 .map(|map| Affine::of(map.as_ref().unwrap_or(&identity)))
@@ -284,7 +324,7 @@ impl<T: Real> Walk<T> for Any<'_, T> {
         let now = self.past.advance();
         for (lane, &word) in words.iter().enumerate() {
             let last = self.last[lane] as usize;
-            let map = self.choice.choose(last, word);
+            let map = self.choice.choose(self.system.state_after(last), word);
             let [mut x, mut y] = self.maps[map].apply(places.x[lane], places.y[lane]);
             if let Some(shape) = self.shapes[map] {
                 let point = self

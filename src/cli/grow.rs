@@ -1,6 +1,6 @@
 //! `kfrac grow`: from a rule to a picture or a table.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueHint;
@@ -13,12 +13,13 @@ use crate::render::{self, RenderError, Size};
 use crate::style::Named;
 use crate::wording;
 
+use super::chaos::ChaosArguments;
 use super::goal::Goal;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, format, help, output, steps, text};
+use super::{Failure, chaos, format, help, output, steps, text};
 
 /// Grows a rule and draws it, or lists its elements
 ///
@@ -58,6 +59,8 @@ pub(super) struct Arguments {
     size: Size,
     #[command(flatten)]
     picture: PictureArguments,
+    #[command(flatten)]
+    chaos: ChaosArguments,
 }
 
 const MORE: &str = "\
@@ -82,6 +85,8 @@ Examples:
       Draws another tree of the same kind
   kfrac grow koch --steps 4 --format csv -o - | head
       Lists the elements
+  kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
+      Draws a system of maps by random iteration, into barnsley-fern.png
 ";
 
 /// What may come of a rule.
@@ -104,6 +109,11 @@ impl Named for Format {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
+    if arguments.chaos.is_asked() {
+        return arguments.play(catalogue, start);
+    }
+    arguments.chaos.refuse_alone()?;
+    arguments.picture.refuse_hits()?;
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
     if arguments.detail.is_some() && !matches!(format, Format::Picture(_)) {
         let message = "--detail is a size in pixels, and only pictures have pixels";
@@ -191,6 +201,56 @@ impl Arguments {
             detail: goal.detail(),
             labels: labels(loaded, &goal.described(), "grow", options),
         }
+    }
+}
+
+impl Arguments {
+    /// Draws or lists the points of random iteration.
+    fn play(&self, catalogue: &Catalogue, start: Instant) -> Result<(), Failure> {
+        if self.detail.is_some() {
+            let message = "--detail is of elements, and --method chaos draws points";
+            return Err(Failure::Usage(message.into()));
+        }
+        self.picture.refuse_lines()?;
+        let format = match (self.format, &self.output) {
+            (None, None) => Format::Picture(render::Format::Png),
+            (asked, output) => match (asked, output.as_deref()) {
+                (None, Some(path)) if path == Path::new("-") => {
+                    Format::Picture(render::Format::Png)
+                }
+                (asked, output) => format::choose(asked, output)?,
+            },
+        };
+        if format == Format::Picture(render::Format::Svg) {
+            let message = "--method chaos draws points, too many for an SVG: write a .png, or a \
+                           .csv of the points";
+            return Err(Failure::Usage(message.into()));
+        }
+        let loaded = self.rule.load(catalogue, self.growth.quiet)?;
+        let game = self.chaos.game(&loaded, self.steps, &self.picture)?;
+        let default = self.rule.file("", format.name());
+        let path = self.output.as_ref().unwrap_or(&default);
+        let (summary, bytes) = output::write(path, self.growth.quiet, |out, progress| {
+            match format {
+                Format::Table(format) => game.list(format, &self.growth, progress, out),
+                Format::Picture(_) => {
+                    game.draw(self.size, &self.growth, &self.picture, progress, out)
+                }
+            }
+            .map_err(|failure| match failure {
+                chaos::Stopped::Said(failure) => failure,
+                chaos::Stopped::Render(error) => self.growth.explain(error, &loaded, path),
+            })
+        })?;
+        if !self.growth.quiet {
+            text::say(&format!(
+                "{}: {summary}, {}, {:.2} s",
+                output::called(path),
+                wording::bytes(bytes),
+                start.elapsed().as_secs_f64(),
+            ));
+        }
+        Ok(())
     }
 }
 

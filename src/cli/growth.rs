@@ -22,12 +22,12 @@ use super::{Failure, output, stop};
 pub(super) struct GrowthArguments {
     /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
-    seed: u64,
+    pub(super) seed: u64,
     /// The most elements that are grown
     ///
     /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N", default_value_t = 50_000_000)]
-    max_elements: u64,
+    pub(super) max_elements: u64,
     /// How many threads work [default: as many as there are cores]
     ///
     /// What they make does not depend on how many they are.

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod cat;
+mod chaos;
 mod check;
 mod compare;
 mod completions;

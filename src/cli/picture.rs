@@ -6,6 +6,8 @@ use crate::heading::Heading;
 use crate::render::Size;
 use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Width};
 
+use super::Failure;
+
 /// Options of pictures.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
@@ -71,6 +73,38 @@ impl PictureArguments {
         View {
             window: self.view.or(heading.view.window),
             margin: self.margin.unwrap_or(heading.view.margin),
+        }
+    }
+
+    /// What is asked for of the way in which points are coloured.
+    pub(super) fn asked_color_by(&self) -> Option<ColorBy> {
+        self.color_by
+    }
+
+    /// Refuses colours that only random iteration has.
+    pub(super) fn refuse_hits(&self) -> Result<(), Failure> {
+        match self.color_by {
+            Some(ColorBy::Hits) => {
+                let message = "--color-by hits counts points of random iteration: kfrac grow with \
+                               --method chaos has them";
+                Err(Failure::Usage(message.into()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses what only lines have.
+    pub(super) fn refuse_lines(&self) -> Result<(), Failure> {
+        let asked = [
+            ("--stroke-width", self.stroke_width.is_some()),
+            ("--cap", self.cap.is_some()),
+            ("--join", self.join.is_some()),
+        ];
+        match asked.into_iter().find(|(_, is_asked)| *is_asked) {
+            Some((option, _)) => Err(Failure::Usage(format!(
+                "{option} is of lines, and --method chaos draws points"
+            ))),
+            None => Ok(()),
         }
     }
 
@@ -186,6 +220,7 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
             ColorBy::Direction => "The element's direction",
             ColorBy::FirstMap => "The map of a system that is applied first, the innermost one",
             ColorBy::LastMap => "The map of a system that is applied last: the tiling",
+            ColorBy::Hits => "How often random iteration comes to a pixel",
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))

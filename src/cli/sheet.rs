@@ -65,6 +65,7 @@ Examples:
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
+    arguments.picture.refuse_hits()?;
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let family =
         arguments

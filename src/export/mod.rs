@@ -1,5 +1,7 @@
-//! Elements as tables, for other programs.
+//! Elements and points as tables, for other programs.
 
+mod points;
 mod table;
 
+pub use points::write_points;
 pub use table::{Format, write};

@@ -1,3 +1,4 @@
+use super::norm::spectral_radius;
 use crate::expression::degrees::{cos, sin};
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
@@ -36,6 +37,12 @@ impl Map {
     #[must_use]
     pub fn fixed_point(&self) -> Option<DVec2> {
         fixed_point(&self.affine)
+    }
+
+    /// Whether all points come together when it is applied over and over.
+    #[must_use]
+    pub fn contracts(&self) -> bool {
+        spectral_radius(self.affine.matrix2) < 1.0
     }
 }
 

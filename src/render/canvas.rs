@@ -135,7 +135,11 @@ impl Canvas {
     }
 
     /// The canvas that shows a window: lower left corner, width, height.
-    pub(super) fn of_window(
+    ///
+    /// # Errors
+    ///
+    /// If the window is empty or not finite, or if the margin leaves no room.
+    pub fn of_window(
         [x, y, width, height]: [f64; 4],
         view: &View,
         size: Size,
@@ -194,6 +198,12 @@ impl Canvas {
             (point.x - self.corner.x) * self.scale,
             (self.corner.y - point.y) * self.scale,
         )
+    }
+
+    /// The map from the plane to pixels.
+    #[must_use]
+    pub fn to_pixels(&self) -> DAffine2 {
+        self.map(&DAffine2::IDENTITY)
     }
 
     /// A map into the plane as one into the picture, in pixels.

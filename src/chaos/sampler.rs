@@ -1,91 +1,67 @@
-//! Shapes that points are drawn from, all of their points being equally likely.
+//! Points drawn from shapes, all of their points being equally likely.
 
-use std::f64::consts::TAU;
+use crate::geometry::DVec2;
+use crate::ifs::Shape;
+use crate::rule;
 
-use crate::geometry::{DAffine2, DVec2};
-
-use super::moments::{Raw, outer};
 use super::random::Scalar;
 
-/// A shape of the plane from which points are drawn: by length from lines, by area from areas.
+/// What points are drawn from: lines by length, what closed outlines wind around by area.
+///
+/// Curves are drawn from as chords, so many that none is farther from its curve than 1e-4 of the
+/// shape's size where the outline has no sharp bends.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub(super) struct Sampler {
     /// The pieces, each with the measure of all pieces up to its end.
     pieces: Vec<(f64, Piece)>,
 }
-
-/// A shape without points, without a length or an area, or beyond all numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the shape has no extent to draw points from")]
-pub struct NoExtent;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Piece {
     Point(DVec2),
     Segment([DVec2; 2]),
     Triangle([DVec2; 3]),
-    /// The image of the unit disk.
-    Ellipse(DAffine2),
 }
 
-impl Shape {
-    /// A single point.
-    ///
-    /// # Errors
-    ///
-    /// If a coordinate is not finite.
-    pub fn point(point: DVec2) -> Result<Self, NoExtent> {
-        if !point.is_finite() {
-            return Err(NoExtent);
+/// Chords of a curve.
+const CHORDS: u32 = 64;
+
+/// The most heights at which the sides of an outline end or cross, and the most triangles.
+const MOST_PARTS: usize = 1 << 16;
+
+impl Sampler {
+    /// The sampler of a shape; `None` if it has no extent, or if its outline has so many corners and
+    /// crossings that it takes too much to part it into triangles.
+    pub(super) fn of(shape: &Shape) -> Option<Self> {
+        let outline = match shape {
+            Shape::Point(point) => {
+                let pieces = vec![(1.0, Piece::Point(*point))];
+                return point.is_finite().then_some(Self { pieces });
+            }
+            Shape::Outline(outline) => outline,
+        };
+        let mut corners = vec![outline.start()];
+        for piece in outline.pieces() {
+            add_chords(&mut corners, piece);
         }
-        Ok(Self {
-            pieces: vec![(1.0, Piece::Point(point))],
-        })
-    }
-
-    /// A line through points, drawn from by length.
-    ///
-    /// # Errors
-    ///
-    /// If it has no length or no finite one.
-    pub fn polyline(points: &[DVec2]) -> Result<Self, NoExtent> {
-        let sides = points.windows(2).map(|ends| {
-            let [a, b] = [ends[0], ends[1]];
-            ((b - a).length(), Piece::Segment([a, b]))
-        });
-        Self::of_pieces(sides)
-    }
-
-    /// What a closed polygon winds around, drawn from by area. Parts that it winds around more than
-    /// once count once.
-    ///
-    /// # Errors
-    ///
-    /// If it has no area or no finite one.
-    pub fn polygon(vertices: &[DVec2]) -> Result<Self, NoExtent> {
-        if !vertices.iter().all(|vertex| vertex.is_finite()) {
-            return Err(NoExtent);
+        if !corners.iter().all(|corner| corner.is_finite()) {
+            return None;
         }
-        Self::of_pieces(triangles(vertices).into_iter().map(|[a, b, c]| {
-            let area = (b - a).perp_dot(c - a).abs() / 2.0;
-            (area, Piece::Triangle([a, b, c]))
-        }))
-    }
-
-    /// The image of the unit disk under a map: an ellipse, or a disk; drawn from by area.
-    ///
-    /// # Errors
-    ///
-    /// If it has no area or no finite one.
-    pub fn ellipse(map: DAffine2) -> Result<Self, NoExtent> {
-        if !map.is_finite() {
-            return Err(NoExtent);
+        if outline.is_closed() {
+            let triangles = triangles(&corners)?.into_iter();
+            Self::of_pieces(triangles.map(|[a, b, c]| {
+                let area = (b - a).perp_dot(c - a).abs() / 2.0;
+                (area, Piece::Triangle([a, b, c]))
+            }))
+        } else {
+            Self::of_pieces(corners.windows(2).map(|ends| {
+                let [a, b] = [ends[0], ends[1]];
+                ((b - a).length(), Piece::Segment([a, b]))
+            }))
         }
-        let area = map.matrix2.determinant().abs();
-        Self::of_pieces([(area, Piece::Ellipse(map))].into_iter())
     }
 
-    fn of_pieces(pieces: impl Iterator<Item = (f64, Piece)>) -> Result<Self, NoExtent> {
+    fn of_pieces(pieces: impl Iterator<Item = (f64, Piece)>) -> Option<Self> {
         let mut total = 0.0;
         let mut cumulated = Vec::new();
         for (measure, piece) in pieces {
@@ -94,11 +70,8 @@ impl Shape {
                 cumulated.push((total, piece));
             }
         }
-        if total > 0.0 && f64::is_finite(total) {
-            Ok(Self { pieces: cumulated })
-        } else {
-            Err(NoExtent)
-        }
+        let has_extent = total > 0.0 && f64::is_finite(total);
+        has_extent.then_some(Self { pieces: cumulated })
     }
 
     /// Draws a point.
@@ -118,61 +91,36 @@ impl Shape {
                 }
                 a + (b - a) * u + (c - a) * v
             }
-            Piece::Ellipse(map) => {
-                let radius = random.unit().sqrt();
-                let (sine, cosine) = libm::sincos(random.unit() * TAU);
-                map.transform_point2(DVec2::new(cosine, sine) * radius)
-            }
         }
-    }
-
-    /// The moments of its points, all of which are equally likely.
-    pub(super) fn moments(&self) -> Raw {
-        let mut sum = Raw::point(DVec2::ZERO, 0.0);
-        let mut before = 0.0;
-        for &(end, piece) in &self.pieces {
-            sum = sum.plus(piece.moments(), end - before);
-            before = end;
-        }
-        Raw::point(DVec2::ZERO, 0.0).plus(sum, 1.0 / before)
     }
 }
 
-impl Piece {
-    fn moments(self) -> Raw {
-        let square = |point: DVec2| outer(point, point);
-        let (first, second) = match self {
-            Self::Point(point) => (point, square(point)),
-            Self::Segment([a, b]) => (
-                (a + b) / 2.0,
-                (square(a) + square(b) + square(a + b)) * (1.0 / 6.0),
-            ),
-            Self::Triangle([a, b, c]) => (
-                (a + b + c) / 3.0,
-                (square(a) + square(b) + square(c) + square(a + b + c)) * (1.0 / 12.0),
-            ),
-            Self::Ellipse(map) => (
-                map.translation,
-                map.matrix2 * map.matrix2.transpose() * 0.25 + square(map.translation),
-            ),
-        };
-        Raw {
-            mass: 1.0,
-            first,
-            second,
-        }
+/// Adds the corners of a piece, but for its start, which is there.
+fn add_chords(corners: &mut Vec<DVec2>, piece: &rule::Piece) {
+    let from = corners[corners.len() - 1];
+    match *piece {
+        rule::Piece::Line(end) => corners.push(end),
+        rule::Piece::Cubic(a, b, end) => corners.extend((1..=CHORDS).map(|chord| {
+            let t = f64::from(chord) / f64::from(CHORDS);
+            let s = 1.0 - t;
+            s * s * s * from + 3.0 * s * t * (s * a + t * b) + t * t * t * end
+        })),
     }
 }
 
 /// Triangles that together are what a polygon winds around: between the heights at which it has
-/// corners or crosses itself, its sides part a strip into trapezoids.
-fn triangles(vertices: &[DVec2]) -> Vec<[DVec2; 3]> {
+/// corners or crosses itself, its sides part a strip into trapezoids. Parts that it winds around more
+/// than once count once. `None` if there are too many.
+fn triangles(vertices: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
     let next = vertices.iter().cycle().skip(1);
     let sides: Vec<_> = vertices.iter().copied().zip(next.copied()).collect();
     let mut heights: Vec<f64> = vertices.iter().map(|vertex| vertex.y).collect();
     for (index, &first) in sides.iter().enumerate() {
         let crossings = sides[..index].iter();
         heights.extend(crossings.filter_map(|&second| crossing(first, second)));
+        if heights.len() > MOST_PARTS {
+            return None;
+        }
     }
     heights.sort_by(f64::total_cmp);
     heights.dedup();
@@ -196,8 +144,11 @@ fn triangles(vertices: &[DVec2]) -> Vec<[DVec2; 3]> {
                 triangles.extend([[a, b, c], [a, c, d]]);
             }
         }
+        if triangles.len() > MOST_PARTS {
+            return None;
+        }
     }
-    triangles
+    Some(triangles)
 }
 
 /// The height at which two sides cross.
@@ -211,11 +162,21 @@ fn crossing((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
-    fn points(shape: &Shape, count: usize) -> Vec<DVec2> {
+    fn polyline(points: &[DVec2]) -> Sampler {
+        Sampler::of(&Shape::polyline(points).unwrap()).unwrap()
+    }
+
+    fn polygon(points: &[DVec2]) -> Sampler {
+        Sampler::of(&Shape::polygon(points).unwrap()).unwrap()
+    }
+
+    fn points(sampler: &Sampler, count: usize) -> Vec<DVec2> {
         let mut random = Scalar::new(1, 0);
-        (0..count).map(|_| shape.draw(&mut random)).collect()
+        (0..count).map(|_| sampler.draw(&mut random)).collect()
     }
 
     fn share(points: &[DVec2], is_in: impl Fn(&DVec2) -> bool) -> f64 {
@@ -229,7 +190,7 @@ mod tests {
     #[test]
     fn lines_are_drawn_from_by_length() {
         let corner = [DVec2::ZERO, DVec2::X * 3.0, DVec2::new(3.0, 1.0)];
-        let points = points(&Shape::polyline(&corner).unwrap(), COUNT);
+        let points = points(&polyline(&corner), COUNT);
         assert!(points.iter().all(|p| p.y == 0.0 || p.x == 3.0));
         assert!((share(&points, |p| p.y == 0.0) - 0.75).abs() < ERROR);
         assert!((share(&points, |p| p.x < 1.0) - 0.25).abs() < ERROR);
@@ -241,7 +202,7 @@ mod tests {
         let mut corners = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
             .map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)));
         for _ in 0..2 {
-            let points = points(&Shape::polygon(&corners).unwrap(), COUNT);
+            let points = points(&polygon(&corners), COUNT);
             assert!(points.iter().all(|p| p.x <= 1.0 || p.y <= 1.0));
             for square in [DVec2::ZERO, DVec2::X, DVec2::Y] {
                 let inside = share(&points, |p| (*p - square).floor() == DVec2::ZERO);
@@ -259,8 +220,7 @@ mod tests {
             DVec2::new(cosine, sine)
         };
         let star: Vec<_> = (0..5).map(vertex).collect();
-        let shape = Shape::polygon(&star).unwrap();
-        let area = shape.pieces.last().unwrap().0;
+        let area = polygon(&star).pieces.last().unwrap().0;
         // Ten triangles from the centre with sides 1 and r, the radius of the pentagon, and 36° between.
         let inner = (3.0 - 5f64.sqrt()) / 2.0;
         let expected = 5.0 * libm::sin(TAU / 10.0) * inner;
@@ -269,27 +229,43 @@ mod tests {
 
     #[test]
     fn ellipses_are_drawn_from_by_area() {
-        let map = DAffine2::from_cols_array(&[3.0, 0.0, 0.0, 1.0, 1.0, 2.0]);
-        let points = points(&Shape::ellipse(map).unwrap(), COUNT);
-        let back = map.inverse();
-        let radius = |p: &DVec2| back.transform_point2(*p).length();
-        assert!(points.iter().all(|p| radius(p) <= 1.0 + 1e-12));
+        let (centre, half_axes) = (DVec2::new(1.0, 2.0), DVec2::new(3.0, 1.0));
+        let ellipse = Shape::ellipse(centre, half_axes, 0.0).unwrap();
+        let points = points(&Sampler::of(&ellipse).unwrap(), COUNT);
+        let radius = |p: &DVec2| ((*p - centre) / half_axes).length();
+        assert!(points.iter().all(|p| radius(p) <= 1.0 + 1e-6));
         assert!((share(&points, |p| radius(p) < 0.5) - 0.25).abs() < ERROR);
         assert!((share(&points, |p| p.x < 1.0 && p.y < 2.0) - 0.25).abs() < ERROR);
+        // Beyond this circle lies what chords leave out.
+        assert!((share(&points, |p| radius(p) > 0.995) - 0.01).abs() < 0.002);
     }
 
     #[test]
     fn what_has_no_extent_is_refused() {
         let line = [DVec2::ZERO, DVec2::X, DVec2::X * 3.0];
-        assert_eq!(Shape::polygon(&line), Err(NoExtent));
-        assert_eq!(Shape::polygon(&[]), Err(NoExtent));
-        assert_eq!(Shape::polyline(&[DVec2::X; 3]), Err(NoExtent));
-        assert_eq!(Shape::polyline(&[]), Err(NoExtent));
-        assert_eq!(Shape::point(DVec2::NAN), Err(NoExtent));
+        let flat = Shape::polygon(&line).unwrap();
+        assert_eq!(Sampler::of(&flat), None);
+        assert_eq!(Sampler::of(&Shape::Point(DVec2::NAN)), None);
         let huge = [DVec2::ZERO, DVec2::splat(f64::INFINITY), DVec2::X];
-        assert_eq!(Shape::polygon(&huge), Err(NoExtent));
-        assert_eq!(Shape::polyline(&huge), Err(NoExtent));
-        let flat = DAffine2::from_cols_array(&[1.0, 0.0, 2.0, 0.0, 0.0, 0.0]);
-        assert_eq!(Shape::ellipse(flat), Err(NoExtent));
+        for shape in [Shape::polygon(&huge), Shape::polyline(&huge)] {
+            assert_eq!(shape.and_then(|shape| Sampler::of(&shape)), None);
+        }
+    }
+
+    #[test]
+    fn what_crosses_itself_too_often_is_refused() {
+        let comb = |teeth: u32| -> Vec<DVec2> {
+            let across = (0..teeth).map(|k| {
+                let x = f64::from(k % 2);
+                DVec2::new(x, f64::from(k) / f64::from(teeth))
+            });
+            let along = (0..teeth).map(|k| {
+                let y = f64::from(k % 2);
+                DVec2::new(f64::from(k) / f64::from(teeth), y)
+            });
+            across.chain(along).collect()
+        };
+        assert!(Sampler::of(&Shape::polygon(&comb(20)).unwrap()).is_some());
+        assert_eq!(Sampler::of(&Shape::polygon(&comb(2000)).unwrap()), None);
     }
 }

@@ -1,0 +1,86 @@
+//! The points of one walk, one after the other.
+
+use crate::geometry::DVec2;
+
+use super::Start;
+use super::alias::AliasTable;
+use super::course::WARM_UP;
+use super::random::Scalar;
+use super::system::{Map, System};
+
+/// A point of a walk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Where it lies.
+    pub place: DVec2,
+    /// The map that has led to it, from 0; the condensation sets follow the maps.
+    pub map: usize,
+}
+
+/// The points of one walk in double precision, without end: where [`play`](super::play) counts,
+/// this lists.
+///
+/// A walk that starts on the attractor has forgotten the start before its first point. Walks from
+/// given starts end after their steps, and the next one begins.
+#[derive(Clone, Debug)]
+pub struct Points<'a> {
+    system: &'a System,
+    choice: AliasTable,
+    random: Scalar,
+    start: &'a Start,
+    at: Point,
+    /// The steps that have been taken, of all walks.
+    taken: u64,
+}
+
+impl<'a> Points<'a> {
+    /// The points of a system's walk by a seed.
+    #[must_use]
+    pub fn new(system: &'a System, start: &'a Start, seed: u64) -> Self {
+        let first = system.start();
+        let mut points = Self {
+            system,
+            choice: system.choice(),
+            random: Scalar::new(seed, 0),
+            start,
+            at: Point {
+                place: first.point,
+                map: first.last,
+            },
+            taken: 0,
+        };
+        if start.walk(0).is_none() {
+            for _ in 0..WARM_UP {
+                points.advance();
+            }
+        }
+        points
+    }
+
+    fn advance(&mut self) {
+        let state = self.system.state_after(self.at.map);
+        let map = self.choice.choose(state, self.random.word());
+        let place = match &self.system.maps()[map] {
+            Map::Affine(affine) => affine.transform_point2(self.at.place),
+            Map::Condensation(shape) => shape.draw(&mut self.random),
+        };
+        self.at = Point { place, map };
+    }
+}
+
+impl Iterator for Points<'_> {
+    type Item = Point;
+
+    fn next(&mut self) -> Option<Point> {
+        if let Start::Points { steps, .. } = self.start
+            && self.taken.is_multiple_of(steps.get().into())
+            && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))
+        {
+            let map = self.system.maps().len();
+            self.at = Point { place, map };
+        }
+        self.taken += 1;
+        self.advance();
+        Some(self.at)
+    }
+}

@@ -1,0 +1,58 @@
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::chaos::Point;
+use crate::grow::{Progress, WalkError};
+
+use super::Format;
+
+/// Rows between two looks at whether to go on.
+const MANY: u64 = 1 << 12;
+
+/// Writes the points of a walk, a row each in their order: where a point lies, and by which map it
+/// has come there, from 1; the condensation sets follow the maps.
+///
+/// Coordinates are the shortest decimals that read back as the same doubles.
+///
+/// # Errors
+///
+/// If it is cancelled, or if `out` fails.
+pub fn write_points(
+    points: impl Iterator<Item = Point>,
+    format: Format,
+    cancel: Option<&AtomicBool>,
+    progress: Option<&Progress>,
+    out: &mut impl Write,
+) -> Result<(), WalkError<io::Error>> {
+    if format == Format::Csv {
+        writeln!(out, "x,y,map").map_err(WalkError::Visitor)?;
+    }
+    for (number, point) in (1u64..).zip(points) {
+        if number.is_multiple_of(MANY) {
+            if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                return Err(WalkError::Cancelled);
+            }
+            if let Some(progress) = progress {
+                progress.count(MANY);
+            }
+        }
+        let (mut x, mut y) = (zmij::Buffer::new(), zmij::Buffer::new());
+        let (x, y) = (
+            coordinate(&mut x, point.place.x),
+            coordinate(&mut y, point.place.y),
+        );
+        let map = point.map + 1;
+        match format {
+            Format::Csv => writeln!(out, "{x},{y},{map}"),
+            Format::JsonLines => writeln!(out, r#"{{"x":{x},"y":{y},"map":{map}}}"#),
+        }
+        .map_err(WalkError::Visitor)?;
+    }
+    Ok(())
+}
+
+fn coordinate(buffer: &mut zmij::Buffer, value: f64) -> &str {
+    // Adding zero turns −0 into 0.
+    let text = buffer.format(value + 0.0);
+    text.strip_suffix(".0").unwrap_or(text)
+}
