@@ -3,6 +3,10 @@
 //! Canonical objects are unions of instances: of other objects, of themselves, or of shapes, each with a
 //! map of its own. What a file writes with a level, `A(n)`, is here one object a level that is reached.
 
+mod coat;
+
+pub use coat::Coat;
+
 use crate::geometry::DAffine2;
 use crate::heading::Heading;
 use crate::ifs::Shape;

@@ -121,6 +121,8 @@ pub enum ColorBy {
     FirstMap,
     /// The map of a system that is applied last, the outermost one: the tiling.
     LastMap,
+    /// Nothing, but what the objects of a structure tint.
+    Tint,
 }
 
 /// The names of the variants of an enumeration, as files and the command line write them.
@@ -177,6 +179,7 @@ impl Named for ColorBy {
         ("direction", Self::Direction),
         ("first-map", Self::FirstMap),
         ("last-map", Self::LastMap),
+        ("tint", Self::Tint),
     ];
 }
 
@@ -221,6 +224,18 @@ impl Default for Style {
 }
 
 impl Style {
+    /// The colour of open base elements.
+    #[must_use]
+    pub fn lines(&self) -> Colour {
+        self.stroke.unwrap_or(Colour::BLACK)
+    }
+
+    /// The colour that closed base elements are filled with.
+    #[must_use]
+    pub fn polygons(&self) -> Colour {
+        self.fill.unwrap_or_else(|| self.lines())
+    }
+
     /// Whether closed base elements get an outline beside their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {

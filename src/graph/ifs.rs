@@ -194,6 +194,7 @@ impl<'s> Compiler<'s> {
             counts_index: false,
             draws: false,
             seeds: false,
+            tints: false,
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
