@@ -198,7 +198,7 @@ fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
     let rule = match shelf {
-        Shelf::Rules | Shelf::Ifs => text.clone(),
+        Shelf::Rules | Shelf::Ifs | Shelf::Instancing => text.clone(),
         Shelf::Initiators => "initiator: changed\ngenerator: koch\n".into(),
         Shelf::Generators => "initiator: segment\ngenerator: changed\n".into(),
         Shelf::BaseElements => {
@@ -223,7 +223,9 @@ fn the_schemas_and_the_reader_agree() {
     let mut keys = BTreeMap::new();
     collect_keys(&rules, &mut keys);
     let rules = rules.as_object().unwrap().values().cloned();
-    let mut samples: Vec<_> = rules.map(|rule| (Shelf::Rules, rule)).collect();
+    let mut samples: Vec<_> = rules
+        .map(|file| (if file["kind"] == "instancing" { Shelf::Instancing } else { Shelf::Rules }, file))
+        .collect();
     for (shelf, name) in [
         (Shelf::Initiators, "triangle"),
         (Shelf::Generators, "swaying-roof"),

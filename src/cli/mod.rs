@@ -22,6 +22,7 @@ mod sheet;
 mod show;
 mod steps;
 mod stop;
+mod structure;
 mod system;
 mod text;
 

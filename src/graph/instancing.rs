@@ -19,15 +19,12 @@ impl Graph {
     ///
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
     /// there is one, with what the object does to all of it; with each step, instances of objects are
-    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes nor an initial set, an object is drawn
-    /// as the box of its limit set.
+    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes
+    /// nor an initial set, an object is drawn as the box of its limit set.
     #[must_use]
     pub fn of_structure(structure: &Instancing) -> Self {
         let mut graph = Compiler::new(structure).run();
-        let has_shapes = structure
-            .instances()
-            .any(|instance| matches!(instance.master, Master::Shape(_)));
-        if structure.initial.is_none() && !has_shapes {
+        if !structure.draws_anything() {
             graph.draw_boxes();
         }
         let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
@@ -41,14 +38,17 @@ impl Graph {
 
     /// Draws every object as the box of its limit set.
     fn draw_boxes(&mut self) {
+        // Only what is visible has a limit.
+        self.objects
+            .iter_mut()
+            .for_each(|object| object.visible = true);
         let initiator = self.initiator.clone();
         let mut boxes: Vec<Option<Bounds>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
-                self.initiator.instances = vec![instance(number, &DAffine2::IDENTITY, 0)];
                 let is_told = boxes.len() < MOST_BOXES;
-                boxes.push(is_told.then(|| self.limit_bounds()).flatten());
+                boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
         }
         self.initiator = initiator;
@@ -57,8 +57,37 @@ impl Graph {
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
-            object.visible = true;
         }
+    }
+
+    /// The box of what an object comes to. Where the initiator was is not known from here on.
+    fn box_of(&mut self, object: usize) -> Option<Bounds> {
+        self.initiator.instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
+        self.limit_bounds()
+    }
+
+    /// The boxes of what some objects of a structure come to, in their own coordinates; `None` where
+    /// one is not known.
+    pub(crate) fn boxes_of(structure: &Instancing, objects: &[usize]) -> Vec<Option<Bounds>> {
+        let scene = objects.iter().map(|&number| instancing::Instance {
+            map: DAffine2::IDENTITY,
+            master: Master::Object(number),
+            tint: None,
+        });
+        let alone = Instancing {
+            scene: scene.collect(),
+            ..structure.clone()
+        };
+        let mut graph = Compiler::new(&alone).run();
+        if !alone.draws_anything() {
+            graph
+                .objects
+                .iter_mut()
+                .for_each(|object| object.visible = true);
+        }
+        let roots = graph.initiator.instances.clone();
+        let boxes = roots.iter().map(|root| graph.box_of(root.object));
+        boxes.collect()
     }
 }
 

@@ -28,6 +28,8 @@ pub use error::CompileError;
 pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
 
+pub(crate) use ifs::{filling, outline as base_element};
+
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
