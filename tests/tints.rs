@@ -65,7 +65,12 @@ fn composed(tints: &[([f64; 3], f64)]) -> String {
     }
     assert!((alpha - 1.0f64).abs() < 1e-12);
     let [red, green, blue] = colour.map(|value| (value + 0.5).floor());
-    format!("#{red:02x}{green:02x}{blue:02x}", red = red as u8, green = green as u8, blue = blue as u8)
+    format!(
+        "#{red:02x}{green:02x}{blue:02x}",
+        red = red as u8,
+        green = green as u8,
+        blue = blue as u8
+    )
 }
 
 #[test]
@@ -89,7 +94,11 @@ fn colours_that_are_asked_for_are_not_tinted() {
     assert_eq!(tinted.heading().style.color_by, ColorBy::Tint);
     let plain = picture(&tinted, 2, |options| options.style.color_by = ColorBy::None);
     let plain = String::from_utf8(plain).unwrap();
-    assert!(values(&plain, "fill=\"#").iter().all(|colour| *colour == "404040"));
+    assert!(
+        values(&plain, "fill=\"#")
+            .iter()
+            .all(|colour| *colour == "404040")
+    );
     let written = SQUARES.replace("fill: none", "fill: none, color_by: none");
     let written = model(&written);
     assert_eq!(written.heading().style.color_by, ColorBy::None);
@@ -145,7 +154,11 @@ fn the_pound_sign_has_a_colour_for_every_quadrant() {
         let value = |text: &str, at: usize| u8::from_str_radix(&text[at..at + 2], 16).unwrap();
         for at in [1, 3, 5] {
             // Half of the tint on black.
-            assert_eq!(value(fill, at), value(tint, at).div_ceil(2), "{fill} of {tint}");
+            assert_eq!(
+                value(fill, at),
+                value(tint, at).div_ceil(2),
+                "{fill} of {tint}"
+            );
         }
     }
 }
