@@ -66,7 +66,8 @@ const INSTANCING_ALONE: [Member; 6] = [
 const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
 
 const INSTANCES: Form = Form::List(
-    &Form::Either(&[Form::Text, Form::Mapping(&INSTANCE)]),
+    // A name, perhaps with a level: never a number alone.
+    &Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]),
     1,
     None,
 );
