@@ -135,10 +135,7 @@ fn many_levels_are_few_objects() {
     let text = structure(&chain, "a(20000)");
     refused(text.as_bytes(), "more than 20000 levels of itself");
     let endless = format!("{POINT}  a(n): [a(n/2)]\n");
-    refused(
-        structure(&endless, "a(1/3)").as_bytes(),
-        "levels of itself",
-    );
+    refused(structure(&endless, "a(1/3)").as_bytes(), "levels of itself");
     let large = format!("{POINT}  a(n): [{}]\n", "a(n - 1), ".repeat(100));
     refused(
         structure(&large, "a(15000)").as_bytes(),
@@ -148,7 +145,7 @@ fn many_levels_are_few_objects() {
 
 #[test]
 fn many_shapes_are_told_apart() {
-    let shapes: String = (0..30_000)
+    let shapes: String = (0..20_000)
         .map(|i| format!("    - {{segment: [[0, {i}], [1, 0]]}}\n"))
         .collect();
     let text = structure(&format!("  a:\n{shapes}"), "a");
@@ -161,7 +158,7 @@ fn many_shapes_are_told_apart() {
 #[test]
 fn many_loops_are_checked() {
     // Every object holds all others; of each pair of instances one grows.
-    for (objects, factor) in [(300, "1/2"), (90, "[1.5, 0.3]"), (300, "[1.5, 0.3]")] {
+    for (objects, factor) in [(150, "1/2"), (30, "[1.5, 0.3]"), (150, "[1.5, 0.3]")] {
         let names: Vec<_> = (0..objects)
             .map(|i| format!("{{object: a{i}, scale: {factor}, rotate: 90}}"))
             .collect();
@@ -185,7 +182,6 @@ fn many_objects_see_many_parameters() {
         .collect();
     let text = format!("params:\n{params}{}", structure(&objects, "a0"));
     accepted(&text, &CHECK);
-    accepted(&text, &INFO);
 }
 
 fn graph_of(text: &str, steps: u32) -> Graph {
