@@ -14,6 +14,9 @@ use super::{Chain, Graph, Instance, Object, Production, Replacement};
 /// Boxes of more objects than this are not told apart where nothing else is drawn.
 const MOST_BOXES: usize = 256;
 
+/// Nor are those of large structures: so many instances are looked at for all boxes together.
+const MOST_LOOKS: usize = 250_000;
+
 impl Graph {
     /// Compiles a structure to its graph, whose unit frame is the plane itself.
     ///
@@ -42,12 +45,13 @@ impl Graph {
         self.objects
             .iter_mut()
             .for_each(|object| object.visible = true);
+        let most = self.most_boxes();
         let initiator = self.initiator.clone();
         let mut boxes: Vec<Option<Bounds>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
-                let is_told = boxes.len() < MOST_BOXES;
+                let is_told = boxes.len() < most;
                 boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
         }
@@ -58,6 +62,10 @@ impl Graph {
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
         }
+    }
+
+    fn most_boxes(&self) -> usize {
+        MOST_BOXES.min(MOST_LOOKS / self.instances().count().max(1))
     }
 
     /// The box of what an object comes to. Where the initiator was is not known from here on.
@@ -86,7 +94,12 @@ impl Graph {
                 .for_each(|object| object.visible = true);
         }
         let roots = graph.initiator.instances.clone();
-        let boxes = roots.iter().map(|root| graph.box_of(root.object));
+        let most = graph.most_boxes();
+        let numbered = roots.iter().enumerate();
+        let boxes = numbered.map(|(number, root)| {
+            let is_told = number < most;
+            is_told.then(|| graph.box_of(root.object)).flatten()
+        });
         boxes.collect()
     }
 }

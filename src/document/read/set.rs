@@ -104,7 +104,7 @@ const ELLIPSE: Shape = Shape {
         key("centre", Form::Point, "Its centre; [0, 0] if left out."),
         needed_key(
             "axes",
-            Form::Point,
+            Form::Either(&[Form::Number, Form::Point]),
             "Its half axes: from the centre to the right, and upwards.",
         ),
         key(
