@@ -109,7 +109,7 @@ impl<'a> Estimator<'a> {
     /// The number of classes of colour, each of which is a walk.
     fn classes(&self, step: u32, fractals: f64) -> f64 {
         let classes = match self.options.style.color_by {
-            ColorBy::None | ColorBy::Hits => 1.0,
+            ColorBy::None | ColorBy::Hits | ColorBy::Tint => 1.0,
             ColorBy::Fractal => fractals,
             ColorBy::Index => 64.0,
             ColorBy::Step | ColorBy::Age => f64::from(step) + 1.0,

@@ -3,6 +3,10 @@
 //! Canonical objects are unions of instances: of other objects, of themselves, or of shapes, each with a
 //! map of its own. What a file writes with a level, `A(n)`, is here one object a level that is reached.
 
+mod coat;
+
+pub use coat::Coat;
+
 use crate::geometry::DAffine2;
 use crate::heading::Heading;
 use crate::ifs::Shape;
@@ -85,12 +89,55 @@ impl Instancing {
         self.initial.as_ref()
     }
 
+    /// The number of steps after which nothing is left to be replaced; `None` if objects lead back to
+    /// themselves.
+    #[must_use]
+    pub fn depth(&self) -> Option<u32> {
+        let children = |instances: &[Instance]| -> Vec<usize> {
+            let masters = instances.iter().map(|instance| &instance.master);
+            masters
+                .filter_map(|master| match master {
+                    Master::Object(number) => Some(*number),
+                    Master::Shape(_) => None,
+                })
+                .collect()
+        };
+        let mut depths = vec![0; self.objects.len()];
+        // How often each is still to be met on the way down.
+        let mut meetings = vec![0u32; self.objects.len()];
+        let all = self.objects.iter().map(|object| &object.instances);
+        for child in all.chain([&self.scene]).flat_map(|all| children(all)) {
+            meetings[child] += 1;
+        }
+        let mut next = vec![(children(&self.scene), 0)];
+        let mut done = 0;
+        let mut deepest = 0;
+        while let Some((children_of, depth)) = next.pop() {
+            for child in children_of {
+                depths[child] = depths[child].max(depth + 1);
+                meetings[child] -= 1;
+                if meetings[child] == 0 {
+                    done += 1;
+                    deepest = deepest.max(depths[child]);
+                    next.push((children(&self.objects[child].instances), depths[child]));
+                }
+            }
+        }
+        (done == self.objects.len()).then_some(deepest)
+    }
+
     /// Where what an instance shows stands, with what the object that it is one of does to all of it.
     pub(crate) fn map_of(&self, instance: &Instance) -> DAffine2 {
         match instance.master {
             Master::Object(number) => instance.map * self.objects[number].map,
             Master::Shape(_) => instance.map,
         }
+    }
+
+    /// Whether there are shapes, or an initial set.
+    pub(crate) fn draws_anything(&self) -> bool {
+        let is_shape = |instance: &Instance| matches!(instance.master, Master::Shape(_));
+        self.initial.is_some() || self.instances().any(is_shape)
     }
 
     /// All instances, those of the scene first.

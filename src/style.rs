@@ -123,6 +123,8 @@ pub enum ColorBy {
     LastMap,
     /// How often random iteration comes to a pixel. Approximants are of one colour for all.
     Hits,
+    /// Nothing, but what the objects of a structure tint.
+    Tint,
 }
 
 /// The names of the variants of an enumeration, as files and the command line write them.
@@ -180,6 +182,7 @@ impl Named for ColorBy {
         ("first-map", Self::FirstMap),
         ("last-map", Self::LastMap),
         ("hits", Self::Hits),
+        ("tint", Self::Tint),
     ];
 }
 
@@ -224,6 +227,18 @@ impl Default for Style {
 }
 
 impl Style {
+    /// The colour of open base elements.
+    #[must_use]
+    pub fn lines(&self) -> Colour {
+        self.stroke.unwrap_or(Colour::BLACK)
+    }
+
+    /// The colour that closed base elements are filled with.
+    #[must_use]
+    pub fn polygons(&self) -> Colour {
+        self.fill.unwrap_or_else(|| self.lines())
+    }
+
     /// Whether closed base elements get an outline beside their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {

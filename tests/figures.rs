@@ -1,4 +1,4 @@
-//! Figures of production rules: what they show, and that it can be read.
+//! Figures of production rules, systems and structures: what they show, and that it can be read.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -10,32 +10,37 @@ use common::{document, document_of, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::figure::rule::{self, Options};
+use kfrac::model::Model;
 use kfrac::render::{Format, Labels, Size};
 use kfrac::rule::Rule;
 use svg::Path;
 
-fn names() -> impl Iterator<Item = String> {
+fn names(shelf: Shelf) -> impl Iterator<Item = String> {
     let entries = Catalogue::embedded().entries().into_iter();
-    let rules = entries.filter(|entry| entry.shelf == Shelf::Rules);
-    rules.map(|entry| entry.name)
+    let alike = entries.filter(move |entry| entry.shelf == shelf);
+    alike.map(|entry| entry.name)
 }
 
-/// The figure of a rule as a file, with its size.
+/// The figure of a file as a file, with its size.
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
-    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
-    let title = rule.description().title.clone().unwrap_or_default();
+    let model = document.resolve(&[]).unwrap().0;
+    let title = model.heading().description.title.clone();
     let options = Options {
         format,
         size,
         labels: Labels {
-            title,
+            title: title.unwrap_or_default(),
             ..Labels::default()
         },
         ..Options::default()
     };
     let mut bytes = Vec::new();
-    let size = rule::write(&rule, document.rule().unwrap(), &options, &mut bytes).unwrap();
-    (bytes, size)
+    let size = match &model {
+        Model::Rule(rule) => rule::write(rule, document.rule().unwrap(), &options, &mut bytes),
+        Model::Ifs(system) => rule::write_system(system, &options, &mut bytes),
+        Model::Instancing(structure) => rule::write_structure(structure, &options, &mut bytes),
+    };
+    (bytes, size.unwrap())
 }
 
 fn svg_of(document: &Document) -> String {
@@ -88,10 +93,10 @@ fn fertile_sides(rule: &Rule) -> usize {
 
 #[test]
 fn every_rule_of_the_library_can_be_read() {
-    for name in names() {
+    for name in names(Shelf::Rules) {
         let document = document(&name);
         let (size, paths) = svg::read(&svg_of(&document));
-        let labels: Vec<_> = paths.iter().filter(|path| path.label.is_some()).collect();
+        let labels = labels(&paths);
         let stars = labels.iter().filter(|it| it.label.as_deref() == Some("*"));
         let rule = resolved(&document, &[]);
         assert_eq!(stars.count(), fertile_sides(&rule), "{name}");
@@ -99,19 +104,83 @@ fn every_rule_of_the_library_can_be_read() {
             let says = |path: &&&Path| path.label.as_ref().unwrap().starts_with(heading);
             assert!(labels.iter().any(|path| says(&path)), "{name}: {heading}");
         }
-        for (number, label) in labels.iter().enumerate() {
-            let what = format!("{name}: {:?}", label.label);
-            let within = |side: usize| label.min[side] >= 0 && label.max[side] <= 100 * size[side];
-            assert!(within(0) && within(1), "{what}");
-            for other in &labels[..number] {
-                assert!(!overlap(label, other), "{what} and {:?}", other.label);
-            }
-            let drawn = paths.iter().filter(|path| is_element(path));
-            for line in drawn.flat_map(|path| &path.lines) {
-                assert!(!crosses(label, *line), "{what} lies on an element");
-            }
+        assert_can_be_read(&name, size, &paths);
+    }
+}
+
+fn labels(paths: &[Path]) -> Vec<&Path> {
+    paths.iter().filter(|path| path.label.is_some()).collect()
+}
+
+/// All labels are inside, none lies on another one or on an element.
+fn assert_can_be_read(name: &str, size: [i64; 2], paths: &[Path]) {
+    let labels = labels(paths);
+    for (number, label) in labels.iter().enumerate() {
+        let what = format!("{name}: {:?}", label.label);
+        let within = |side: usize| label.min[side] >= 0 && label.max[side] <= 100 * size[side];
+        assert!(within(0) && within(1), "{what}");
+        for other in &labels[..number] {
+            assert!(!overlap(label, other), "{what} and {:?}", other.label);
+        }
+        let drawn = paths.iter().filter(|path| is_element(path));
+        for line in drawn.flat_map(|path| &path.lines) {
+            assert!(!crosses(label, *line), "{what} lies on an element");
         }
     }
+}
+
+#[test]
+fn every_structure_of_the_library_can_be_read() {
+    for name in names(Shelf::Instancing) {
+        let document = document(&name);
+        let (size, paths) = svg::read(&svg_of(&document));
+        assert_can_be_read(&name, size, &paths);
+        let Model::Instancing(structure) = document.resolve(&[]).unwrap().0 else {
+            panic!("{name} is a structure");
+        };
+        let labels: Vec<_> = labels(&paths)
+            .into_iter()
+            .filter_map(|path| path.label.as_deref())
+            .collect();
+        assert!(labels.contains(&"scene"), "{name}");
+        // Every name once, as a panel; levels may be left out.
+        for object in structure.objects() {
+            let own = object.name.split('(').next().unwrap();
+            let is_own = |label: &&&str| label.split('(').next() == Some(own);
+            assert!(labels.iter().any(|label| is_own(&label)), "{name}: {own}");
+        }
+        let shown = structure.objects().len().min(3);
+        for object in &structure.objects()[..shown] {
+            let panels = labels.iter().filter(|label| **label == object.name);
+            assert!(panels.count() >= 1, "{name}: {}", object.name);
+        }
+    }
+}
+
+#[test]
+fn instances_are_named_where_they_stand() {
+    let text = "kind: instancing
+objects:
+  wood: [{segment: [[0, 0], [0, 1]]}]
+  twig: [wood, {object: twig, scale: 1/2, translate: [0, 1]}]
+  row(0): [twig]
+  row(n): [row(n - 1), {object: row(n - 1), translate: [2, 0]}]
+scene: [row(9)]";
+    let said = said(text);
+    for label in [
+        "scene", "objects", "wood", "twig", "row(9)", "row(8)", "row(7)",
+    ] {
+        assert!(
+            said.split('\n').any(|line| line == label),
+            "{label}: {said}"
+        );
+    }
+    // Of ten levels three are shown, and what stands in them is named.
+    assert!(said.contains("7 more objects are not shown"), "{said}");
+    assert!(
+        said.contains("row(6)") && !said.contains("row(5)"),
+        "{said}"
+    );
 }
 
 fn overlap(a: &Path, b: &Path) -> bool {
@@ -248,6 +317,9 @@ fn what_is_odd_is_drawn_all_the_same() {
         "title: 分形 ⁂ \\t\ninitiator: segment\ngenerator: koch\nbase_element: half-circle",
         "initiator: segment\ngenerator: [[0, 0], {to: [1/2, 1/2], visible: false}, [1/2, 0]]",
         "initiator: segment\ngenerator: [[0, 0], [1/2, 1/(i - i)], [1, 0]]",
+        "kind: instancing\nobjects: {a: [{point: [0, 0]}]}\nscene: [a]",
+        "kind: instancing\nobjects: {a: [{object: a, scale: 0}]}\nscene: [a]",
+        "kind: instancing\nobjects: {a: [b, b, b, b], b: [{segment: [[0, 0], [1, 0]]}]}\nscene: [a, b]",
     ] {
         let document = document_of(text);
         let (bytes, _) = figure(&document, Format::Svg, None);

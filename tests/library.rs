@@ -5,6 +5,8 @@
 mod common;
 #[path = "library/picture.rs"]
 mod picture;
+#[path = "library/structures.rs"]
+mod structures;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -123,13 +123,19 @@ impl Goal {
     }
 }
 
-/// Whether nobody says how far, and a system is drawn as far as it can be seen.
+/// Whether nobody says how far, and a system, or a structure that has no end, is drawn as far as it
+/// can be seen.
 fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
     match &loaded.model {
         Model::Ifs(system) => {
             system.heading().steps.is_none() && system.contraction().verdict == Verdict::Contracts
         }
-        Model::Rule(_) | Model::Instancing(_) => false,
+        Model::Instancing(structure) => {
+            structure.heading().steps.is_none()
+                && structure.depth().is_none()
+                && Graph::of_structure(structure).limit_bounds().is_some()
+        }
+        Model::Rule(_) => false,
     }
 }
 

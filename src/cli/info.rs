@@ -17,6 +17,7 @@ use crate::wording;
 
 use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
+use super::structure::StructureInfo;
 use super::system::SystemInfo;
 use super::{Failure, help, output, steps};
 
@@ -82,6 +83,8 @@ struct Info<'a> {
     dimension: Dimension,
     #[serde(flatten)]
     system: Option<SystemInfo>,
+    #[serde(flatten)]
+    structure: Option<StructureInfo>,
 }
 
 #[derive(Serialize)]
@@ -235,6 +238,10 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
             Model::Ifs(system) => Some(SystemInfo::of(system)),
             Model::Rule(_) | Model::Instancing(_) => None,
         },
+        structure: match &loaded.model {
+            Model::Instancing(structure) => Some(StructureInfo::of(structure)),
+            Model::Rule(_) | Model::Ifs(_) => None,
+        },
     }
 }
 
@@ -309,6 +316,9 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         line("generators", &names.join(", "));
     }
     for (label, value) in info.system.iter().flat_map(|system| system.lines(decimal)) {
+        line(label, &value);
+    }
+    for (label, value) in info.structure.iter().flat_map(StructureInfo::lines) {
         line(label, &value);
     }
     line("random", if info.random { "yes" } else { "no" });

@@ -27,6 +27,7 @@ mod sheet;
 mod show;
 mod steps;
 mod stop;
+mod structure;
 mod system;
 mod text;
 

@@ -221,6 +221,7 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
             ColorBy::FirstMap => "The map of a system that is applied first, the innermost one",
             ColorBy::LastMap => "The map of a system that is applied last: the tiling",
             ColorBy::Hits => "How often random iteration comes to a pixel",
+            ColorBy::Tint => "What the objects of a structure are tinted with",
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))

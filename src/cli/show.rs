@@ -63,9 +63,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 rule::write(rule, document, &options, out)
             }
             (Model::Ifs(system), _) => rule::write_system(system, &options, out),
-            (Model::Instancing(_), _) => {
-                return Err(anyhow::anyhow!("there is no figure of this kind").into());
-            }
+            (Model::Instancing(structure), _) => rule::write_structure(structure, &options, out),
             (Model::Rule(_), _) => unreachable!("a model is of its document's kind"),
         };
         written.map_err(|error| match error {

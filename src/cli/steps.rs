@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::model::Model;
+
 use super::Failure;
 use super::rule::Loaded;
 
@@ -74,9 +76,11 @@ pub(super) fn parse_several(text: &str) -> Result<Several, String> {
 }
 
 /// The number of steps that was asked for, or that the rule proposes, or else the deepest one, up
-/// to 12, that has no more than 20,000 elements; 6 where that is not known.
+/// to 12, that has no more than 20,000 elements; 6 where that is not known. A
+/// structure that ends with no more is grown to its end.
 pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure> {
     const DEEPEST: u32 = 12;
+    const MOST_ELEMENTS: u64 = 20_000;
     if let Some(steps) = asked.or(loaded.model.heading().steps) {
         return Ok(steps);
     }
@@ -84,7 +88,14 @@ pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure
     if graph.forecast().is_none() {
         return Ok(DEEPEST / 2);
     }
-    Ok(match graph.check_size(DEEPEST, 20_000) {
+    if let Model::Instancing(structure) = &loaded.model
+        && let Some(depth) = structure.depth()
+        && depth <= MOST_STEPS
+        && graph.check_size(depth, MOST_ELEMENTS).is_ok()
+    {
+        return Ok(depth);
+    }
+    Ok(match graph.check_size(DEEPEST, MOST_ELEMENTS) {
         Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
     })

@@ -19,6 +19,8 @@ pub struct InstancingDocument {
     pub scene: Option<UnionDocument>,
     /// What stands for objects that have not been replaced yet.
     pub initial: Option<ShapeDocument>,
+    /// Whether its style says what colours tell.
+    pub tells_colours: bool,
 }
 
 /// A canonical object as written.
@@ -76,7 +78,7 @@ pub enum MasterDocument {
         level: Option<Number>,
     },
     /// A shape.
-    Shape(ShapeDocument),
+    Shape(Box<ShapeDocument>),
 }
 
 /// A transform as written.

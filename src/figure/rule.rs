@@ -13,6 +13,7 @@ mod lines;
 mod marks;
 mod page;
 mod panel;
+mod structure;
 mod system;
 mod words;
 
@@ -31,6 +32,7 @@ use super::LABEL;
 use super::text::Font;
 use block::Block;
 
+pub use structure::write_structure;
 pub use system::write_system;
 
 /// How the figure is made.

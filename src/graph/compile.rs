@@ -172,6 +172,7 @@ impl<'r> Compiler<'r> {
             counts_index: self.depends.counts_index,
             draws: rule.is_random(),
             seeds,
+            tints: false,
             affine: false,
             unit: 1.0,
             middle: DVec2::new(0.5, 0.0),

@@ -97,16 +97,19 @@ impl Graph {
         };
         let mut points = vec![self.middle; self.objects.len()];
         for _ in 0..MOST_STEPS {
-            let next: Vec<DVec2> = (0..points.len())
-                .map(|object| match fertile(object).next() {
-                    Some(first) => first.frame.map.transform_point2(points[first.object]),
-                    None => points[object],
-                })
-                .collect();
-            if next == points {
+            let mut has_moved = false;
+            // Children have larger numbers than those that reach them first.
+            for object in (0..points.len()).rev() {
+                let Some(first) = fertile(object).next() else {
+                    continue;
+                };
+                let point = first.frame.map.transform_point2(points[first.object]);
+                has_moved |= point != points[object];
+                points[object] = point;
+            }
+            if !has_moved {
                 break;
             }
-            points = next;
         }
         let inside = |instance: &Instance| {
             let point = points[instance.object];

@@ -69,7 +69,7 @@ fn middle(graph: &Graph) -> DVec2 {
 }
 
 /// A box, filled; the unit square if it is not known.
-pub(super) fn filling(bounds: Option<Bounds>) -> BaseElement {
+pub(crate) fn filling(bounds: Option<Bounds>) -> BaseElement {
     let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
     let (min, max) = (bounds.min(), bounds.max());
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
@@ -83,7 +83,7 @@ pub(super) fn filling(bounds: Option<Bounds>) -> BaseElement {
 }
 
 /// A shape's outline; a point is the shortest line that there is, of which a pen makes a dot.
-pub(super) fn outline(shape: &Shape) -> BaseElement {
+pub(crate) fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
         Shape::Point(point) => {
@@ -194,6 +194,7 @@ impl<'s> Compiler<'s> {
             counts_index: false,
             draws: false,
             seeds: false,
+            tints: false,
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
-use crate::rule::BaseElement;
+use crate::rule::{BaseElement, Piece};
 
 use super::ifs::{filling, outline};
 use super::{Chain, Graph, Instance, Object, Production, Replacement};
@@ -14,20 +14,20 @@ use super::{Chain, Graph, Instance, Object, Production, Replacement};
 /// Boxes of more objects than this are not told apart where nothing else is drawn.
 const MOST_BOXES: usize = 256;
 
+/// Nor are those of large structures: so many instances are looked at for all boxes together.
+const MOST_LOOKS: usize = 250_000;
+
 impl Graph {
     /// Compiles a structure to its graph, whose unit frame is the plane itself.
     ///
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
     /// there is one, with what the object does to all of it; with each step, instances of objects are
-    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes nor an initial set, an object is drawn
-    /// as the box of its limit set.
+    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes
+    /// nor an initial set, an object is drawn as the box of its limit set.
     #[must_use]
     pub fn of_structure(structure: &Instancing) -> Self {
         let mut graph = Compiler::new(structure).run();
-        let has_shapes = structure
-            .instances()
-            .any(|instance| matches!(instance.master, Master::Shape(_)));
-        if structure.initial.is_none() && !has_shapes {
+        if !structure.draws_anything() {
             graph.draw_boxes();
         }
         let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
@@ -41,14 +41,18 @@ impl Graph {
 
     /// Draws every object as the box of its limit set.
     fn draw_boxes(&mut self) {
+        // Only what is visible has a limit.
+        self.objects
+            .iter_mut()
+            .for_each(|object| object.visible = true);
+        let most = self.most_boxes();
         let initiator = self.initiator.clone();
         let mut boxes: Vec<Option<Bounds>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
-                self.initiator.instances = vec![instance(number, &DAffine2::IDENTITY, 0)];
-                let is_told = boxes.len() < MOST_BOXES;
-                boxes.push(is_told.then(|| self.limit_bounds()).flatten());
+                let is_told = boxes.len() < most;
+                boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
         }
         self.initiator = initiator;
@@ -57,8 +61,46 @@ impl Graph {
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
-            object.visible = true;
         }
+    }
+
+    fn most_boxes(&self) -> usize {
+        MOST_BOXES.min(MOST_LOOKS / self.instances().count().max(1))
+    }
+
+    /// The box of what an object comes to. Where the initiator was is not known from here on.
+    fn box_of(&mut self, object: usize) -> Option<Bounds> {
+        self.initiator.instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
+        self.limit_bounds()
+    }
+
+    /// The boxes of what some objects of a structure come to, in their own coordinates; `None` where
+    /// one is not known.
+    pub(crate) fn boxes_of(structure: &Instancing, objects: &[usize]) -> Vec<Option<Bounds>> {
+        let scene = objects.iter().map(|&number| instancing::Instance {
+            map: DAffine2::IDENTITY,
+            master: Master::Object(number),
+            tint: None,
+        });
+        let alone = Instancing {
+            scene: scene.collect(),
+            ..structure.clone()
+        };
+        let mut graph = Compiler::new(&alone).run();
+        if !alone.draws_anything() {
+            graph
+                .objects
+                .iter_mut()
+                .for_each(|object| object.visible = true);
+        }
+        let roots = graph.initiator.instances.clone();
+        let most = graph.most_boxes();
+        let numbered = roots.iter().enumerate();
+        let boxes = numbered.map(|(number, root)| {
+            let is_told = number < most;
+            is_told.then(|| graph.box_of(root.object)).flatten()
+        });
+        boxes.collect()
     }
 }
 
@@ -76,14 +118,22 @@ fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
     }
 }
 
+/// What an instance is one of, by number.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Canonical(usize),
+    /// A shape: its base element.
+    Shape(usize),
+}
+
 struct Compiler<'s> {
     structure: &'s Instancing,
     base_elements: Vec<BaseElement>,
     objects: Vec<Object>,
+    /// The numbers of base elements by their outlines.
+    outlines: BTreeMap<Vec<u64>, usize>,
     /// The numbers of objects, by what an instance is one of and by its tint.
-    numbers: Vec<(Master, Option<Tint>, usize)>,
-    /// Those of canonical objects by number and tint, which may be many.
-    canonical: BTreeMap<(usize, [u64; 2]), usize>,
+    numbers: BTreeMap<(Kind, [u64; 2]), usize>,
     /// For every object of the graph, the canonical object that it is.
     of: Vec<Option<usize>>,
 }
@@ -95,8 +145,8 @@ impl<'s> Compiler<'s> {
             structure,
             base_elements: vec![initial.unwrap_or_else(BaseElement::line)],
             objects: Vec::new(),
-            numbers: Vec::new(),
-            canonical: BTreeMap::new(),
+            outlines: BTreeMap::new(),
+            numbers: BTreeMap::new(),
             of: Vec::new(),
         }
     }
@@ -129,6 +179,7 @@ impl<'s> Compiler<'s> {
             }
             done += 1;
         }
+        let tints = self.objects.iter().any(|object| object.tint.is_some());
         Graph {
             rule: None,
             base_elements: self.base_elements.into(),
@@ -140,6 +191,7 @@ impl<'s> Compiler<'s> {
             counts_index: false,
             draws: false,
             seeds: false,
+            tints,
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
@@ -161,70 +213,67 @@ impl<'s> Compiler<'s> {
 
     /// The object that an instance is one of, made if it is new.
     fn object(&mut self, instance: &instancing::Instance) -> usize {
-        match &instance.master {
-            Master::Object(number) => {
-                let tint = instance.tint.map_or([0; 2], |tint| {
-                    let [red, green, blue, _] = tint.colour.rgba();
-                    let colour = u32::from_be_bytes([1, red, green, blue]);
-                    [u64::from(colour), tint.alpha.to_bits()]
-                });
-                if let Some(known) = self.canonical.get(&(*number, tint)) {
-                    return *known;
-                }
-                let visible = self.structure.initial.is_some();
-                let made = self.new_object(0, visible, instance.tint, Some(*number));
-                self.canonical.insert((*number, tint), made);
-                made
-            }
-            Master::Shape(shape) => {
-                let same = |(master, tint, _): &&(Master, Option<Tint>, usize)| {
-                    *master == instance.master && *tint == instance.tint
-                };
-                if let Some((_, _, known)) = self.numbers.iter().find(same) {
-                    return *known;
-                }
-                let base_element = self.base_element(shape);
-                let made = self.new_object(base_element, true, instance.tint, None);
-                self.numbers
-                    .push((instance.master.clone(), instance.tint, made));
-                made
+        let kind = match &instance.master {
+            Master::Object(number) => Kind::Canonical(*number),
+            Master::Shape(shape) => Kind::Shape(self.base_element(shape)),
+        };
+        let made = self.objects.len();
+        let key = (kind, tint_bits(instance.tint));
+        let number = *self.numbers.entry(key).or_insert(made);
+        if number == made {
+            let (base_element, visible, of) = match kind {
+                Kind::Canonical(number) => (0, self.structure.initial.is_some(), Some(number)),
+                Kind::Shape(base_element) => (base_element, true, None),
+            };
+            self.objects.push(Object {
+                base_element,
+                visible,
+                origin: None,
+                last_map: None,
+                tint: instance.tint,
+                behaviour: 0,
+                replacement: Replacement::Kept,
+            });
+            self.of.push(of);
+        }
+        number
+    }
+
+    /// The base element of a shape, which is another one than that of the initial set.
+    fn base_element(&mut self, shape: &Shape) -> usize {
+        let made = outline(shape);
+        let next = self.base_elements.len();
+        let number = *self.outlines.entry(outline_bits(&made)).or_insert(next);
+        if number == next {
+            self.base_elements.push(made);
+        }
+        number
+    }
+}
+
+/// What tells tints apart.
+fn tint_bits(tint: Option<Tint>) -> [u64; 2] {
+    tint.map_or([0; 2], |tint| {
+        let [red, green, blue, _] = tint.colour.rgba();
+        let colour = u32::from_be_bytes([1, red, green, blue]);
+        [u64::from(colour), tint.alpha.to_bits()]
+    })
+}
+
+/// What tells outlines apart.
+fn outline_bits(outline: &BaseElement) -> Vec<u64> {
+    let mut bits = vec![u64::from(outline.is_closed())];
+    let mut add = |point: DVec2| bits.extend([point.x, point.y].map(f64::to_bits));
+    add(outline.start());
+    for piece in outline.pieces() {
+        match *piece {
+            Piece::Line(end) => add(end),
+            Piece::Cubic(a, b, end) => {
+                // No line leads there.
+                add(DVec2::NAN);
+                [a, b, end].into_iter().for_each(&mut add);
             }
         }
     }
-
-    fn base_element(&mut self, shape: &Shape) -> usize {
-        let made = outline(shape);
-        let known = self
-            .base_elements
-            .iter()
-            .skip(1)
-            .position(|known| *known == made);
-        known.map_or_else(
-            || {
-                self.base_elements.push(made);
-                self.base_elements.len() - 1
-            },
-            |known| known + 1,
-        )
-    }
-
-    fn new_object(
-        &mut self,
-        base_element: usize,
-        visible: bool,
-        tint: Option<Tint>,
-        of: Option<usize>,
-    ) -> usize {
-        self.objects.push(Object {
-            base_element,
-            visible,
-            origin: None,
-            last_map: None,
-            tint,
-            behaviour: 0,
-            replacement: Replacement::Kept,
-        });
-        self.of.push(of);
-        self.objects.len() - 1
-    }
+    bits
 }

@@ -30,10 +30,12 @@ pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
 pub use no_limit::NoLimit;
 
+pub(crate) use ifs::{filling, outline as base_element};
+
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
-use crate::instancing::Tint;
+use crate::instancing::{Coat, Tint};
 use crate::rule::{BaseElement, Placement, Rule};
 
 /// An object: a kind of element in a state that decides what it becomes.
@@ -139,6 +141,8 @@ pub struct Graph {
     pub(crate) counts_index: bool,
     pub(crate) draws: bool,
     pub(crate) seeds: bool,
+    /// Whether any object tints.
+    pub(crate) tints: bool,
     /// Whether maps may be any affine ones.
     pub(crate) affine: bool,
     /// The length of an element whose frame is the unit frame.
@@ -203,6 +207,18 @@ impl Graph {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
+    }
+
+    /// What an object tints all that stands in its place with.
+    #[inline]
+    pub(crate) fn coat(&self, object: usize) -> Coat {
+        self.objects[object].tint.map_or(Coat::NONE, Coat::of)
+    }
+
+    /// Whether any object tints what stands in its place.
+    #[must_use]
+    pub fn tints(&self) -> bool {
+        self.tints
     }
 
     /// Whether maps may be any affine ones, as in systems; those of rules are similarities.

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::graph::{CompileError, Graph, Replacement};
+use crate::instancing::Coat;
 use crate::rule::Piece;
 
 use super::descent::{Descent, Next, Stop};
@@ -23,6 +24,7 @@ struct Leaf {
     map: DAffine2,
     direction: Direction,
     length: f64,
+    coat: Coat,
     object: usize,
     /// The step of its birth, from that of the object.
     born: u32,
@@ -71,6 +73,8 @@ pub struct Run<'b> {
     /// Where the object stood.
     pub(super) frame: Frame,
     pub(super) length: f64,
+    /// What the object was tinted with.
+    pub(super) coat: Coat,
     /// The step of its birth.
     pub(super) born: u32,
     /// The rank of the first element.
@@ -109,6 +113,7 @@ impl Run<'_> {
                 direction: self.frame.direction * unit * leaf.direction,
             },
             length: self.length * leaf.length,
+            coat: self.coat.over(leaf.coat),
             index: self.index + number as u64,
             object: leaf.object,
             born: self.born + leaf.born,
@@ -276,6 +281,7 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
             map: frame.map,
             direction: frame.direction,
             length: found.standing.length,
+            coat: found.standing.coat,
             object: found.object,
             born: found.level,
             joined: found.joined,

@@ -2,6 +2,7 @@
 
 use crate::geometry::{DAffine2, Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Instance, Production, Replacement, Seed};
+use crate::instancing::Coat;
 use crate::rule::Placement;
 use crate::rule::draw::Path;
 
@@ -19,6 +20,8 @@ pub(super) struct Standing {
     /// That initiator element, by position.
     pub(super) root: u32,
     pub(super) path: Path,
+    /// What it and all that it descends from are tinted with.
+    pub(super) coat: Coat,
 }
 
 impl Standing {
@@ -29,6 +32,7 @@ impl Standing {
             length: 1.0,
             root: 0,
             path: Path::of_seed(seed),
+            coat: Coat::NONE,
         }
     }
 
@@ -53,6 +57,11 @@ impl Standing {
                 self.path.child(instance.position)
             } else {
                 self.path
+            },
+            coat: if graph.tints() {
+                self.coat.over(graph.coat(instance.object))
+            } else {
+                self.coat
             },
         }
     }
@@ -110,6 +119,7 @@ pub(super) struct FoundRun<'b> {
     pub(super) block: &'b Block,
     pub(super) frame: Frame,
     pub(super) length: f64,
+    pub(super) coat: Coat,
     /// The step of birth of the object that became the block.
     pub(super) level: u32,
     /// Whether the pen stands where the object starts.
@@ -322,6 +332,7 @@ impl<'g> Descent<'g> {
             block,
             frame: standing.frame,
             length: standing.length,
+            coat: standing.coat,
             level,
             joined,
         })

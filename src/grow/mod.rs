@@ -32,6 +32,7 @@ pub(crate) use spans::walk_with;
 
 use crate::geometry::Frame;
 use crate::graph::CompileError;
+use crate::instancing::Coat;
 
 /// An element of an approximant.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +41,8 @@ pub struct Element {
     pub frame: Frame,
     /// Its length as a multiple of the initiator element's that it descends from.
     pub length: f64,
+    /// What it is tinted with.
+    pub coat: Coat,
     /// Its rank in its fractal, from 1.
     pub index: u64,
     /// The object that it is.

@@ -246,6 +246,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
         let element = Element {
             frame: found.standing.frame,
             length: found.standing.length,
+            coat: found.standing.coat,
             index: self.index,
             object: found.object,
             born: found.level,
@@ -261,6 +262,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
             block: found.block,
             frame: found.frame,
             length: found.length,
+            coat: found.coat,
             born: found.level,
             index: self.index + 1,
             joined: found.joined,

@@ -40,7 +40,7 @@ impl Classes {
     /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let largest = match by {
-            ColorBy::None | ColorBy::Hits | ColorBy::Fractal | ColorBy::Index => 0,
+            ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Fractal | ColorBy::Index => 0,
             ColorBy::Step | ColorBy::Age => u64::from(steps),
             ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => graph.origins() as u64,
             ColorBy::Direction => 3,
@@ -69,7 +69,7 @@ impl Classes {
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
         match self.by {
-            ColorBy::None | ColorBy::Hits => 0,
+            ColorBy::None | ColorBy::Hits | ColorBy::Tint => 0,
             ColorBy::Step => u64::from(element.born),
             ColorBy::Age => u64::from(fractal.age),
             ColorBy::Fractal => fractal.number,
@@ -139,7 +139,7 @@ impl Classes {
     /// The colour of a class.
     #[must_use]
     pub fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
-        if matches!(self.by, ColorBy::None | ColorBy::Hits) {
+        if matches!(self.by, ColorBy::None | ColorBy::Hits | ColorBy::Tint) {
             return None;
         }
         let last = self.count().saturating_sub(1).max(1);
@@ -152,7 +152,7 @@ impl Classes {
     pub fn keep_fractals_whole(&self) -> bool {
         matches!(
             self.by,
-            ColorBy::None | ColorBy::Hits | ColorBy::Age | ColorBy::Fractal
+            ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Age | ColorBy::Fractal
         )
     }
 }

@@ -34,7 +34,7 @@ impl<'g> Survey<'g> {
         let seeds = level.fractals > 1;
         let one = |known: bool, value: u64| (!seeds || known).then(|| vec![value]);
         let used: Vec<u64> = match style.color_by {
-            ColorBy::None | ColorBy::Hits => vec![0],
+            ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
             ColorBy::Age => one(false, u64::from(growth.steps))?,
             ColorBy::Fractal => Vec::new(),
             ColorBy::Index => one(false, 0)?,

@@ -147,7 +147,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     fn paint(&self, look: Look) -> Paint {
         let style = self.scene.style;
-        let colour = self.colour.or(style.stroke).unwrap_or(Colour::BLACK);
+        let own = look.colour.or(self.colour);
+        let colour = own.unwrap_or(style.lines());
         let mut pen = pen(style);
         if let Width::Relative(_) = style.width {
             pen.width = class_width(look.width) / FINE;
@@ -158,7 +159,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             Kind::Ring => (style.fill, stroke(colour)),
             Kind::Area => (style.fill, None),
             Kind::Polygon => (
-                self.colour.or(style.fill).or(Some(colour)),
+                Some(own.unwrap_or(style.polygons())),
                 style
                     .stroke
                     .filter(|_| style.outlines_polygons())

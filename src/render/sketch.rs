@@ -8,7 +8,7 @@ use std::io;
 use crate::geometry::DVec2;
 use crate::grow::{Element, Enter, Fractal, Run, Stick, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
-use crate::style::Width;
+use crate::style::{ColorBy, Colour, Width};
 
 use super::WIDTHS_AN_OCTAVE;
 use super::classes::Share;
@@ -21,6 +21,8 @@ pub(super) struct Look {
     pub(super) kind: Kind,
     /// The width of a relative stroke, in steps of an eighth of an octave.
     pub(super) width: i32,
+    /// Its colour, where what is drawn is tinted.
+    pub(super) colour: Option<Colour>,
 }
 
 impl Look {
@@ -28,6 +30,7 @@ impl Look {
     pub(super) const AREA: Self = Self {
         kind: Kind::Area,
         width: 0,
+        colour: None,
     };
 }
 
@@ -205,6 +208,7 @@ impl<'a> Sketcher<'a> {
         self.mark(Mark::Polygon(Look {
             kind: Kind::Polygon,
             width,
+            colour: self.colour(element, self.scene.style.polygons()),
         }));
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
@@ -242,6 +246,7 @@ impl<'a> Sketcher<'a> {
         let look = Look {
             kind: self.kind(),
             width: self.width_class(element),
+            colour: self.colour(element, self.scene.style.lines()),
         };
         let [meets_start, meets_end] = meets_frame(base_element, reversed);
         let (start, pieces) = base_element.outline(reversed);
@@ -293,6 +298,7 @@ impl<'a> Sketcher<'a> {
             let look = Look {
                 kind,
                 width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+                colour: None,
             };
             let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
                 Some(Mark::Line(line)) => stick.joined && line.look == look,
@@ -324,6 +330,14 @@ impl<'a> Sketcher<'a> {
                 width * length * self.scene.graph.unit() * self.scene.canvas.scale() * FINE,
             )),
         }
+    }
+
+    /// The colour of an element that is tinted and has a colour of its own.
+    #[inline]
+    fn colour(&self, element: &Element, own: Colour) -> Option<Colour> {
+        let Scene { graph, style, .. } = self.scene;
+        let is_tinted = graph.tints() && style.color_by == ColorBy::Tint;
+        is_tinted.then(|| element.coat.on(own))
     }
 
     fn kind(&self) -> Kind {

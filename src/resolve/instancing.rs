@@ -3,6 +3,7 @@
 mod loops;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean, listed};
 use crate::document::{
@@ -14,12 +15,15 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::heading::Heading;
 use crate::ifs::{Shape, axes};
 use crate::instancing::{Instance, Instancing, Master, Object, Tint};
-use crate::style::Colour;
+use crate::style::{ColorBy, Colour};
 
 use super::Resolver;
 
 /// More objects than this are not made of those with levels.
 const MOST_OBJECTS: usize = 20_000;
+
+/// All levels together hold no more instances than this, and sides of shapes among them.
+const MOST_INSTANCES: usize = 250_000;
 
 /// What is known while a structure is resolved.
 #[derive(Default)]
@@ -32,14 +36,18 @@ pub(super) struct OfInstancing {
     reached: Vec<(usize, Option<f64>)>,
     numbers: BTreeMap<(usize, u64), usize>,
     is_too_many: bool,
+    /// The number of instances and of the sides of shapes among them.
+    size: usize,
+    /// The file's parameters.
+    constants: Arc<Scope>,
 }
 
 /// The objects that share a name, by the number of their union.
 #[derive(Default)]
 struct Definitions {
     plain: Option<usize>,
-    /// Of single levels.
-    levels: Vec<(f64, usize)>,
+    /// Of single levels, by their bits.
+    levels: BTreeMap<u64, usize>,
     any: Option<usize>,
 }
 
@@ -95,6 +103,11 @@ impl Transform {
     }
 }
 
+/// What tells levels apart: 0 and -0 are one.
+fn bits(level: f64) -> u64 {
+    (level + 0.0).to_bits()
+}
+
 /// Transforms in their order: what is written first is done first.
 fn product(transforms: &[Transform], slots: &[f64]) -> DAffine2 {
     let maps = transforms.iter().map(|transform| transform.map(slots));
@@ -108,6 +121,7 @@ impl Resolver<OfInstancing> {
         document: &InstancingDocument,
         heading: Heading,
     ) -> Option<Instancing> {
+        self.kind.constants = Arc::new(self.constants.clone());
         let initial = document.initial.as_ref().map(|set| self.set(set));
         for object in &document.objects {
             self.define(object);
@@ -135,12 +149,20 @@ impl Resolver<OfInstancing> {
                 instances: self.instances(&union, level),
             });
             self.kind.unions[number] = union;
+            if self.kind.size > MOST_INSTANCES {
+                let message = format!(
+                    "with all their levels the objects hold more than {MOST_INSTANCES} instances and \
+                     sides of shapes"
+                );
+                let hint = "let fewer levels, or smaller objects, be instanced";
+                self.error_with_hint(&document.heading.place, message, hint);
+            }
             if self.diagnostics.has_errors() {
                 return None;
             }
         }
         self.check_all_are_reached(document);
-        let structure = Instancing {
+        let mut structure = Instancing {
             heading,
             objects,
             scene,
@@ -149,6 +171,12 @@ impl Resolver<OfInstancing> {
                 Some(initial) => Some(initial?),
             },
         };
+        let tints = structure
+            .instances()
+            .any(|instance| instance.tint.is_some());
+        if tints && !document.tells_colours {
+            structure.heading.style.color_by = ColorBy::Tint;
+        }
         self.check_loops(document, &structure)?;
         Some(structure)
     }
@@ -172,11 +200,7 @@ impl Resolver<OfInstancing> {
         };
         let known = self.kind.names.entry(name.clone()).or_default();
         let twice = match (&document.level, level) {
-            (_, Some(level)) => {
-                let twice = known.levels.iter().any(|(known, _)| *known == level);
-                known.levels.push((level, number));
-                twice
-            }
+            (_, Some(level)) => known.levels.insert(bits(level), number).is_some(),
             (Some(_), None) => known.any.replace(number).is_some(),
             (None, None) => known.plain.replace(number).is_some(),
         };
@@ -192,7 +216,7 @@ impl Resolver<OfInstancing> {
     }
 
     fn union(&mut self, name: String, document: &UnionDocument, variable: Option<&str>) -> Union {
-        let mut scope = self.constants.clone();
+        let mut scope = Scope::inside(&self.kind.constants);
         if let Some(variable) = variable {
             self.used.insert(variable.to_owned());
             scope.variable(variable, 0);
@@ -324,6 +348,10 @@ impl Resolver<OfInstancing> {
                 }
                 None => None,
             };
+            self.kind.size += match &master {
+                Some(Master::Shape(Shape::Outline(outline))) => 1 + outline.pieces().len(),
+                _ => 1,
+            };
             instances.extend(master.map(|master| Instance { map, master, tint }));
         }
         instances
@@ -334,11 +362,7 @@ impl Resolver<OfInstancing> {
         let known = self.kind.names.get(name)?;
         let union = match level {
             None => known.plain,
-            Some(level) => {
-                let mut levels = known.levels.iter();
-                let one = levels.find(|(known, _)| *known == level);
-                one.map(|(_, union)| *union).or(known.any)
-            }
+            Some(level) => known.levels.get(&bits(level)).copied().or(known.any),
         };
         let level = level.map(|level| level + 0.0);
         let Some(union) = union else {
@@ -353,7 +377,7 @@ impl Resolver<OfInstancing> {
             self.error(place, message);
             return None;
         }
-        let key = (union, level.map_or(0, f64::to_bits));
+        let key = (union, level.map_or(0, bits));
         if let Some(&known) = self.kind.numbers.get(&key) {
             return Some(known);
         }

@@ -117,6 +117,73 @@ fn many_parameters_are_inherited() {
     assert_eq!(outcome.status, Some(0), "{}", outcome.said);
 }
 
+/// A structure of these objects, with this scene.
+fn structure(objects: &str, scene: &str) -> String {
+    format!("kind: instancing\nobjects:\n{objects}scene: [{scene}]\n")
+}
+
+const POINT: &str = "  a(0): [{point: [0, 0]}]\n";
+
+#[test]
+fn many_levels_are_few_objects() {
+    let chain = format!("{POINT}  a(n): [{{object: a(n - 1), translate: [1, 0]}}]\n");
+    let text = structure(&chain, "a(19999)");
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    accepted(&text, &["show", "many.yaml"]);
+    accepted(&text, &["grow", "many.yaml"]);
+    let text = structure(&chain, "a(20000)");
+    refused(text.as_bytes(), "more than 20000 levels of itself");
+    let endless = format!("{POINT}  a(n): [a(n + 1)]\n");
+    refused(structure(&endless, "a(1)").as_bytes(), "levels of itself");
+    let large = format!("{POINT}  a(n): [{}]\n", "a(n - 1), ".repeat(100));
+    refused(
+        structure(&large, "a(15000)").as_bytes(),
+        "more than 250000 instances",
+    );
+}
+
+#[test]
+fn many_shapes_are_told_apart() {
+    let shapes: String = (0..20_000)
+        .map(|i| format!("    - {{segment: [[0, {i}], [1, 0]]}}\n"))
+        .collect();
+    let text = structure(&format!("  a:\n{shapes}"), "a");
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    accepted(&text, &["grow", "many.yaml"]);
+    accepted(&text, &["show", "many.yaml"]);
+}
+
+#[test]
+fn many_loops_are_checked() {
+    // Every object holds all others; of each pair of instances one grows.
+    for (objects, factor) in [(40, "1/2"), (12, "[1.5, 0.3]"), (150, "[1.5, 0.3]")] {
+        let names: Vec<_> = (0..objects)
+            .map(|i| format!("{{object: a{i}, scale: {factor}, rotate: 90}}"))
+            .collect();
+        let one = names.join(", ");
+        let all: String = (0..objects).map(|i| format!("  a{i}: *all\n")).collect();
+        let text = structure(&format!("  first: &all [{one}]\n{all}"), "first");
+        accepted(&text, &CHECK);
+    }
+}
+
+#[test]
+fn many_objects_see_many_parameters() {
+    let params: String = (0..10_000).map(|i| format!("  p{i}: 1\n")).collect();
+    let objects: String = (0..10_000)
+        .map(|i| {
+            format!(
+                "  a{i}: [{{object: \"a{}\", scale: p{i}/2}}]\n",
+                (i + 1) % 10_000
+            )
+        })
+        .collect();
+    let text = format!("params:\n{params}{}", structure(&objects, "a0"));
+    accepted(&text, &CHECK);
+}
+
 fn graph_of(text: &str, steps: u32) -> Graph {
     let source = Source::new("hostile.yaml", text);
     let document = Document::read(&source, &Catalogue::embedded()).unwrap();

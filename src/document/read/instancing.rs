@@ -66,7 +66,8 @@ const INSTANCING_ALONE: [Member; 6] = [
 const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
 
 const INSTANCES: Form = Form::List(
-    &Form::Either(&[Form::Text, Form::Mapping(&INSTANCE)]),
+    // A name, perhaps with a level: never a number alone.
+    &Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]),
     1,
     None,
 );
@@ -162,6 +163,9 @@ pub(super) fn read_instancing(
         objects,
         scene,
         initial,
+        tells_colours: fields
+            .take("style")
+            .is_some_and(|style| style.get("color_by").is_some()),
     };
     structure.heading.complete = complete && !reader.names_are_missing;
     Some(structure)
@@ -286,7 +290,7 @@ fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocumen
             reader.error_with_hint(place, message, "write two instances");
             None
         }
-        (None, Some(_)) => Some(MasterDocument::Shape(read_set(reader, fields))),
+        (None, Some(_)) => Some(MasterDocument::Shape(Box::new(read_set(reader, fields)))),
         (None, None) => {
             let message = "this instance does not say what it is one of";
             reader.error_with_hint(&first_line(fields.place), message, INSTANCE.hint);

@@ -133,6 +133,19 @@ pub(super) fn base_element(closed: bool) -> Paint {
     }
 }
 
+/// What an instance holds, in its tint if it has one.
+pub(super) fn instance(closed: bool, tint: Option<Colour>) -> Paint {
+    let tinted = tint.map(|colour| {
+        let [red, green, blue, _] = colour.rgba();
+        of([red, green, blue], 60)
+    });
+    let own = Kind::Fertile.outline(closed);
+    Paint {
+        fill: own.fill.and(tinted.or(own.fill)),
+        ..own
+    }
+}
+
 fn stroke(colour: Colour, pen: Pen) -> Paint {
     Paint {
         fill: None,

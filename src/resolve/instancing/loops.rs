@@ -3,18 +3,35 @@
 use crate::diagnostic::Diagnostic;
 use crate::digraph::components;
 use crate::document::InstancingDocument;
-use crate::geometry::DMat2;
+use crate::geometry::{DAffine2, DMat2, Direction, Frame};
 use crate::ifs::{Contraction, Verdict};
 use crate::instancing::{Instancing, Master};
 use crate::resolve::Resolver;
 
 use super::OfInstancing;
 
+/// Where more instances than these follow each other, it is not told whether they contract.
+const MOST_WAYS: usize = 1_000_000;
+
+const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
+
 /// An instance that lies on a loop.
 struct Edge {
     from: usize,
     to: usize,
     linear: DMat2,
+}
+
+impl Edge {
+    /// Whether the instance is smaller than what it stands in, whatever it is turned by.
+    fn shrinks(&self) -> bool {
+        const ROUNDING: f64 = 1e-12;
+        let frame = Frame {
+            map: DAffine2::from_mat2(self.linear),
+            direction: Direction::Normal,
+        };
+        frame.stretch() < 1.0 - ROUNDING
+    }
 }
 
 impl Resolver<OfInstancing> {
@@ -25,17 +42,25 @@ impl Resolver<OfInstancing> {
         structure: &Instancing,
     ) -> Option<()> {
         let edges = edges(structure);
-        if edges.is_empty() {
+        if edges.iter().all(Edge::shrinks) {
             return Some(());
         }
         let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
         // What is applied after a map is what its object is instanced by.
-        let after = |edge: &Edge| {
-            let outer = edges.iter().enumerate();
-            let outer = outer.filter(|(_, outer)| outer.to == edge.from);
-            outer.map(|(number, _)| number).collect()
-        };
-        let contraction = Contraction::of(&linear, Some(edges.iter().map(after).collect()));
+        let mut outer = vec![Vec::new(); structure.objects.len()];
+        for (number, edge) in edges.iter().enumerate() {
+            outer[edge.to].push(number);
+        }
+        let ways = edges.iter().map(|edge| outer[edge.from].len());
+        if ways.sum::<usize>() > MOST_WAYS {
+            let message = "there are too many ways to tell whether all loops contract";
+            let place = &document.heading.place;
+            let warning = Diagnostic::warning(message).at(place).hint(UNKNOWN);
+            self.diagnostics.push(warning);
+            return Some(());
+        }
+        let after = edges.iter().map(|edge| outer[edge.from].clone()).collect();
+        let contraction = Contraction::of(&linear, Some(after));
         let name = |edge: &usize| structure.objects[edges[*edge].from].name.as_str();
         let object = contraction.word.last().map_or("", name);
         let written = document
@@ -58,8 +83,7 @@ impl Resolver<OfInstancing> {
                     "ways of up to {} instances do not tell whether all loops contract",
                     contraction.length
                 );
-                let hint = "it can be grown by a number of steps, but its limit is not known";
-                let warning = Diagnostic::warning(message).at(place).hint(hint);
+                let warning = Diagnostic::warning(message).at(place).hint(UNKNOWN);
                 self.diagnostics.push(warning);
                 Some(())
             }

@@ -1,0 +1,309 @@
+//! An instancing structure as a figure: the scene and the canonical objects side by side, each with
+//! its shapes and with boxes of what its instances hold.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::num::NonZero;
+
+use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::graph::{Graph, base_element, filling};
+use crate::instancing::{Instance, Instancing, Master};
+use crate::render::{Drawing, Paint, RenderError, write_drawing};
+
+use super::super::text::Font;
+use super::block::{Block, Item, Outline};
+use super::ink;
+use super::lines::{flattened, outline};
+use super::page::{SMALL, WORDS, lay_out, plural};
+use super::{Figure, Options};
+
+/// The sides of panels in pixels, at most.
+const SCENE: f64 = 300.0;
+const OBJECT: f64 = 170.0;
+
+/// Panels stand side by side up to this width.
+const WIDTH: f64 = 640.0;
+
+/// More objects than these are not shown, nor more levels of one name.
+const MOST_OBJECTS: usize = 24;
+const MOST_LEVELS: usize = 3;
+
+/// More instances than these are not shown, or have no names.
+const MOST_INSTANCES: usize = 400;
+const MOST_NAMES: usize = 40;
+
+/// Names longer than this are cut.
+const MOST_CHARACTERS: usize = 16;
+
+/// What lies farther out is not drawn.
+const FARTHEST: f64 = 1e100;
+
+/// What lies around a panel.
+const PAD: f64 = 8.0;
+
+/// Draws a structure and writes the figure; tells its width and height in pixels.
+///
+/// # Errors
+///
+/// If the picture is too large, or if `out` fails.
+pub fn write_structure(
+    structure: &Instancing,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let font = Font::new();
+    let shown = shown(structure);
+    let plan = Plan {
+        font: &font,
+        structure,
+        boxes: boxes(structure, &shown),
+    };
+    let objects = shown.iter().map(|&number| {
+        let object = &structure.objects()[number];
+        let name = Block::text(&font, vec![cut(&object.name)], WORDS, true);
+        Block::column(vec![name, plan.panel(&object.instances, OBJECT)], 2.0, true)
+    });
+    let objects = Block::flow(objects.collect(), DVec2::new(22.0, 16.0), WIDTH);
+    let mut columns = vec![("scene", plan.panel(structure.scene(), SCENE))];
+    if !shown.is_empty() {
+        columns.push((plural(shown.len(), "object", "objects"), objects));
+    }
+    let mut notes = Vec::new();
+    let left_out = structure.objects().len() - shown.len();
+    if left_out > 0 {
+        notes.push(format!(
+            "{left_out} more {} not shown",
+            plural(left_out, "object is", "objects are")
+        ));
+    }
+    let source = structure.heading().description.source.as_deref();
+    let page = lay_out(
+        &font,
+        columns,
+        [&options.labels.title, source.unwrap_or_default()],
+        |_| Block::default(),
+        &notes,
+    );
+    let figure = Figure {
+        page,
+        size: options.size,
+        background: options.background,
+    };
+    // A figure is small.
+    let one = NonZero::<usize>::MIN;
+    write_drawing(&figure, options.format, &options.labels, one, out)?;
+    Ok(figure.size())
+}
+
+/// The objects that have panels: of those that differ by their level the first few.
+fn shown(structure: &Instancing) -> Vec<usize> {
+    let mut levels: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut shown = Vec::new();
+    for (number, object) in structure.objects().iter().enumerate() {
+        let name = object.name.split('(').next().unwrap_or_default();
+        let seen = levels.entry(name).or_default();
+        *seen += 1;
+        if *seen <= MOST_LEVELS && shown.len() < MOST_OBJECTS {
+            shown.push(number);
+        }
+    }
+    shown
+}
+
+/// The boxes of all objects that stand in a panel.
+fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
+    let panels = shown
+        .iter()
+        .map(|&number| &structure.objects()[number].instances);
+    let instances = panels
+        .chain([&structure.scene])
+        .flat_map(|instances| instances.iter().take(MOST_INSTANCES));
+    let mut numbers: Vec<usize> = instances
+        .filter_map(|instance| match instance.master {
+            Master::Object(number) => Some(number),
+            Master::Shape(_) => None,
+        })
+        .collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers.truncate(MOST_INSTANCES);
+    let boxes = Graph::boxes_of(structure, &numbers);
+    let both = numbers.into_iter().zip(boxes);
+    both.filter_map(|(number, bounds)| Some((number, bounds?)))
+        .collect()
+}
+
+struct Plan<'a> {
+    font: &'a Font,
+    structure: &'a Instancing,
+    boxes: BTreeMap<usize, Bounds>,
+}
+
+/// An instance where it stands, in the coordinates of the object.
+struct Drawn<'a> {
+    outline: Outline,
+    instance: &'a Instance,
+}
+
+impl<'a> Plan<'a> {
+    /// What a union is made of, no larger than a side.
+    fn panel(&self, instances: &'a [Instance], side: f64) -> Block {
+        let drawn = instances.iter().take(MOST_INSTANCES);
+        let drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
+        let bounds = drawn.iter().fold(Bounds::EMPTY, |mut bounds, drawn| {
+            bounds.add_all(&bounds_of(&drawn.outline));
+            bounds
+        });
+        let mut block = Block::default();
+        let mut unnamed: Vec<String> = Vec::new();
+        if !bounds.is_empty() {
+            let size = bounds.size();
+            let scale = side / size.max_element().max(1e-300);
+            let map = DAffine2::from_translation(DVec2::splat(PAD))
+                * DAffine2::from_scale(DVec2::new(scale, -scale))
+                * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
+            block.size = size * scale + 2.0 * PAD;
+            for drawn in &drawn {
+                let line = drawn.outline.transformed(&map);
+                block
+                    .items
+                    .push(Item::Path(vec![line], drawn.paint(), None));
+            }
+            unnamed = self.put_names(&mut block, &drawn, &map);
+        }
+        if drawn.len() < instances.len() {
+            unnamed.push(format!("{} in all", instances.len()));
+        }
+        let words = self.font.wrap(&unnamed.join(", "), SMALL, side.max(120.0));
+        if unnamed.is_empty() {
+            return block;
+        }
+        Block::column(
+            vec![block, Block::text(self.font, words, SMALL, true)],
+            2.0,
+            true,
+        )
+    }
+
+    fn drawn(&self, instance: &'a Instance) -> Option<Drawn<'a>> {
+        let map = self.structure.map_of(instance);
+        let own = match &instance.master {
+            Master::Object(number) => outline(&filling(Some(*self.boxes.get(number)?))),
+            Master::Shape(shape) => outline(&base_element(shape)),
+        };
+        let outline = own.transformed(&map);
+        let bounds = bounds_of(&outline);
+        let corners = [bounds.min(), bounds.max()].map(DVec2::abs);
+        let can_be_drawn =
+            bounds.is_finite() && corners.iter().all(|it| it.max_element() < FARTHEST);
+        can_be_drawn.then_some(Drawn { outline, instance })
+    }
+
+    /// Names what the instances are, where that covers nothing; tells the names that have no room.
+    fn put_names(&self, block: &mut Block, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<String> {
+        let objects = || drawn.iter().filter(|drawn| !drawn.is_shape());
+        let lines: Vec<_> = drawn
+            .iter()
+            .filter(|drawn| drawn.is_shape())
+            .flat_map(|drawn| flattened(&drawn.outline.transformed(map)).collect::<Vec<_>>())
+            .collect();
+        let mut placed: Vec<Bounds> = Vec::new();
+        let mut unnamed = Vec::new();
+        let is_crowded = objects().count() > MOST_NAMES;
+        for drawn in objects() {
+            let Master::Object(number) = drawn.instance.master else {
+                continue;
+            };
+            let name = cut(&self.structure.objects()[number].name);
+            let size = DVec2::new(self.font.width(&name, SMALL), SMALL);
+            let within = bounds_of(&drawn.outline.transformed(map));
+            let is_free = |label: &Bounds| {
+                let inside =
+                    label.min().cmpge(DVec2::ZERO).all() && label.max().cmple(block.size).all();
+                inside
+                    && !placed.iter().any(|other| overlap(label, other))
+                    && !lines.iter().any(|ends| comes_near(label, ends))
+            };
+            let places = places(&within).map(|middle| {
+                let half = size / 2.0 + 1.0;
+                Bounds::new(middle - half, middle + half)
+            });
+            let found = (!is_crowded)
+                .then(|| places.into_iter().find(is_free))
+                .flatten();
+            match found {
+                Some(label) => {
+                    let at = DVec2::new(label.min().x + 1.0, label.max().y - 0.25 * SMALL);
+                    let item = Item::Text(name, SMALL, at, super::LABEL);
+                    block.items.push(item);
+                    placed.push(label);
+                }
+                None if !unnamed.contains(&name) => unnamed.push(name),
+                None => {}
+            }
+        }
+        unnamed
+    }
+}
+
+impl Drawn<'_> {
+    fn is_shape(&self) -> bool {
+        matches!(self.instance.master, Master::Shape(_))
+    }
+
+    fn paint(&self) -> Paint {
+        let closed = self.outline.closed;
+        if self.is_shape() {
+            ink::base_element(closed)
+        } else {
+            ink::instance(closed, self.instance.tint.map(|tint| tint.colour))
+        }
+    }
+}
+
+/// Where a name may stand: the middle of a box, or else anywhere in it, what is nearer first.
+fn places(within: &Bounds) -> [DVec2; 25] {
+    const STEPS: [f64; 5] = [0.5, 0.3, 0.7, 0.12, 0.88];
+    let at = |x: f64, y: f64| within.min() + within.size() * DVec2::new(x, y);
+    std::array::from_fn(|place| at(STEPS[place / 5], STEPS[place % 5]))
+}
+
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a.min().cmplt(b.max()).all() && b.min().cmplt(a.max()).all()
+}
+
+/// Whether a line passes by a label in less than a few pixels.
+fn comes_near(label: &Bounds, [from, to]: &[DVec2; 2]) -> bool {
+    const STEP: f64 = 2.0;
+    let mut along = 0.0;
+    let length = from.distance(*to);
+    let near = Bounds::new(label.min() - STEP, label.max() + STEP);
+    loop {
+        let at = from.lerp(*to, if length > 0.0 { along / length } else { 0.0 });
+        if at.cmpge(near.min()).all() && at.cmple(near.max()).all() {
+            return true;
+        }
+        if along >= length {
+            return false;
+        }
+        along = (along + STEP).min(length);
+    }
+}
+
+fn bounds_of(outline: &Outline) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for [from, to] in flattened(outline) {
+        bounds.add(from);
+        bounds.add(to);
+    }
+    bounds
+}
+
+/// A name, cut if it is very long.
+fn cut(name: &str) -> String {
+    if name.chars().count() <= MOST_CHARACTERS {
+        return name.into();
+    }
+    let start: String = name.chars().take(MOST_CHARACTERS - 1).collect();
+    start + "…"
+}

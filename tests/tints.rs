@@ -1,0 +1,164 @@
+//! Tints of structures: what the pictures show is what the equations of Hart 1992, section 5, say.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use std::num::NonZero;
+
+use common::{document, document_of};
+use kfrac::grow::Growth;
+use kfrac::model::Model;
+use kfrac::render::{self, Format, Options, Size};
+use kfrac::style::ColorBy;
+
+fn picture(model: &Model, steps: u32, change: impl FnOnce(&mut Options)) -> Vec<u8> {
+    let graph = model.compile(steps).unwrap();
+    let mut options = Options {
+        size: Size::Long(64),
+        ..Options::of(model.heading())
+    };
+    change(&mut options);
+    let mut bytes = Vec::new();
+    render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
+    bytes
+}
+
+fn svg(model: &Model, steps: u32) -> String {
+    String::from_utf8(picture(model, steps, |_| {})).unwrap()
+}
+
+fn model(text: &str) -> Model {
+    document_of(text).resolve(&[]).unwrap().0
+}
+
+/// What follows each mark up to the next quotation mark.
+fn values<'t>(text: &'t str, mark: &str) -> Vec<&'t str> {
+    let after = text.split(mark).skip(1);
+    after.map(|rest| rest.split('"').next().unwrap()).collect()
+}
+
+/// A square that is tinted twice on one way, once on another and not at all on a third.
+const SQUARES: &str = "kind: instancing
+objects:
+  square: [{polygon: [[0, 0], [1, 0], [1, 1], [0, 1]], tint: {color: lime, alpha: 0.5}}]
+  plain: [{polygon: [[0, 0], [1, 0], [1, 1]]}]
+  pair:
+    - {object: square, tint: {color: blue, alpha: 0.25}}
+    - {object: plain, translate: [1, 0]}
+    - {segment: [[0, 2], [1, 2]], tint: {color: white, alpha: 0.5}}
+scene:
+  - {object: pair, tint: {color: red, alpha: 0.5}}
+  - {object: plain, translate: [0, 3]}
+steps: 2
+style: {stroke: \"#404040\", fill: none}
+";
+
+/// c and α by the paper's equations, from the outermost tint to the innermost, which is opaque.
+fn composed(tints: &[([f64; 3], f64)]) -> String {
+    let (mut colour, mut alpha) = ([0.0; 3], 0.0);
+    for (own, weight) in tints {
+        for (value, own) in colour.iter_mut().zip(own) {
+            *value += weight * (1.0 - alpha) * own;
+        }
+        alpha += weight * (1.0 - alpha);
+    }
+    assert!((alpha - 1.0f64).abs() < 1e-12);
+    let [red, green, blue] = colour.map(|value| (value + 0.5).floor());
+    format!(
+        "#{red:02x}{green:02x}{blue:02x}",
+        red = red as u8,
+        green = green as u8,
+        blue = blue as u8
+    )
+}
+
+#[test]
+fn tints_are_composed_from_the_outermost_inwards() {
+    let text = svg(&model(SQUARES), 2);
+    let (red, lime, blue) = ([255.0, 0.0, 0.0], [0.0, 255.0, 0.0], [0.0, 0.0, 255.0]);
+    let (white, own) = ([255.0; 3], [64.0; 3]);
+    let expected = [
+        composed(&[(red, 0.5), (blue, 0.25), (lime, 0.5), (own, 1.0)]),
+        composed(&[(red, 0.5), (own, 1.0)]),
+        "#404040".into(),
+    ];
+    assert_eq!(values(&text, "<path fill=\""), expected);
+    let line = composed(&[(red, 0.5), (white, 0.5), (own, 1.0)]);
+    assert_eq!(values(&text, "<g stroke=\""), [line]);
+}
+
+#[test]
+fn colours_that_are_asked_for_are_not_tinted() {
+    let tinted = model(SQUARES);
+    assert_eq!(tinted.heading().style.color_by, ColorBy::Tint);
+    let plain = picture(&tinted, 2, |options| options.style.color_by = ColorBy::None);
+    let plain = String::from_utf8(plain).unwrap();
+    assert!(
+        values(&plain, "fill=\"#")
+            .iter()
+            .all(|colour| *colour == "404040")
+    );
+    let written = SQUARES.replace("fill: none", "fill: none, color_by: none");
+    let written = model(&written);
+    assert_eq!(written.heading().style.color_by, ColorBy::None);
+    assert_eq!(svg(&written, 2), plain);
+    // Without tints there is nothing to draw by.
+    let bare = model("kind: instancing\nobjects: {a: [{point: [0, 0]}]}\nscene: [a]\n");
+    assert_eq!(bare.heading().style.color_by, ColorBy::None);
+}
+
+/// Elements come by blocks where nothing is cut, one by one where a detail cuts, and from spans on
+/// several threads.
+#[test]
+fn however_a_structure_is_walked_its_colours_are_the_same() {
+    for name in ["pound-sign-tinted", "ternary-tree-levels"] {
+        let model = document(name).resolve(&[]).unwrap().0;
+        let steps = model.heading().steps.unwrap();
+        for format in [Format::Svg, Format::Png] {
+            let with = |threads: usize, detail: bool| {
+                picture(&model, steps, |options| {
+                    options.format = format;
+                    options.threads = NonZero::new(threads).unwrap();
+                    options.detail = detail.then_some(render::Detail {
+                        pixels: 1e-9,
+                        decides_steps: false,
+                    });
+                })
+            };
+            let one = with(1, false);
+            assert!(one == with(4, false), "{name} on four threads");
+            let fills = |bytes: &[u8]| {
+                let text = String::from_utf8_lossy(bytes);
+                let fills = values(&text, "fill=\"#");
+                fills.into_iter().map(str::to_owned).collect::<Vec<_>>()
+            };
+            let cut = with(1, true);
+            if format == Format::Svg {
+                assert!(fills(&one).len() > 20, "{name} has colours");
+                assert_eq!(fills(&one), fills(&cut), "{name} one by one");
+            }
+        }
+    }
+}
+
+/// Hart's figure 5 in the plane: the colour of a quadrant is that of the instance that it is.
+#[test]
+fn the_pound_sign_has_a_colour_for_every_quadrant() {
+    let model = document("pound-sign-tinted").resolve(&[]).unwrap().0;
+    let text = svg(&model, 0);
+    let fills = values(&text, "<path fill=\"");
+    let tints = ["#1d3557", "#d62828", "#2a9d8f", "#f4d35e"];
+    assert_eq!(fills.len(), tints.len());
+    for (fill, tint) in fills.iter().zip(tints) {
+        let value = |text: &str, at: usize| u8::from_str_radix(&text[at..at + 2], 16).unwrap();
+        for at in [1, 3, 5] {
+            // Half of the tint on black.
+            assert_eq!(
+                value(fill, at),
+                value(tint, at).div_ceil(2),
+                "{fill} of {tint}"
+            );
+        }
+    }
+}
