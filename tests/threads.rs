@@ -221,7 +221,7 @@ fn spans_of_the_library_are_the_whole_walk() {
 #[test]
 fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
     // More than one span of a table; pictures have longer ones, and tests of their own below.
-    for (name, rule, steps) in library(5_000) {
+    for ((name, rule, steps), number) in library(5_000).zip(0..) {
         let graph = Graph::compile(&rule, steps).unwrap();
         let growth = Growth::steps(steps);
         let one_and_others = |write: &dyn Fn(NonZero<usize>) -> Vec<u8>, what: &str| {
@@ -242,11 +242,12 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
         let own = Options::of(rule.heading());
         let mut by_index = own.clone();
         by_index.style.color_by = ColorBy::Index;
-        for (format, options) in [
-            (render::Format::Svg, &own),
-            (render::Format::Svg, &by_index),
-            (render::Format::Png, &own),
-        ] {
+        let mut pictures = vec![(render::Format::Svg, &own), (render::Format::Png, &own)];
+        // A walk for every colour: some rules will do.
+        if number % 5 == 0 {
+            pictures.push((render::Format::Svg, &by_index));
+        }
+        for (format, options) in pictures {
             let write = |threads| {
                 let options = Options {
                     format,
