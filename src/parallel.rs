@@ -86,6 +86,11 @@ impl<'w> Team<'w> {
         job.map(|job| job()).is_some()
     }
 
+    /// The number of threads.
+    pub(crate) fn threads(&self) -> NonZero<usize> {
+        self.threads
+    }
+
     /// A line of pieces to which `work` is done.
     pub(crate) fn line<J: Send + 'w>(&self, work: fn(&mut J)) -> Line<'_, 'w, J> {
         let (finished, done) = mpsc::channel();
@@ -123,6 +128,11 @@ impl<'w, J: Send + 'w> Line<'_, 'w, J> {
     /// A piece that has been used, if there is one.
     pub(crate) fn spare(&mut self) -> Option<J> {
         self.spare.pop()
+    }
+
+    /// Whether no pieces are on their way.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.handed_out == self.taken
     }
 
     /// Hands a piece to the threads. `take` gets what is done, in the order in which it came.

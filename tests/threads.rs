@@ -188,15 +188,15 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
     }
 }
 
-/// Every rule of the library, and a step of not many elements that are more than one span has.
-fn library() -> impl Iterator<Item = (String, Arc<Rule>, u32)> {
+/// Every rule of the library, and a step of no more than so many elements.
+fn library(most_elements: u64) -> impl Iterator<Item = (String, Arc<Rule>, u32)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
     let names = entries.filter(|entry| entry.shelf == Shelf::Rules);
-    names.map(|entry| entry.name).map(|name| {
+    names.map(|entry| entry.name).map(move |name| {
         let rule = document(&name).resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 14).unwrap();
-        let most = match graph.check_size(14, 12_000) {
+        let most = match graph.check_size(14, most_elements) {
             Ok(None) => rule.steps().unwrap_or(4),
             Ok(Some(_)) => 14,
             Err(error) => error.deepest.unwrap(),
@@ -207,7 +207,7 @@ fn library() -> impl Iterator<Item = (String, Arc<Rule>, u32)> {
 
 #[test]
 fn spans_of_the_library_are_the_whole_walk() {
-    for (_, rule, steps) in library() {
+    for (_, rule, steps) in library(12_000) {
         let graph = Graph::compile(&rule, steps).unwrap();
         let growth = Growth {
             seed: 3,
@@ -220,7 +220,8 @@ fn spans_of_the_library_are_the_whole_walk() {
 
 #[test]
 fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
-    for (name, rule, steps) in library() {
+    // More than one span of a table; pictures have longer ones, and tests of their own below.
+    for ((name, rule, steps), number) in library(5_000).zip(0..) {
         let graph = Graph::compile(&rule, steps).unwrap();
         let growth = Growth::steps(steps);
         let one_and_others = |write: &dyn Fn(NonZero<usize>) -> Vec<u8>, what: &str| {
@@ -241,16 +242,17 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
         let own = Options::of(rule.heading());
         let mut by_index = own.clone();
         by_index.style.color_by = ColorBy::Index;
-        for (format, options) in [
-            (render::Format::Svg, &own),
-            (render::Format::Svg, &by_index),
-            (render::Format::Png, &own),
-        ] {
+        let mut pictures = vec![(render::Format::Svg, &own), (render::Format::Png, &own)];
+        // A walk for every colour: some rules will do.
+        if number % 5 == 0 {
+            pictures.push((render::Format::Svg, &by_index));
+        }
+        for (format, options) in pictures {
             let write = |threads| {
                 let options = Options {
                     format,
                     threads,
-                    size: Size::Long(200),
+                    size: Size::Long(100),
                     ..options.clone()
                 };
                 let mut bytes = Vec::new();
@@ -324,6 +326,44 @@ impl Visitor for Fails {
 
     fn end(&mut self, _: bool) -> Result<(), Self::Error> {
         Ok(())
+    }
+}
+
+/// Pictures of several spans: lines, closed paths, small polygons, thin lines of relative width.
+#[test]
+fn pictures_of_many_elements_do_not_depend_on_the_number_of_threads() {
+    let cases = [
+        ("koch", 8),
+        ("dragon", 15),
+        ("binary-tree", 15),
+        ("sierpinski-triangles", 9),
+    ];
+    for (name, steps) in cases {
+        let document = document(name);
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let mut options = Options::of(rule.heading());
+        options.size = Size::Long(200);
+        options.style.color_by = ColorBy::None;
+        for format in [render::Format::Svg, render::Format::Png] {
+            let write = |number| {
+                let options = Options {
+                    format,
+                    threads: threads(number),
+                    ..options.clone()
+                };
+                let mut bytes = Vec::new();
+                render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
+                bytes
+            };
+            let one = write(1);
+            for number in &THREADS[1..] {
+                assert!(
+                    write(*number) == one,
+                    "{name} as {format:?} on {number} threads"
+                );
+            }
+        }
     }
 }
 

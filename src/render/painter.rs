@@ -3,6 +3,7 @@ use std::io;
 use crate::grow::Seam;
 use crate::style::{Colour, Width};
 
+use super::comb::Comb;
 use super::pen;
 use super::scene::{Pass, Scene};
 use super::sketch::{Kind, Line, Look, Mark, Sketch, class_width};
@@ -54,6 +55,16 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         }
     }
 
+    /// What makes tufts, if they may be drawn.
+    pub(super) fn comb(&self) -> Option<Comb> {
+        let Width::Relative(width) = self.scene.style.width else {
+            return None;
+        };
+        let stroke = self.paint(Look::TUFTS).stroke?;
+        let below = self.tracer.tufts_below(&stroke);
+        (below > 0.0).then(|| Comb::new(width, stroke.pen, below))
+    }
+
     /// Ends what is still open.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.end_path()
@@ -62,8 +73,15 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     /// Paints the next span of the walk.
     pub(super) fn paint_span(&mut self, sketch: &Sketch, seam: Seam) -> io::Result<()> {
         let mut points = sketch.points.as_slice();
+        let mut tufts = sketch.tufts.as_slice();
         let mut joined = seam.joined;
         for mark in &sketch.marks {
+            if let Mark::Tufts(count) = *mark {
+                let (now, rest) = tufts.split_at(count);
+                tufts = rest;
+                self.begin_path(Look::TUFTS)?;
+                self.tracer.tufts(now);
+            }
             self.mark(mark, joined, &mut points)?;
             joined = true;
         }
@@ -97,6 +115,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.reach(end);
                 return self.hand_on();
             }
+            Mark::Tufts(_) => return self.hand_on(),
             Mark::Close { returned } => {
                 self.tracer.close(returned);
                 return self.tracer.hand_on();

@@ -1,26 +1,31 @@
 //! PNG: the paths of a picture, antialiased. Thin strokes of round pens and small polygons, of
-//! which there may be millions, are drawn as coverage; tiny-skia draws the rest.
+//! which there may be millions, are drawn as coverage, by any thread; tiny-skia draws the rest.
 
+mod chunk;
 mod coverage;
 mod encode;
 mod nib;
 mod part;
+mod planes;
 mod skia;
 #[cfg(test)]
 mod tests;
 
 pub(super) use encode::encode as write_pixels;
 
+use std::convert::Infallible;
 use std::io::{self, Write};
 
+use crate::parallel::{Line, Team};
 use crate::style::Colour;
 
-use self::coverage::{MOST_VERTICES, flattened};
+use self::chunk::Chunk;
+use self::coverage::{HairPen, MOST_VERTICES, flattened, is_small};
 use self::nib::{Nib, Nibs};
 use self::part::Part;
 use self::skia::Outline;
 use super::Labels;
-use super::surface::{Paint, Position, Surface};
+use super::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
@@ -42,10 +47,14 @@ fn bytes(size: &[u32; 2]) -> f64 {
 }
 
 /// A picture in memory.
-pub(super) struct Png {
+pub(super) struct Png<'t, 'w> {
     /// The part of the picture that is drawn on, and those that it was entered from.
     part: Part,
     outer: Vec<Part>,
+    /// What has not been covered yet, and what has it covered.
+    chunk: Chunk,
+    line: Line<'t, 'w, Chunk>,
+    threads: usize,
     nibs: Nibs,
     /// The nib that draws the path as coverage, if one does.
     nib: Option<Nib>,
@@ -61,9 +70,13 @@ pub(super) struct Png {
     is_outlined: bool,
 }
 
-impl Png {
+impl<'t, 'w> Png<'t, 'w> {
     /// Begins a picture.
-    pub(super) fn begin(size: [u32; 2], background: Option<Colour>) -> Result<Self, TooManyPixels> {
+    pub(super) fn begin(
+        size: [u32; 2],
+        background: Option<Colour>,
+        team: &'t Team<'w>,
+    ) -> Result<Self, TooManyPixels> {
         let [width, height] = size;
         if u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(TooManyPixels { size });
@@ -74,44 +87,26 @@ impl Png {
             part.pixmap
                 .fill(tiny_skia::Color::from_rgba8(red, green, blue, opacity));
         }
-        Ok(Self::of(part, Outline::default()))
-    }
-
-    fn of(part: Part, outline: Outline) -> Self {
-        Self {
+        Ok(Self {
             part,
             outer: Vec::new(),
+            chunk: Chunk::default(),
+            line: team.line(Chunk::cover),
+            threads: team.threads().get(),
             nibs: Nibs::default(),
             nib: None,
             at: [0; 2],
             start: [0; 2],
             covers: false,
             ring: Vec::with_capacity(MOST_VERTICES),
-            outline,
+            outline: Outline::default(),
             is_outlined: false,
-        }
-    }
-
-    /// A surface for some of the paths that come next, to be drawn on by another thread and then
-    /// [joined](Self::join). All of them must be of one opaque colour; what is not drawn as coverage
-    /// is held in memory.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
-    pub(super) fn fork(&self) -> Option<Self> {
-        Some(Self::of(self.part.fork()?, Outline::put_aside()))
-    }
-
-    /// Draws what has been drawn on a fork in a colour, between two paths. The picture is the same
-    /// as if all had been drawn here, if forks are joined in the order of their paths; where all is
-    /// coverage, the order does not matter either.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for walks on several threads"))]
-    pub(super) fn join(&mut self, fork: Self, ink: Colour) {
-        self.part.join(&fork.part, ink);
-        fork.outline.draw_aside(&mut self.part.pixmap);
+        })
     }
 
     /// Encodes the picture.
     pub(super) fn write(mut self, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
-        self.part.settle();
+        self.settle();
         // Into memory first: the encoder would not tell why `out` fails.
         let mut bytes = Vec::new();
         encode::encode(&self.part.pixmap, labels, &mut bytes)?;
@@ -121,9 +116,41 @@ impl Png {
     /// Draws lines of the path as coverage, one after another.
     #[inline]
     fn stroke(&mut self, to: impl IntoIterator<Item = Position>) {
-        if let (Some(nib), Some(plane)) = (&mut self.nib, self.part.plane()) {
-            nib.lines(plane, &self.nibs, self.at, to);
+        if self.nib.is_some() {
+            self.chunk.lines(to);
         }
+    }
+
+    /// Hands on what is to be covered, if that is much.
+    #[inline]
+    fn hand_on_chunk(&mut self) {
+        if self.chunk.is_full() {
+            self.next_chunk();
+        }
+    }
+
+    fn next_chunk(&mut self) {
+        let mut next = self.line.spare().unwrap_or_default();
+        if let Some(nib) = &self.nib {
+            self.chunk.lead_to(&mut next, nib.clone(), self.at);
+        }
+        let mut chunk = std::mem::replace(&mut self.chunk, next);
+        chunk.assign(self.part.planes());
+        let Ok(()) = self.line.hand_on::<Infallible>(chunk, &mut |_| Ok(()));
+    }
+
+    /// Colours what has been covered, between two paths.
+    fn settle(&mut self) {
+        self.nib = None;
+        if self.line.is_idle() {
+            // Not worth while to wake another thread.
+            self.chunk.assign(self.part.planes());
+            self.chunk.cover();
+        } else if !self.chunk.is_empty() {
+            self.next_chunk();
+        }
+        let Ok(()) = self.line.finish::<Infallible>(&mut |_| Ok(()));
+        self.part.settle();
     }
 
     /// Ends a subpath that may be a small polygon.
@@ -131,8 +158,8 @@ impl Png {
         if self.ring.is_empty() {
             return;
         }
-        let plane = self.part.plane();
-        if plane.is_some_and(|plane| plane.polygon(&self.ring)) {
+        if is_small(&self.ring) {
+            self.chunk.polygon(&self.ring);
             self.ring.clear();
         } else {
             self.hand_over_ring();
@@ -150,7 +177,7 @@ impl Png {
     }
 }
 
-impl Surface for Png {
+impl Surface for Png<'_, '_> {
     #[inline]
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
         // There may be a path for every stroke, each of another width.
@@ -158,9 +185,13 @@ impl Surface for Png {
             && self.part.goes_on_in(stroke.colour)
             && let Some(nib) = self.nibs.nib(stroke.pen)
         {
+            self.chunk.nib(nib.clone());
             self.nib = Some(nib);
             (self.covers, self.is_outlined) = (false, false);
             return Ok(());
+        }
+        if self.part.settles_before(paint) {
+            self.settle();
         }
         let may_cover = self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
@@ -168,7 +199,12 @@ impl Surface for Png {
         self.covers = may_cover
             && paint.stroke.is_none()
             && paint.fill.is_some_and(|fill| fill == fill.opaque());
-        self.part.begin(paint, self.covers || self.nib.is_some());
+        if self.covers || self.nib.is_some() {
+            self.part.begin(paint, self.threads);
+        }
+        if let Some(nib) = &self.nib {
+            self.chunk.nib(nib.clone());
+        }
         let rest = Paint {
             stroke: paint.stroke.filter(|_| self.nib.is_none()),
             ..*paint
@@ -181,8 +217,8 @@ impl Surface for Png {
     #[inline]
     fn move_to(&mut self, to: Position) {
         (self.start, self.at) = (to, to);
-        if let (Some(nib), Some(plane)) = (&mut self.nib, self.part.plane()) {
-            nib.start(plane, &self.nibs, to);
+        if self.nib.is_some() {
+            self.chunk.start(to);
         }
         if self.covers {
             self.end_ring();
@@ -243,6 +279,7 @@ impl Surface for Png {
         if self.is_outlined {
             self.outline.hand_on(&mut self.part.pixmap);
         }
+        self.hand_on_chunk();
         Ok(())
     }
 
@@ -252,18 +289,36 @@ impl Surface for Png {
             self.end_ring();
             self.outline.end(&mut self.part.pixmap);
         }
-        self.part.end();
+        self.nib = None;
+        if self.part.settles_after() {
+            self.settle();
+        }
+        self.hand_on_chunk();
         Ok(())
+    }
+
+    fn tufts_below(&self, stroke: &Stroke) -> f64 {
+        let is_plain = stroke.pen.dash == 0.0 && stroke.colour == stroke.colour.opaque();
+        if is_plain && self.part.may_cover() {
+            HairPen::TOO_WIDE
+        } else {
+            0.0
+        }
+    }
+
+    fn tufts(&mut self, tufts: &[Tuft]) {
+        self.chunk.tufts(tufts);
     }
 
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
         let part = Part::new(corner, size).ok_or(io::ErrorKind::OutOfMemory)?;
-        self.part.settle();
+        self.settle();
         self.outer.push(std::mem::replace(&mut self.part, part));
         Ok(())
     }
 
     fn leave(&mut self) -> io::Result<()> {
+        self.settle();
         if let Some(outer) = self.outer.pop() {
             let part = std::mem::replace(&mut self.part, outer);
             part.lay_on(&mut self.part.pixmap);

@@ -1,5 +1,6 @@
 use std::convert::Infallible;
 use std::num::NonZero;
+use std::sync::Arc;
 
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError, walk_with};
@@ -87,7 +88,8 @@ impl Drawing for Scene<'_> {
         let span = (!is_whole).then_some(if tells_index { LONG_SPAN } else { SPAN });
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
-            let fresh = || Sketcher::new(self, pass);
+            let comb = painter.comb().map(Arc::new);
+            let fresh = || Sketcher::new(self, pass, comb.clone());
             let walked = walk_with(
                 team,
                 self.graph,

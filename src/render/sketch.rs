@@ -4,6 +4,7 @@
 //! sketches of all spans together, in order.
 
 use std::io;
+use std::sync::Arc;
 
 use crate::geometry::DVec2;
 use crate::grow::{Element, Enter, Fractal, Run, Stick, Subtree, Visitor};
@@ -12,8 +13,9 @@ use crate::style::{ColorBy, Colour, Width};
 
 use super::WIDTHS_AN_OCTAVE;
 use super::classes::Share;
+use super::comb::Comb;
 use super::scene::{Pass, Scene};
-use super::surface::{FINE, Position, position};
+use super::surface::{FINE, Position, Tuft, position};
 
 /// What tells paths apart: a new one is begun where this changes.
 #[derive(Clone, Copy, PartialEq)]
@@ -26,6 +28,12 @@ pub(super) struct Look {
 }
 
 impl Look {
+    /// Of tufts: a stroke as thin as there are.
+    pub(super) const TUFTS: Self = Self {
+        kind: Kind::Line,
+        width: 0,
+    };
+
     /// Of the areas of fractals.
     pub(super) const AREA: Self = Self {
         kind: Kind::Area,
@@ -72,6 +80,8 @@ pub(super) enum Mark {
     Lines(usize),
     /// A curve, by three points.
     Curve,
+    /// So many tufts.
+    Tufts(usize),
     /// The polygon is closed; whether it has returned to its start.
     Close { returned: bool },
     /// An open element that is not drawn, by its end, and whether its frame ends there.
@@ -82,11 +92,12 @@ pub(super) enum Mark {
     End(bool),
 }
 
-/// Marks, and the points that they are about.
+/// Marks, and the points and tufts that they are about.
 #[derive(Default)]
 pub(super) struct Sketch {
     pub(super) marks: Vec<Mark>,
     pub(super) points: Vec<Position>,
+    pub(super) tufts: Vec<Tuft>,
 }
 
 /// Whether an outline starts and ends where its frame does, in the order of traversal.
@@ -116,6 +127,8 @@ pub(super) struct Sketcher<'a> {
     pass: Pass,
     fractal: Fractal,
     pub(super) sketch: Sketch,
+    /// What makes tufts, where the surface takes them.
+    comb: Option<Arc<Comb>>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
     /// What is born in later steps is not painted, nor is it needed for what is.
@@ -123,12 +136,13 @@ pub(super) struct Sketcher<'a> {
 }
 
 impl<'a> Sketcher<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass) -> Self {
+    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, comb: Option<Arc<Comb>>) -> Self {
         Self {
             scene,
             pass,
             fractal: Fractal::default(),
             sketch: Sketch::default(),
+            comb,
             open: None,
             last_step: last_step(scene, pass).unwrap_or(u32::MAX),
         }
@@ -138,6 +152,7 @@ impl<'a> Sketcher<'a> {
     pub(super) fn clear(&mut self) {
         self.sketch.marks.clear();
         self.sketch.points.clear();
+        self.sketch.tufts.clear();
         self.open = None;
     }
 
@@ -290,24 +305,30 @@ impl<'a> Sketcher<'a> {
     /// Lines of one class that need not join.
     fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
         self.see(first);
+        let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
+        self.draw_sticks(run, rest);
+    }
+
+    /// Draws lines, and says of each whether it joins the one before.
+    fn draw_sticks<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = (&'b Stick, bool)>) {
         let map = self.scene.canvas.map(run.map());
         let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
         let whole = self.octave(run.map().matrix2.x_axis.length());
         let kind = self.kind();
-        for stick in &sticks[1..] {
+        for (stick, joined) in sticks {
             let look = Look {
                 kind,
                 width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
                 colour: None,
             };
             let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
-                Some(Mark::Line(line)) => stick.joined && line.look == look,
+                Some(Mark::Line(line)) => joined && line.look == look,
                 _ => false,
             };
             if !goes_on {
                 self.mark(Mark::Line(Line {
                     look,
-                    joined: stick.joined,
+                    joined,
                     meets_frame: [true; 2],
                 }));
                 self.open = Some(self.sketch.marks.len() - 1);
@@ -315,6 +336,30 @@ impl<'a> Sketcher<'a> {
             }
             self.go_to(fine(stick.ends[1]));
         }
+    }
+
+    /// Lines of one class, short and thin ones as tufts; whether there are any.
+    fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
+        let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
+            return false;
+        };
+        let map = self.scene.canvas.map(run.map());
+        let (combed, longer) = comb.comb(sticks, map.matrix2.x_axis.length());
+        if combed.is_bald() {
+            return false;
+        }
+        let apart = combed.apart.iter().flat_map(|apart| {
+            let lines = sticks[apart.clone()].iter().enumerate();
+            lines.map(|(number, stick)| (stick, number > 0 && stick.joined))
+        });
+        self.draw_sticks(run, apart);
+        let before = self.sketch.tufts.len();
+        self.sketch.tufts.extend(combed.tufts(map, longer));
+        self.mark(Mark::Tufts(self.sketch.tufts.len() - before));
+        self.pass_by(Mark::Skip { meets_frame: true });
+        let end = position(map.transform_point2(last.ends[1]) * FINE);
+        self.sketch.points.push(end);
+        true
     }
 
     fn width_class(&self, element: &Element) -> i32 {
@@ -385,7 +430,7 @@ impl<'a> Sketcher<'a> {
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
-fn width_class(octave: f64) -> i32 {
+pub(super) fn width_class(octave: f64) -> i32 {
     // Rounded, as it is not negative.
     (WIDTHS_AN_OCTAVE * octave.max(0.0) + 0.5) as i32
 }
@@ -448,6 +493,7 @@ impl Visitor for Sketcher<'_> {
         match (share, line, run.sticks(), run.first(), run.last()) {
             // Of what is not painted only the end matters, where the next line may begin.
             (Share::None, _, _, _, Some(last)) => self.see(&last),
+            (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
             _ => run.elements().for_each(|element| self.see(&element)),

@@ -61,6 +61,32 @@ pub(crate) struct Pen {
     pub(crate) dash: f64,
 }
 
+impl Pen {
+    /// How much longer caps make a line of the pen at each end, in widths, by the area that they
+    /// cover.
+    pub(crate) fn overshoot(&self) -> f64 {
+        match self.cap {
+            Cap::Butt => 0.0,
+            // As much as half a disc.
+            Cap::Round => std::f64::consts::FRAC_PI_8,
+            Cap::Square => 0.5,
+        }
+    }
+}
+
+/// Thin lines that lie near each other, drawn as one: as a box that is no larger than a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tuft {
+    /// Twice its middle, in hundredths of a pixel,
+    pub(crate) middle: [i32; 2],
+    /// and its width and height.
+    pub(crate) extent: [u32; 2],
+    /// The area of the lines, in pixels.
+    pub(crate) area: f32,
+    /// Their width, in pixels.
+    pub(crate) width: f32,
+}
+
 /// Where the parts of pictures are made: a picture's format.
 ///
 /// Paths come one after another, each between [`Surface::begin`] and [`Surface::end`]; what comes
@@ -88,6 +114,14 @@ pub(crate) trait Surface {
     fn hand_on(&mut self) -> io::Result<()>;
     /// Ends the path.
     fn end(&mut self) -> io::Result<()>;
+
+    /// Strokes that are thinner than this, in pixels, may come as tufts where they are short; none
+    /// unless said otherwise.
+    fn tufts_below(&self, _: &Stroke) -> f64 {
+        0.0
+    }
+    /// Tufts, within a path of one that may come so.
+    fn tufts(&mut self, _: &[Tuft]) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
     /// and nothing is drawn outside.

@@ -1,6 +1,6 @@
 use std::io;
 
-use crate::render::surface::{Paint, Position, Surface};
+use crate::render::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {
@@ -107,6 +107,16 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.line_to(to);
         self.pen = to;
         self.has_length = true;
+    }
+
+    /// As [`Surface::tufts_below`].
+    pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
+        self.surface.tufts_below(stroke)
+    }
+
+    /// Tufts, wherever the pen is.
+    pub(crate) fn tufts(&mut self, tufts: &[Tuft]) {
+        self.surface.tufts(tufts);
     }
 
     /// Hands on what has been drawn of the path, if that is much.

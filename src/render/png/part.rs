@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
 use crate::render::surface::Paint;
@@ -5,6 +7,7 @@ use crate::style::Colour;
 
 use super::MOST_PIXELS;
 use super::coverage::{Plane, WHOLE};
+use super::planes::Planes;
 
 /// Pictures of more pixels have no plane of coverage: with it they would take more memory than the
 /// largest.
@@ -17,7 +20,7 @@ pub(super) struct Part {
     /// Its place in what it is a part of.
     corner: [u32; 2],
     /// What is covered and not yet coloured, once something has been, and its colour.
-    plane: Option<Plane>,
+    planes: Option<Arc<Planes>>,
     ink: Option<Colour>,
 }
 
@@ -27,28 +30,9 @@ impl Part {
             pixmap: Pixmap::new(size[0], size[1])?,
             size,
             corner,
-            plane: None,
+            planes: None,
             ink: None,
         })
-    }
-
-    /// A part of the same size where something is covered, but nothing is coloured.
-    pub(super) fn fork(&self) -> Option<Self> {
-        Some(Self {
-            size: self.size,
-            ..Self::new([0, 0], [1, 1])?
-        })
-    }
-
-    /// Covers what a fork does in a colour.
-    pub(super) fn join(&mut self, fork: &Self, ink: Colour) {
-        if self.ink != Some(ink) {
-            self.settle();
-        }
-        let Some(forked) = &fork.plane else { return };
-        self.ink = Some(ink);
-        let plane = self.plane.get_or_insert_with(|| Plane::new(self.size));
-        plane.add(forked);
     }
 
     /// Whether the part is small enough to have a plane.
@@ -58,9 +42,8 @@ impl Part {
     }
 
     /// What paths cover, if any does.
-    #[inline]
-    pub(super) fn plane(&mut self) -> Option<&mut Plane> {
-        self.plane.as_mut()
+    pub(super) fn planes(&self) -> Option<Arc<Planes>> {
+        self.planes.clone()
     }
 
     /// Whether a path of a colour goes on where others were covered, with nothing to be done.
@@ -69,37 +52,37 @@ impl Part {
         self.ink == Some(colour)
     }
 
-    /// Begins a path. Paths of one opaque colour share the plane, whoever draws them: in what
-    /// order they come does not show.
-    pub(super) fn begin(&mut self, paint: &Paint, covers: bool) {
+    /// Whether what has been covered must be coloured before a path begins. Paths of one opaque
+    /// colour share the planes, whoever draws them: in what order they come does not show.
+    pub(super) fn settles_before(&self, paint: &Paint) -> bool {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let mut colours = [paint.fill, stroke].into_iter().flatten();
-        if !colours.all(|colour| self.ink == Some(colour)) {
-            self.settle();
-        }
-        if covers {
-            self.ink = stroke.or(paint.fill);
-            self.plane.get_or_insert_with(|| Plane::new(self.size));
-        }
+        self.ink.is_some() && !colours.all(|colour| self.ink == Some(colour))
     }
 
-    /// Ends a path.
+    /// Begins a path that covers something.
+    pub(super) fn begin(&mut self, paint: &Paint, threads: usize) {
+        let stroke = paint.stroke.map(|stroke| stroke.colour);
+        self.ink = stroke.or(paint.fill);
+        let planes = || Arc::new(Planes::new(self.size, threads));
+        self.planes.get_or_insert_with(planes);
+    }
+
+    /// Whether what has been covered must be coloured before the next path, whatever that is.
     #[inline]
-    pub(super) fn end(&mut self) {
-        if self.ink.is_some_and(|ink| ink != ink.opaque()) {
-            self.settle();
-        }
+    pub(super) fn settles_after(&self) -> bool {
+        self.ink.is_some_and(|ink| ink != ink.opaque())
     }
 
-    /// Colours what has been covered.
+    /// Colours what has been covered, once all threads have.
     pub(super) fn settle(&mut self) {
-        let (Some(plane), Some(ink)) = (&mut self.plane, self.ink.take()) else {
+        let (Some(planes), Some(ink)) = (&self.planes, self.ink.take()) else {
             return;
         };
         let [red, green, blue, opacity] = ink.rgba();
         let whole = WHOLE * 255;
         let data = self.pixmap.data_mut();
-        plane.drain(|pixel, covered| {
+        planes.drain(|pixel, covered| {
             let part = covered * u32::from(opacity);
             let values = &mut data[4 * pixel..][..4];
             for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {
@@ -114,8 +97,7 @@ impl Part {
 
     /// Lays the part on what it is a part of.
     #[expect(clippy::cast_possible_wrap, reason = "pictures are smaller than that")]
-    pub(super) fn lay_on(mut self, pixmap: &mut Pixmap) {
-        self.settle();
+    pub(super) fn lay_on(self, pixmap: &mut Pixmap) {
         let [x, y] = self.corner;
         let (over, none) = (PixmapPaint::default(), Transform::identity());
         pixmap.draw_pixmap(x as i32, y as i32, self.pixmap.as_ref(), &over, none, None);

@@ -33,26 +33,9 @@ pub(super) struct Outline {
     is_broken: bool,
     /// Pieces of one path that is not opaque come together here before they are laid over the rest.
     layer: Option<Pixmap>,
-    /// Where paths that are opaque are put aside instead of being drawn.
-    aside: Option<Vec<(tiny_skia::Path, Paint)>>,
 }
 
 impl Outline {
-    /// Paths of opaque colours that are not drawn but put aside.
-    pub(super) fn put_aside() -> Self {
-        Self {
-            aside: Some(Vec::new()),
-            ..Self::default()
-        }
-    }
-
-    /// Draws what has been put aside.
-    pub(super) fn draw_aside(self, pixmap: &mut Pixmap) {
-        for (path, paint) in self.aside.unwrap_or_default() {
-            draw(pixmap, &path, &paint);
-        }
-    }
-
     pub(super) fn begin(&mut self, paint: Paint) {
         self.paint = paint;
     }
@@ -126,10 +109,6 @@ impl Outline {
         self.length = 0;
         let Some(path) = builder.finish() else { return };
         let paint = self.paint;
-        if let Some(aside) = &mut self.aside {
-            aside.push((path, paint));
-            return;
-        }
         let opacity = paint
             .fill
             .or(paint.stroke.map(|stroke| stroke.colour))

@@ -1,8 +1,18 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
-use crate::render::Labels;
+use std::io;
+use std::num::NonZero;
+
+use crate::catalogue::{Catalogue, Shelf};
+use crate::diagnostic::Source;
+use crate::document::Document;
+use crate::graph::Graph;
+use crate::grow::Growth;
+use crate::parallel::with_team;
+use crate::render::layout::Layout;
 use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
-use crate::style::{Cap, Colour, Join};
+use crate::render::{Drawing, Options, Scene, Size};
+use crate::style::{Cap, Colour, Join, Style, Width};
 
 use super::Png;
 
@@ -49,83 +59,179 @@ fn paths() -> Vec<(Paint, Vec<Position>)> {
     paints.copied().zip(all).collect()
 }
 
-fn draw(png: &mut Png, paths: &[(Paint, Vec<Position>)]) {
+fn draw(png: &mut impl Surface, paths: &[(Paint, Vec<Position>)]) {
     for (paint, vertices) in paths {
-        Surface::begin(png, paint).unwrap();
+        png.begin(paint).unwrap();
         png.move_to(vertices[0]);
         png.lines_to(&vertices[1..]);
         if paint.fill.is_some() {
             png.close();
         }
+        png.hand_on().unwrap();
         png.end().unwrap();
     }
 }
 
-fn bytes(png: Png) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    png.write(&Labels::default(), &mut bytes).unwrap();
-    bytes
+/// The pixels of a picture that some threads have drawn.
+fn drawn(threads: usize, draw: impl FnOnce(&mut Png<'_, '_>)) -> Vec<u8> {
+    with_team(NonZero::new(threads).unwrap(), |team| {
+        let mut png = Png::begin(SIZE, None, team).unwrap();
+        draw(&mut png);
+        png.settle();
+        png.part.pixmap.data().to_vec()
+    })
 }
 
 #[test]
-fn what_forks_draw_is_the_same_picture() {
-    let paths = paths();
-    let begin = || Png::begin(SIZE, None).unwrap();
-    let mut whole = begin();
-    draw(&mut whole, &paths);
-    let whole = bytes(whole);
-    for count in [1, 2, 3, 7] {
-        let mut joined = begin();
-        let parts = paths.chunks(paths.len().div_ceil(count));
-        let forks = parts.map(|part| {
-            let mut fork = joined.fork().unwrap();
-            draw(&mut fork, part);
-            fork
+fn the_number_of_threads_does_not_show() {
+    let once = paths();
+    let mut all = Vec::new();
+    for ink in [[0, 0, 0, 255], [200, 90, 0, 255], [0, 90, 200, 100]] {
+        let colour = Colour::of_rgba(ink);
+        let of_colour = once.iter().cloned().map(|(mut paint, vertices)| {
+            paint.fill = paint.fill.map(|_| colour);
+            paint.stroke = paint.stroke.map(|stroke| Stroke { colour, ..stroke });
+            (paint, vertices)
         });
-        let forks: Vec<Png> = forks.collect();
-        for fork in forks {
-            joined.join(fork, Colour::BLACK);
+        // More than one stretch.
+        let rounds = if colour == colour.opaque() { 150 } else { 1 };
+        for _ in 0..rounds {
+            all.extend(of_colour.clone());
         }
-        assert!(bytes(joined) == whole, "{count} forks");
+    }
+    let one = drawn(1, |png| draw(png, &all));
+    assert!(one.iter().any(|&value| value > 0));
+    for threads in [2, 3, 5] {
+        let many = drawn(threads, |png| draw(png, &all));
+        assert!(many == one, "on {threads} threads");
     }
 }
 
-/// What has been covered before in another colour stays below.
+/// Stretches end anywhere along a path, also where it has only begun.
 #[test]
-fn forks_come_on_top() {
-    let fill = |colour| Paint {
-        fill: Some(colour),
-        stroke: None,
-    };
-    let below = (
-        fill(Colour::of_rgba([200, 90, 0, 255])),
-        vec![[100, 100], [700, 100], [100, 700]],
-    );
-    let above = (fill(Colour::BLACK), vec![[0, 0], [3000, 200], [200, 3000]]);
-    let begin = || Png::begin(SIZE, None).unwrap();
-    let (mut whole, mut joined) = (begin(), begin());
-    draw(&mut whole, &[below.clone(), above.clone()]);
-    draw(&mut joined, &[below]);
-    let mut fork = joined.fork().unwrap();
-    draw(&mut fork, &[above]);
-    joined.join(fork, Colour::BLACK);
-    assert!(bytes(whole) == bytes(joined));
+fn long_paths_are_in_one_piece() {
+    let zigzag = |number: i64| [number % 8000, 1000 + 4000 * (number % 2) + number / 20];
+    for width in [0.1, 0.9] {
+        let vertices: Vec<Position> = (0..40_000).map(zigzag).collect();
+        let whole = drawn(1, |png| {
+            png.begin(&stroke(width)).unwrap();
+            png.move_to(vertices[0]);
+            png.lines_to(&vertices[1..]);
+            png.end().unwrap();
+        });
+        let in_pieces = drawn(3, |png| {
+            png.begin(&stroke(width)).unwrap();
+            png.move_to(vertices[0]);
+            png.hand_on().unwrap();
+            for vertices in vertices[1..].chunks(1001) {
+                png.lines_to(vertices);
+                png.hand_on().unwrap();
+            }
+            png.end().unwrap();
+        });
+        assert!(whole == in_pieces, "{width} pixels");
+    }
 }
 
+/// A picture on which every line is drawn by itself.
+struct Uncombed<'p, 't, 'w>(&'p mut Png<'t, 'w>);
+
+impl Surface for Uncombed<'_, '_, '_> {
+    fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        self.0.begin(paint)
+    }
+    fn move_to(&mut self, to: Position) {
+        self.0.move_to(to);
+    }
+    fn line_to(&mut self, to: Position) {
+        self.0.line_to(to);
+    }
+    fn curve_to(&mut self, a: Position, b: Position, to: Position) {
+        self.0.curve_to(a, b, to);
+    }
+    fn close(&mut self) {
+        self.0.close();
+    }
+    fn hand_on(&mut self) -> io::Result<()> {
+        self.0.hand_on()
+    }
+    fn end(&mut self) -> io::Result<()> {
+        self.0.end()
+    }
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+        self.0.enter(corner, size)
+    }
+    fn leave(&mut self) -> io::Result<()> {
+        self.0.leave()
+    }
+    fn label(&mut self, text: &str) {
+        self.0.label(text);
+    }
+}
+
+/// A tree of two unlike branches.
+const TREE: &str = "
+title: Tree
+initiator: segment
+generator:
+  connected: false
+  elements:
+    - {from: [0, 0], to: [1, 0], fertile: false}
+    - {from: [1, 0], to: [1 + 0.72*cos(28), 0.72*sin(28)]}
+    - {from: [1, 0], to: [1 + 0.68*cos(35), -0.68*sin(35)]}
+";
+
 #[test]
-fn where_all_is_coverage_forks_have_no_order() {
-    let mut paths = paths();
-    paths.retain(|(paint, _)| paint.stroke.is_some_and(|stroke| stroke.pen.width < 3.0));
-    let drawn = |order: [usize; 2]| {
-        let mut png = Png::begin(SIZE, None).unwrap();
-        draw(&mut png, &[(stroke(1.0), vec![[100, 100], [5000, 4000]])]);
-        let halves: Vec<_> = paths.chunks(paths.len().div_ceil(2)).collect();
-        for half in order {
-            let mut fork = png.fork().unwrap();
-            draw(&mut fork, halves[half]);
-            png.join(fork, Colour::BLACK);
-        }
-        bytes(png)
+fn combed_pictures_are_those_where_every_line_is_drawn() {
+    let catalogue = Catalogue::embedded();
+    let source = |name: &str| match name {
+        "tree" => Source::new("tree.yaml", TREE),
+        name => catalogue.component(Shelf::Rules, name).unwrap(),
     };
-    assert!(drawn([0, 1]) == drawn([1, 0]));
+    let cases = [
+        ("tree", 14, 0.15),
+        ("tree", 15, 0.06),
+        ("tree", 15, 0.3),
+        ("binary-tree", 14, 0.15),
+        ("binary-tree", 15, 0.3),
+        ("h-tree", 14, 0.15),
+        ("h-tree", 15, 0.06),
+        ("koch", 7, 0.15),
+        ("dragon", 15, 0.1),
+    ];
+    for (name, steps, width) in cases {
+        let document = Document::read(&source(name), &catalogue).unwrap();
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let style = Style {
+            width: Width::Relative(width),
+            stroke: Some(Colour::BLACK),
+            ..Style::default()
+        };
+        let options = Options {
+            style,
+            size: Size::Long(128),
+            ..Options::default()
+        };
+        let growth = Growth::steps(steps);
+        let layout = Layout::find(&graph, &growth, &options).unwrap();
+        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let pixels = |is_combed: bool| {
+            with_team(NonZero::<usize>::MIN, |team| {
+                let mut png = Png::begin(scene.size(), None, team).unwrap();
+                if is_combed {
+                    scene.draw(&mut png, team).unwrap();
+                } else {
+                    scene.draw(&mut Uncombed(&mut png), team).unwrap();
+                }
+                png.settle();
+                png.part.pixmap.data().to_vec()
+            })
+        };
+        let (combed, every) = (pixels(true), pixels(false));
+        assert!(combed != every, "{name} is not combed");
+        let shades = combed.iter().zip(&every);
+        let most = shades.map(|(one, other)| one.abs_diff(*other)).max();
+        assert!(most <= Some(2), "{name} {steps} {width}: {most:?}");
+    }
 }

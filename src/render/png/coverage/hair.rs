@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::{FINE, MARGIN, Plane, Position, index};
@@ -26,6 +27,13 @@ pub(crate) struct HairPen {
     ends: f32,
 }
 
+/// What a line takes of a pixel's light, as a part of the area that it covers: w times this is
+/// -ln(1 - w) within 0.1 %, so that a line through a whole pixel takes just its width.
+#[inline]
+fn thickness(w: f32) -> f32 {
+    1.0 + w * (0.5 + 0.41 * w)
+}
+
 impl HairPen {
     /// The least width that is too large, in pixels.
     pub(crate) const TOO_WIDE: f64 = 0.25;
@@ -37,8 +45,7 @@ impl HairPen {
     )]
     pub(crate) fn new(width: f64, cap: f64) -> Self {
         let w = width as f32;
-        // -ln(1 - w) within 0.1 %, so that a line through a whole pixel takes just its width.
-        let ink = w + w * w * (0.5 + 0.41 * w);
+        let ink = w * thickness(w);
         let fine = FINE as f32;
         Self {
             width: ((width * FINE as f64 + 0.5) as i64).max(1),
@@ -70,13 +77,27 @@ impl Hairs {
         -libm::expm1f(-taken / UNIT)
     }
 
-    /// Adds what others take.
-    pub(super) fn add(&mut self, others: &Self) {
+    /// Has cells if others have.
+    pub(super) fn make_room_for(&mut self, others: &Self) {
         if self.cells.is_empty() {
-            self.cells = others.cells.iter().map(|_| AtomicU32::new(0)).collect();
+            self.make_room(others.cells.len());
         }
-        for (cell, other) in self.cells.iter().zip(&others.cells) {
-            add(cell, other.load(Relaxed));
+    }
+
+    fn make_room(&mut self, count: usize) {
+        self.cells = std::iter::repeat_with(|| AtomicU32::new(0))
+            .take(count)
+            .collect();
+    }
+
+    /// Takes in some cells what others take, which they then no longer do.
+    pub(super) fn take_over(&mut self, others: &mut Self, cells: Range<usize>) {
+        if others.cells.is_empty() {
+            return;
+        }
+        let others = &mut others.cells[cells.clone()];
+        for (cell, other) in self.cells[cells].iter().zip(others) {
+            add(cell, std::mem::take(other.get_mut()));
         }
     }
 }
@@ -91,14 +112,28 @@ impl Plane {
     #[inline]
     pub(crate) fn hair(&mut self, pen: &HairPen, from: Position, to: Position, ends: bool) {
         if self.hairs.cells.is_empty() {
-            let cells = self.cells.iter().map(|_| AtomicU32::new(0));
-            self.hairs.cells = cells.collect();
+            self.hairs.make_room(self.cells.len());
         }
         if self.is_near(from) && self.is_near(to) {
             self.near_hair(pen, from, to, ends);
         } else if let Some([from, to]) = self.clipped(from, to) {
             self.near_hair(pen, from, to, ends);
         }
+    }
+
+    /// Hairs that lie near each other, as a box that is no larger than a pixel: twice its middle, and
+    /// its extent, in hundredths of a pixel; the area of the hairs in pixels, and their width.
+    #[inline]
+    pub(crate) fn tuft(&mut self, middle: [i32; 2], extent: [u32; 2], area: f32, width: f32) {
+        if self.hairs.cells.is_empty() {
+            self.hairs.make_room(self.cells.len());
+        }
+        let extent = extent.map(|extent| i64::from(extent).clamp(1, FINE));
+        self.blot(
+            middle.map(i64::from),
+            extent,
+            area * thickness(width) * UNIT,
+        );
     }
 
     #[inline]

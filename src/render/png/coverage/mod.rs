@@ -12,13 +12,13 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::AtomicU64;
 
 pub(crate) use curve::flattened;
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
-pub(crate) use polygon::MOST_VERTICES;
+pub(crate) use polygon::{MOST_VERTICES, is_small};
 
 /// A position in hundredths of a pixel.
 type Position = [i64; 2];
@@ -103,36 +103,56 @@ impl Plane {
         }
     }
 
-    /// Covers what another plane of the same size does. In which order planes come does not show.
-    pub(crate) fn add(&mut self, other: &Self) {
-        for (cell, other) in self.cells.iter_mut().zip(&other.cells) {
-            *cell.get_mut() |= other.load(Relaxed);
+    /// The rows and columns, the margins among them, where something may be covered, which is then
+    /// forgotten.
+    fn take_touched(&mut self) -> [std::ops::Range<usize>; 2] {
+        let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
+        let range = |[first, last]: [i64; 2], side: i64| {
+            let (first, last) = (first.max(-MARGIN), last.min(side + MARGIN - 1));
+            if first > last {
+                return 0..0;
+            }
+            index(first + MARGIN)..index(last + MARGIN + 1)
+        };
+        [range(rows, self.size[1]), range(columns, self.size[0])]
+    }
+
+    /// Covers what another plane of the same size does, which it then no longer does. In which order
+    /// planes come does not show.
+    pub(crate) fn take_over(&mut self, other: &mut Self) {
+        let touched = other.touched;
+        self.touched.add(touched.columns, touched.rows);
+        self.hairs.make_room_for(&other.hairs);
+        let [rows, columns] = other.take_touched();
+        for row in rows {
+            let start = row * self.stride;
+            let cells = start + columns.start..start + columns.end;
+            let others = &mut other.cells[cells.clone()];
+            for (cell, other) in self.cells[cells.clone()].iter_mut().zip(others) {
+                *cell.get_mut() |= std::mem::take(other.get_mut());
+            }
+            self.hairs.take_over(&mut other.hairs, cells);
         }
-        self.hairs.add(&other.hairs);
-        self.touched.add(other.touched.columns, other.touched.rows);
     }
 
     /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
     /// Pixels are numbered by rows.
     pub(crate) fn drain(&mut self, mut paint: impl FnMut(usize, u32)) {
-        let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
-        if rows[0] > rows[1] {
-            return;
-        }
-        let [width, height] = self.size;
+        let [rows, columns] = self.take_touched();
+        let [width, height] = self.size.map(index);
+        let margin = index(MARGIN);
         // The margins are uncovered with the rest.
-        let left = index(columns[0].max(-MARGIN) + MARGIN);
-        let right = index(columns[1].min(width + MARGIN - 1) + MARGIN + 1);
-        let seen = index(MARGIN)..index(width + MARGIN);
-        for row in rows[0].max(-MARGIN)..=rows[1].min(height + MARGIN - 1) {
-            let start = index(row + MARGIN) * self.stride;
-            let shown = (0..height).contains(&row);
-            for (column, cell) in (left..right).zip(&mut self.cells[start + left..start + right]) {
+        let seen = margin..margin + width;
+        for row in rows {
+            let start = row * self.stride;
+            let shown = (margin..margin + height).contains(&row);
+            let cells = start + columns.start..start + columns.end;
+            for (column, cell) in columns.clone().zip(&mut self.cells[cells]) {
                 let samples = std::mem::take(cell.get_mut()).count_ones();
                 let hairs = self.hairs.take(start + column);
                 let covered = covered(samples, hairs);
                 if covered > 0 && shown && seen.contains(&column) {
-                    let pixel = index(row * width) + column - seen.start;
+                    let pixel = (row - margin) * width + column - margin;
                     paint(pixel, covered);
                 }
             }

@@ -104,27 +104,56 @@ fn number(value: f64) -> usize {
     value as i32 as usize
 }
 
+/// The box of vertices, least and most.
+#[inline]
+fn bounds(vertices: &[Position]) -> [Position; 2] {
+    let none = [[i64::MAX; 2], [i64::MIN; 2]];
+    vertices.iter().fold(none, |[least, most], vertex| {
+        [
+            [0, 1].map(|axis| least[axis].min(vertex[axis])),
+            [0, 1].map(|axis| most[axis].max(vertex[axis])),
+        ]
+    })
+}
+
+type Sides = [[i64; 2]; MOST_VERTICES];
+
+/// The sides of a polygon, that to the first vertex first.
+#[inline]
+fn sides(vertices: &[Position]) -> Sides {
+    let mut sides = [[0; 2]; MOST_VERTICES];
+    let mut before = vertices.last().copied().unwrap_or_default();
+    for (side, &vertex) in sides.iter_mut().zip(vertices) {
+        *side = [vertex[0] - before[0], vertex[1] - before[1]];
+        before = vertex;
+    }
+    sides
+}
+
+/// Whether a polygon is small and convex, so that [`Plane::polygon`] covers it.
+pub(crate) fn is_small(vertices: &[Position]) -> bool {
+    outline(vertices).is_some()
+}
+
+/// The box, the sides and the orientation of a polygon, if it is small and convex.
+#[inline]
+fn outline(vertices: &[Position]) -> Option<([Position; 2], Sides, i64)> {
+    if vertices.is_empty() || vertices.len() > MOST_VERTICES {
+        return None;
+    }
+    let [least, most] = bounds(vertices);
+    if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
+        return None;
+    }
+    let sides = sides(vertices);
+    let orientation = orientation(&sides[..vertices.len()])?;
+    Some(([least, most], sides, orientation))
+}
+
 impl Plane {
     /// Covers a polygon, if it is small and convex; otherwise nothing.
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
-        let (Some(&last), true) = (vertices.last(), vertices.len() <= MOST_VERTICES) else {
-            return false;
-        };
-        let (mut least, mut most) = (last, last);
-        for vertex in vertices {
-            least = [0, 1].map(|axis| least[axis].min(vertex[axis]));
-            most = [0, 1].map(|axis| most[axis].max(vertex[axis]));
-        }
-        if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
-            return false;
-        }
-        let mut sides = [[0; 2]; MOST_VERTICES];
-        let mut before = last;
-        for (side, &vertex) in sides.iter_mut().zip(vertices) {
-            *side = [vertex[0] - before[0], vertex[1] - before[1]];
-            before = vertex;
-        }
-        let Some(orientation) = orientation(&sides[..vertices.len()]) else {
+        let Some(([least, most], sides, orientation)) = outline(vertices) else {
             return false;
         };
         let pixels = |axis: usize| {

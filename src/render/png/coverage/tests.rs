@@ -154,9 +154,10 @@ proptest! {
         for (line, number) in lines.iter().zip(0..) {
             draw(&mut halves[number % 2], line);
         }
-        let [mut one, other] = halves;
-        one.add(&other);
+        let [mut one, mut other] = halves;
+        one.take_over(&mut other);
         prop_assert!(whole == drained(&mut one));
+        prop_assert!(drained(&mut other).iter().all(|&part| part == 0));
     }
 
     #[test]

@@ -1,0 +1,148 @@
+//! A stretch of what is drawn as coverage: made in order, covered by any thread.
+
+use std::sync::Arc;
+
+use crate::render::surface::{Position, Tuft};
+
+use super::coverage::Plane;
+use super::nib::Nib;
+use super::planes::Planes;
+
+/// Chunks have about this many commands or positions.
+const MANY: usize = 1 << 14;
+
+enum Command {
+    /// Lines that come next are drawn with a nib.
+    Nib(Nib),
+    /// A subpath begins at a position.
+    Start,
+    /// A subpath goes on at a position.
+    GoOn,
+    /// Lines to so many positions, one after another.
+    Lines(usize),
+    /// A small polygon of so many vertices.
+    Polygon(usize),
+    /// So many tufts.
+    Tufts(usize),
+}
+
+/// Commands, and what they are about.
+#[derive(Default)]
+pub(super) struct Chunk {
+    /// Where it is drawn, once it may be.
+    planes: Option<Arc<Planes>>,
+    commands: Vec<Command>,
+    points: Vec<Position>,
+    tufts: Vec<Tuft>,
+}
+
+impl Chunk {
+    pub(super) fn is_empty(&self) -> bool {
+        self.commands.is_empty()
+    }
+
+    pub(super) fn is_full(&self) -> bool {
+        let most = self.commands.len().max(self.points.len());
+        most.max(self.tufts.len()) >= MANY
+    }
+
+    #[inline]
+    pub(super) fn nib(&mut self, nib: Nib) {
+        self.commands.push(Command::Nib(nib));
+    }
+
+    #[inline]
+    pub(super) fn start(&mut self, at: Position) {
+        self.commands.push(Command::Start);
+        self.points.push(at);
+    }
+
+    #[inline]
+    pub(super) fn lines(&mut self, to: impl IntoIterator<Item = Position>) {
+        let before = self.points.len();
+        self.points.extend(to);
+        let count = self.points.len() - before;
+        if let Some(Command::Lines(lines)) = self.commands.last_mut() {
+            *lines += count;
+        } else {
+            self.commands.push(Command::Lines(count));
+        }
+    }
+
+    /// Adds a polygon that is small and convex.
+    pub(super) fn polygon(&mut self, vertices: &[Position]) {
+        self.points.extend_from_slice(vertices);
+        self.commands.push(Command::Polygon(vertices.len()));
+    }
+
+    pub(super) fn tufts(&mut self, tufts: &[Tuft]) {
+        self.tufts.extend_from_slice(tufts);
+        self.commands.push(Command::Tufts(tufts.len()));
+    }
+
+    /// Lets `next` go on with a nib from a position.
+    pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, at: Position) {
+        next.nib(nib);
+        if let Some(Command::Start) = self.commands.last() {
+            self.commands.pop();
+            self.points.pop();
+            next.start(at);
+        } else {
+            next.commands.push(Command::GoOn);
+            next.points.push(at);
+        }
+    }
+
+    /// Says where it is to be drawn.
+    pub(super) fn assign(&mut self, planes: Option<Arc<Planes>>) {
+        self.planes = planes;
+    }
+
+    /// Covers what it covers, and empties it.
+    pub(super) fn cover(&mut self) {
+        if let Some(planes) = self.planes.take() {
+            planes.with_one(|plane| self.cover_on(plane));
+        }
+        self.commands.clear();
+        self.points.clear();
+        self.tufts.clear();
+    }
+
+    fn cover_on(&mut self, plane: &mut Plane) {
+        let (mut points, mut tufts) = (self.points.as_slice(), self.tufts.as_slice());
+        let mut next = |count: usize| {
+            let (next, rest) = points.split_at(count.min(points.len()));
+            points = rest;
+            next
+        };
+        let (mut nib, mut at) = (None, [0; 2]);
+        for command in &self.commands {
+            match command {
+                Command::Nib(next) => nib = Some(next.clone()),
+                Command::Start | Command::GoOn => {
+                    at = next(1).first().copied().unwrap_or(at);
+                    if let (Command::Start, Some(nib)) = (command, &mut nib) {
+                        nib.start(plane, at);
+                    }
+                }
+                Command::Lines(count) => {
+                    let lines = next(*count);
+                    if let Some(nib) = &mut nib {
+                        nib.lines(plane, at, lines);
+                    }
+                    at = lines.last().copied().unwrap_or(at);
+                }
+                Command::Polygon(count) => {
+                    plane.polygon(next(*count));
+                }
+                Command::Tufts(count) => {
+                    let (now, rest) = tufts.split_at(*count);
+                    now.iter().for_each(|tuft| {
+                        plane.tuft(tuft.middle, tuft.extent, tuft.area, tuft.width)
+                    });
+                    tufts = rest;
+                }
+            }
+        }
+    }
+}
