@@ -86,11 +86,12 @@ impl Classes {
 
     /// The step after which no element of a class is born any more; `None` if there may be any.
     pub(super) fn last_step(&self, class: u64) -> Option<u32> {
+        if self.by != ColorBy::Step {
+            return None;
+        }
         let mut steps = (0..=self.largest).rev();
         let last = steps.find(|&step| self.of_value(step) <= class)?;
-        u32::try_from(last)
-            .ok()
-            .filter(|_| self.by == ColorBy::Step)
+        u32::try_from(last).ok()
     }
 
     /// How many elements of a run are in a class.
