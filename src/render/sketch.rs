@@ -32,6 +32,7 @@ impl Look {
     pub(super) const TUFTS: Self = Self {
         kind: Kind::Line,
         width: 0,
+        colour: None,
     };
 
     /// Of the areas of fractals.
