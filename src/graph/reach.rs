@@ -158,6 +158,19 @@ impl Graph {
         self.leading_to(|object| self.places_as_initiator(object))
     }
 
+    /// Whether an object leads to seeds, by object.
+    pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
+        self.leading_to(|object| match &self.objects[object].replacement {
+            Replacement::Fixed(production) => !production.seeds.is_empty(),
+            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
+                let parts = self.evaluated().generators()[alternative.generator].parts();
+                parts.iter().any(|part| part.placement.seeds())
+            }),
+            Replacement::Kept => false,
+            Replacement::Beyond => true,
+        })
+    }
+
     /// The objects of a kind, and those that such may come of.
     fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();

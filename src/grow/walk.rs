@@ -116,6 +116,11 @@ pub(super) fn send<S: Sink>(
     let mut walk = Walk {
         graph,
         steps: growth.steps,
+        leads_to_seeds: if graph.seeds {
+            graph.leads_to_seeds()
+        } else {
+            Vec::new()
+        },
         stop,
         sink,
         fractals: 0,
@@ -126,6 +131,8 @@ pub(super) fn send<S: Sink>(
 struct Walk<'g, 'v, S> {
     graph: &'g Graph,
     steps: u32,
+    /// Whether seeds may come of an object, if there are any.
+    leads_to_seeds: Vec<bool>,
     stop: Stop<'v>,
     sink: &'v mut S,
     fractals: u64,
@@ -155,7 +162,13 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             if next.is_some() {
                 continue;
             }
-            let enter = |subtree: &Subtree| self.sink.enter(subtree);
+            let enter = |subtree: &Subtree| {
+                if self.leads_to_seeds[subtree.object] {
+                    self.sink.enter(subtree)
+                } else {
+                    Enter::Skip
+                }
+            };
             let found = parent.descent.next(&parent.start, enter, Stop::Nowhere)?;
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
@@ -214,7 +227,8 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             object: found.object,
             born: found.level,
         };
-        self.graph.counts_index() || self.sink.enter(&subtree) == Enter::Replace
+        self.graph.counts_index()
+            || self.leads_to_seeds[found.object] && self.sink.enter(&subtree) == Enter::Replace
     }
 }
 
