@@ -16,7 +16,8 @@ use kfrac::export;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
 use kfrac::grow::{
-    Element, Fractal, Growth, Seam, Visitor, WalkError, count, extent, walk, walk_in_spans,
+    Element, Enter, Fractal, Growth, Seam, Subtree, Visitor, WalkError, count, extent, walk,
+    walk_in_spans,
 };
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
@@ -34,6 +35,8 @@ fn threads(number: usize) -> NonZero<usize> {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     takes_runs: bool,
+    /// The length below which nothing is replaced; a little more is not visited on one side.
+    cuts: Option<f64>,
     /// Whether the first fractal had begun before.
     goes_on: bool,
     fractals: Vec<(Fractal, Vec<Place>, bool)>,
@@ -56,6 +59,21 @@ impl Visitor for Seen {
 
     fn takes_runs(&self) -> bool {
         self.takes_runs
+    }
+
+    fn cuts(&self) -> Option<f64> {
+        self.cuts
+    }
+
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        let length = subtree.frame.length();
+        match self.cuts {
+            Some(shortest) if length < shortest => Enter::Keep,
+            Some(shortest) if length < 3.0 * shortest && subtree.frame.map.translation.x < 0.3 => {
+                Enter::Skip
+            }
+            _ => Enter::Replace,
+        }
     }
 
     fn go_on(&mut self, fractal: Fractal) {
@@ -114,12 +132,8 @@ fn in_spans(
     growth: &Growth<'_>,
     number: usize,
     span: Option<u64>,
-    takes_runs: bool,
+    none: &Seen,
 ) -> Seen {
-    let none = Seen {
-        takes_runs,
-        ..Seen::default()
-    };
     let mut all = none.clone();
     // A visitor that sees everything goes on where it has been.
     let mut whole = false;
@@ -152,16 +166,19 @@ fn in_spans(
 
 /// Holds walks in spans of all sizes against one that is not divided.
 fn spans_agree(graph: &Graph, growth: &Growth<'_>, sizes: &[Option<u64>]) {
-    for takes_runs in [false, true] {
-        let mut sequential = Seen {
+    for (takes_runs, cuts) in [(false, None), (true, None), (false, Some(0.04))] {
+        let none = Seen {
             takes_runs,
+            cuts,
             ..Seen::default()
         };
+        let mut sequential = none.clone();
         walk(graph, growth, &mut sequential).unwrap();
         for &span in sizes {
             for number in THREADS {
-                let divided = in_spans(graph, growth, number, span, takes_runs);
-                assert!(divided == sequential, "{span:?} on {number}, {takes_runs}");
+                let divided = in_spans(graph, growth, number, span, &none);
+                let what = format!("{span:?} on {number}, {takes_runs}, {cuts:?}");
+                assert!(divided == sequential, "{what}");
             }
         }
     }

@@ -107,6 +107,18 @@ impl Graph {
         }
     }
 
+    /// For every object, those that may take its place or be seeded by it, all at once where it
+    /// depends on draws which; and the most that they are long, as multiples of its length.
+    pub(crate) fn ratios(&self) -> Vec<Vec<(usize, f64)>> {
+        let of = |edges: Vec<Edge>| {
+            edges
+                .iter()
+                .map(|edge| (edge.object, edge.length))
+                .collect()
+        };
+        self.edges().into_iter().map(of).collect()
+    }
+
     /// What may come of every object.
     fn edges(&self) -> Vec<Vec<Edge>> {
         let mut extents = BTreeMap::new();

@@ -445,7 +445,8 @@ impl<'g> Descent<'g> {
                     }
                 }
                 Stop::AtSubtrees(sizes) => {
-                    if let Some(size) = sizes.get(object, self.target - level) {
+                    let length = standing.frame.length();
+                    if let Some(size) = sizes.cut(object, self.target - level, length) {
                         let joined = std::mem::replace(&mut self.joined, true);
                         return Ok(Next::Subtree(FoundSubtree {
                             root: Found {

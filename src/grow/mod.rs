@@ -114,6 +114,13 @@ pub trait Visitor {
         Enter::Replace
     }
 
+    /// The length below which nothing is replaced, if [`Visitor::enter`] may say anything but
+    /// [`Enter::Replace`]; 0 if there is none. A walk on several threads is divided by it; objects
+    /// that lead to seeds which are placed as the initiator may be replaced at any length.
+    fn cuts(&self) -> Option<f64> {
+        None
+    }
+
     /// An element of the fractal, in order of traversal.
     ///
     /// # Errors

@@ -8,11 +8,21 @@ const MOST_STEPS: usize = 64;
 /// Of graphs with more objects than this no sizes are worked out.
 const MOST_OBJECTS: usize = 1 << 14;
 
+/// Lengths are told apart by so many classes an octave, up to so many classes.
+const LENGTHS_AN_OCTAVE: f64 = 32.0;
+const MOST_LENGTHS: usize = 640;
+
+/// Part of a class: lengths that are as good as on its edge are on it.
+const ROUNDING: f64 = 1e-6;
+
 /// The numbers of elements that objects become in their fractals, up to some size: exact where
 /// instances are fixed, the most that there can be where they are worked out.
 pub(super) struct Sizes {
     /// By object and number of steps.
     counts: Vec<Vec<u64>>,
+    /// By object and length, as many classes above that below which nothing is replaced.
+    by_length: Vec<Vec<u64>>,
+    shortest: f64,
 }
 
 impl Sizes {
@@ -33,7 +43,7 @@ impl Sizes {
     fn of(graph: &Graph, most: u64, evaluated: impl Fn(&[Alternative], &[u64]) -> u64) -> Self {
         let objects = graph.objects();
         if objects.len() > MOST_OBJECTS {
-            return Self { counts: Vec::new() };
+            return Self::of_steps(Vec::new());
         }
         let mut counts = vec![vec![1]; objects.len()];
         let mut now = vec![1; objects.len()];
@@ -61,7 +71,61 @@ impl Sizes {
             }
             now = next;
         }
-        Self { counts }
+        Self::of_steps(counts)
+    }
+
+    fn of_steps(counts: Vec<Vec<u64>>) -> Self {
+        Self {
+            counts,
+            by_length: Vec::new(),
+            shortest: 0.0,
+        }
+    }
+
+    /// Where no element is replaced that is shorter than a length: also those of what becomes no
+    /// more than `most` elements down to it.
+    pub(super) fn down_to(self, graph: &Graph, shortest: f64, most: u64) -> Self {
+        if shortest <= 0.0 || self.counts.is_empty() {
+            return self;
+        }
+        // Children, and by how many classes they are shorter.
+        let shorter = |(object, ratio)| (object, whole(ROUNDING - classes(ratio)));
+        let ratios = graph.ratios().into_iter().zip(graph.resets());
+        let children: Vec<Option<Vec<_>>> = ratios
+            .map(|(children, resets)| {
+                let children = children.into_iter().map(shorter).collect();
+                (!resets).then_some(children)
+            })
+            .collect();
+        let mut by_length = vec![vec![1]; children.len()];
+        for class in 1..=MOST_LENGTHS {
+            let mut grows = false;
+            for (object, children) in children.iter().enumerate() {
+                let Some(children) = children
+                    .as_ref()
+                    .filter(|_| by_length[object].len() == class)
+                else {
+                    continue;
+                };
+                let mut counts = children.iter().map(|&(child, shorter)| {
+                    let known = by_length[child].get(class.saturating_sub(shorter));
+                    known.copied().filter(|_| shorter > 0)
+                });
+                let count = counts.try_fold(0, |sum: u64, count| sum.checked_add(count?));
+                if let Some(count) = count.filter(|&count| count <= most) {
+                    by_length[object].push(count.max(1));
+                    grows = true;
+                }
+            }
+            if !grows {
+                break;
+            }
+        }
+        Self {
+            by_length,
+            shortest,
+            ..self
+        }
     }
 
     /// How many elements an object becomes in a number of steps, if it is replaced in the first and
@@ -75,6 +139,21 @@ impl Sizes {
             .filter(|_| steps > 0)
     }
 
+    /// How many elements at most an object of a length becomes, likewise, in so many steps or
+    /// before it is too short to be replaced.
+    #[inline]
+    pub(super) fn cut(&self, object: usize, steps: u32, length: f64) -> Option<u64> {
+        let by_steps = self.get(object, steps);
+        let by_length = self.by_length.get(object).and_then(|counts| {
+            let class = (classes(length / self.shortest) - ROUNDING).ceil();
+            counts.get(whole(class)).copied()
+        });
+        match (by_steps, by_length) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        }
+    }
+
     /// All sizes together.
     pub(super) fn sum(&self) -> u64 {
         self.counts.iter().flatten().sum()
@@ -84,6 +163,21 @@ impl Sizes {
     pub(super) fn steps(&self) -> impl Iterator<Item = usize> {
         self.counts.iter().map(|counts| counts.len() - 1)
     }
+}
+
+/// By how many classes a length is longer than another, from their ratio.
+fn classes(ratio: f64) -> f64 {
+    LENGTHS_AN_OCTAVE * libm::log2(ratio)
+}
+
+/// The whole number below, if that is not negative, or else 0.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn whole(number: f64) -> usize {
+    number as usize
 }
 
 fn sum(objects: impl Iterator<Item = usize>, counts: &[u64]) -> u64 {

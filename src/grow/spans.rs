@@ -51,8 +51,11 @@ impl Seam {
 /// threads. Spans have about `span` elements, or more where they come by runs; where they begin and
 /// end is left open: in the middle of a fractal, too.
 ///
+/// If they [cut](Visitor::cuts), all of them must say the same when they are asked to enter. One more
+/// is asked what no other is; it is taken last.
+///
 /// One visitor sees everything, and is taken from time to time, where a walk counts indices, and
-/// where `span` is `None`: so it must be if [`Visitor::enter`] says anything but [`Enter::Replace`].
+/// where `span` is `None`.
 ///
 /// # Errors
 ///
@@ -99,20 +102,22 @@ where
         whole.hand_over().map_err(WalkError::Visitor)?;
         return Ok(walked);
     };
-    let takes_runs = fresh().takes_runs();
+    let asked = fresh();
+    let (takes_runs, cuts) = (asked.takes_runs(), asked.cuts());
     // Blocks are the same as in a walk that is not divided.
     let size = if takes_runs {
         size.max(MOST_LEAVES)
     } else {
         size
     };
-    let sizes = Sizes::most(graph, size);
+    let sizes = Sizes::most(graph, size).down_to(graph, cuts.unwrap_or(0.0), size);
     let mut spans = Spans {
         graph,
         steps: growth.steps,
         size,
         blocks: takes_runs.then(|| Arc::new(Blocks::of(graph))),
-        sizes_are_exact: graph.is_plain(),
+        sizes_are_exact: cuts.is_none() && graph.is_plain(),
+        asked,
         span: Span::default(),
         is_open: false,
         line: team.line(Job::run),
@@ -131,6 +136,10 @@ where
         spans.finish()?;
     }
     sent?;
+    if cuts.is_some() {
+        let order = &mut spans.order;
+        (order.take)(&mut spans.asked, Seam::NONE).map_err(WalkError::Visitor)?;
+    }
     Ok(spans.order.tally.finish())
 }
 
@@ -242,7 +251,7 @@ impl<V: Visitor> Job<'_, V> {
                     let run = self.descent.enter(subtree, born, joined, blocks)?;
                     run.iter().try_for_each(|run| visiting.run(run))?;
                     loop {
-                        let enter = |_: &Subtree| Enter::Replace;
+                        let enter = |subtree: &Subtree| visiting.visitor.enter(subtree);
                         match self.descent.next(&start, enter, stop)? {
                             Next::Element(found) => visiting.element(&found)?,
                             Next::Run(found) => visiting.run(&found)?,
@@ -312,6 +321,8 @@ struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
     blocks: Option<Arc<Blocks>>,
     /// Whether it is known how many elements come of a subtree.
     sizes_are_exact: bool,
+    /// The visitor that is asked on the way to the subtrees.
+    asked: V,
     span: Span,
     /// Whether a fractal has begun and not ended.
     is_open: bool,
@@ -370,8 +381,8 @@ where
 {
     type Error = WalkError<V::Error>;
 
-    fn enter(&mut self, _: &Subtree) -> Enter {
-        Enter::Replace
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        self.asked.enter(subtree)
     }
 
     fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error> {

@@ -83,8 +83,8 @@ impl Drawing for Scene<'_> {
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
         let tells_index = self.style.color_by == ColorBy::Index;
-        // What is left out, and ranks that are not known before, need one pair of eyes.
-        let is_whole = self.sight.cuts() || tells_index && !self.graph.is_plain();
+        // Ranks that are not known before need one pair of eyes.
+        let is_whole = tells_index && (self.sight.cuts() || !self.graph.is_plain());
         let span = (!is_whole).then_some(if tells_index { LONG_SPAN } else { SPAN });
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);

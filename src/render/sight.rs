@@ -100,6 +100,11 @@ impl Sight {
         self.shortest > 0.0 || self.window.is_some()
     }
 
+    /// The length below which walks replace nothing, if they may leave out anything.
+    pub(super) fn shortest(&self) -> Option<f64> {
+        self.cuts().then_some(self.shortest)
+    }
+
     /// What a walk does with an element that can be replaced.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {

@@ -459,6 +459,10 @@ impl Visitor for Sketcher<'_> {
         !self.scene.sight.cuts()
     }
 
+    fn cuts(&self) -> Option<f64> {
+        self.scene.sight.shortest()
+    }
+
     fn go_on(&mut self, fractal: Fractal) {
         self.fractal = fractal;
     }

@@ -192,17 +192,23 @@ impl<'g> Survey<'g> {
             ..self.clone()
         };
         self.walked = true;
-        let span = (!self.sight.cuts()).then_some(SPAN);
         let fresh = || none.clone();
-        walk_in_spans(self.graph, growth, threads, span, fresh, |seen, seam| {
-            self.add(seen, seam);
-            let fractal = seen.fractal;
-            *seen = Self {
-                fractal,
-                ..none.clone()
-            };
-            Ok(())
-        })?;
+        walk_in_spans(
+            self.graph,
+            growth,
+            threads,
+            Some(SPAN),
+            fresh,
+            |seen, seam| {
+                self.add(seen, seam);
+                let fractal = seen.fractal;
+                *seen = Self {
+                    fractal,
+                    ..none.clone()
+                };
+                Ok(())
+            },
+        )?;
         Ok(self)
     }
 
@@ -238,6 +244,10 @@ impl Visitor for Survey<'_> {
 
     fn takes_runs(&self) -> bool {
         !self.sight.cuts()
+    }
+
+    fn cuts(&self) -> Option<f64> {
+        self.sight.shortest()
     }
 
     fn go_on(&mut self, fractal: Fractal) {
