@@ -88,8 +88,13 @@ impl Sizes {
         if shortest <= 0.0 || self.counts.is_empty() {
             return self;
         }
-        // Children, and by how many classes they are shorter.
-        let shorter = |(object, ratio)| (object, whole(ROUNDING - classes(ratio)));
+        // Children, and by how many classes they are shorter; those that are kept are one element,
+        // however long.
+        let shorter = |(object, ratio): (usize, f64)| {
+            let kept = matches!(graph.objects()[object].replacement, Replacement::Kept);
+            let classes = whole(ROUNDING - classes(ratio));
+            (object, if kept { usize::MAX } else { classes })
+        };
         let ratios = graph.ratios().into_iter().zip(graph.resets());
         let children: Vec<Option<Vec<_>>> = ratios
             .map(|(children, resets)| {
