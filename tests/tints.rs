@@ -64,13 +64,13 @@ fn composed(tints: &[([f64; 3], f64)]) -> String {
         alpha += weight * (1.0 - alpha);
     }
     assert!((alpha - 1.0f64).abs() < 1e-12);
-    let [red, green, blue] = colour.map(|value| (value + 0.5).floor());
-    format!(
-        "#{red:02x}{green:02x}{blue:02x}",
-        red = red as u8,
-        green = green as u8,
-        blue = blue as u8
-    )
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "colours are from 0 to 255"
+    )]
+    let [red, green, blue] = colour.map(|value| (value + 0.5).floor() as u8);
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 #[test]

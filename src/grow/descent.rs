@@ -445,7 +445,7 @@ impl<'g> Descent<'g> {
                     }
                 }
                 Stop::AtSubtrees(sizes) => {
-                    let length = standing.frame.length();
+                    let length = standing.frame.stretch();
                     if let Some(size) = sizes.cut(object, self.target - level, length) {
                         let joined = std::mem::replace(&mut self.joined, true);
                         return Ok(Next::Subtree(FoundSubtree {
