@@ -300,12 +300,13 @@ impl<T> Order<'_, T> {
         self.tally.begin(outcome.fractals);
         let mut seam = Seam::NONE;
         if span.goes_on() {
-            seam.before = self.index - span.from.before;
+            // Of what is cut there are fewer than the forecast says, and ranks mean nothing.
+            seam.before = self.index.wrapping_sub(span.from.before);
             seam.joined = self.joined;
         }
         self.index = outcome.index;
         if outcome.fractals == 0 {
-            self.index += seam.before;
+            self.index = self.index.wrapping_add(seam.before);
         }
         self.joined = outcome.joined.unwrap_or(self.joined);
         (self.take)(&mut job.visitor, seam).map_err(WalkError::Visitor)

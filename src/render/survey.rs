@@ -173,7 +173,9 @@ impl<'g> Survey<'g> {
         self.strokes |= span.strokes;
         self.elements += span.elements;
         self.fractals += span.fractals;
-        let last_index = span.last_index.map_or(0, |index| seam.before + index);
+        let last_index = span
+            .last_index
+            .map_or(0, |index| seam.before.wrapping_add(index));
         self.largest_index = self.largest_index.max(span.largest_index).max(last_index);
         self.steps = self.steps.max(span.steps);
         for (value, _) in (0..).zip(&span.used).filter(|(_, used)| **used) {
