@@ -42,6 +42,10 @@ fn assert_same(name: &str, graphs: [&Graph; 2], set: Set<'_>) {
         let subject = Subject::new(graph, set);
         subject.unwrap_or_else(|error| panic!("{name}: {error}"))
     });
+    // Where a limit takes too long to be bounded, there is nothing to compare.
+    if matches!(set, Set::Limit) && graphs.iter().any(|graph| graph.limit_bounds().is_none()) {
+        return;
+    }
     let [a, b] = [0, 1].map(|which| *subjects[which].bounds());
     let size = a.size().max_element();
     for (a, b) in [(a.min(), b.min()), (a.max(), b.max())] {
