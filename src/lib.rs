@@ -13,7 +13,7 @@
 //!  the document of its kind, under a heading that all kinds have
 //!     │  resolve    names looked up, expressions compiled, everything checked
 //!     ▼
-//!  model            a rule, validated
+//!  model            a rule, a system of maps or a structure of objects, validated
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
-use super::{Chain, Graph, Instance, Object, Production, Replacement};
+use super::instancing::instance;
+use super::{Chain, Graph, Object, Production, Replacement};
 
 /// The base element of what has its base element still to come, or none.
 const INITIAL: usize = 0;
@@ -178,8 +179,8 @@ impl<'s> Compiler<'s> {
         let first = usize::from(self.ifs.initial().is_none());
         let drawn = (first..self.ifs.condensation().len())
             .filter(|_| first == 1)
-            .map(|set| self.instance(self.condensed(None, set), &DAffine2::IDENTITY, 0));
-        let root = self.instance(0, &DAffine2::IDENTITY, 0);
+            .map(|set| instance(self.condensed(None, set), &DAffine2::IDENTITY, 0));
+        let root = instance(0, &DAffine2::IDENTITY, 0);
         Graph {
             rule: None,
             base_elements: std::iter::once(provisional).chain(sets).collect(),
@@ -260,21 +261,21 @@ impl<'s> Compiler<'s> {
         };
         for (number, &map) in maps.iter().enumerate() {
             let affine = self.ifs.maps()[map].affine;
-            let mut instance = self.instance(self.inside(branch(map), map), &affine, number);
+            let mut instance = instance(self.inside(branch(map), map), &affine, number);
             instance.joined = self.chained && number > 0;
             instances.push(instance);
         }
         let own = if drawn_as_first { sets.min(1) } else { sets };
         for set in 0..own {
             let object = self.condensed(place, set);
-            instances.push(self.instance(object, &DAffine2::IDENTITY, instances.len()));
+            instances.push(instance(object, &DAffine2::IDENTITY, instances.len()));
         }
         // The others stand inside the maps already when what is drawn as the first one does.
         for set in own..sets {
             for &map in maps {
                 let object = self.condensed(Some((branch(map), map)), set);
                 let affine = self.ifs.maps()[map].affine;
-                instances.push(self.instance(object, &affine, instances.len()));
+                instances.push(instance(object, &affine, instances.len()));
             }
         }
         Production {
@@ -283,20 +284,6 @@ impl<'s> Compiler<'s> {
                 meets_frame: [self.chained; 2],
             },
             seeds: Vec::new(),
-        }
-    }
-
-    fn instance(&self, object: usize, affine: &DAffine2, position: usize) -> Instance {
-        let frame = Frame {
-            map: *affine,
-            direction: Direction::Normal,
-        };
-        Instance {
-            length: frame.stretch(),
-            frame,
-            joined: false,
-            position: u32::try_from(position).unwrap_or(u32::MAX),
-            object,
         }
     }
 }

@@ -104,7 +104,8 @@ impl Graph {
     }
 }
 
-fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
+/// An instance by its map alone, not joined to any.
+pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
     let frame = Frame {
         map: *map,
         direction: Direction::Normal,
