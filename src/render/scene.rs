@@ -113,8 +113,8 @@ impl Drawing for Scene<'_> {
 }
 
 /// Sketches are about so many elements; where colours run along, most of them stay empty.
-const SPAN: u64 = 1 << 14;
-const LONG_SPAN: u64 = 1 << 16;
+const SPAN: u64 = 1 << 12;
+const LONG_SPAN: u64 = 1 << 14;
 
 impl<'a> Survey<'a> {
     /// What the graph tells of an approximant, or a walk over it where it does not. Colours that

@@ -5,7 +5,7 @@ use crate::render::surface::Position;
 use super::path::PathData;
 
 /// Chunks have about this many commands, whatever the number of threads: so the bytes are the same.
-const COMMANDS: usize = 1 << 14;
+const COMMANDS: usize = 1 << 12;
 
 #[derive(Clone, Copy)]
 enum Command {
