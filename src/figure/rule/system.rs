@@ -2,12 +2,11 @@
 //! with their numbers, and the condensation sets.
 
 use std::io::Write;
-use std::num::NonZero;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
-use crate::render::{Drawing, RenderError, write_drawing};
+use crate::render::RenderError;
 use crate::rule::{BaseElement, Piece};
 
 use super::super::text::Font;
@@ -15,7 +14,7 @@ use super::block::{Block, Item, Outline};
 use super::ink::{self, Kind};
 use super::lines::outline;
 use super::page::{WORDS, lay_out, plural};
-use super::{Figure, Options};
+use super::{Figure, Options, onto_panel};
 
 /// The sides of panels in pixels, at most.
 const MOST: DVec2 = DVec2::new(380.0, 380.0);
@@ -57,15 +56,7 @@ pub fn write_system(
         |_| Block::default(),
         &edges(ifs),
     );
-    let figure = Figure {
-        page,
-        size: options.size,
-        background: options.background,
-    };
-    // A figure is small.
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&figure, options.format, &options.labels, one, out)?;
-    Ok(figure.size())
+    Figure::write(page, options, out)
 }
 
 /// What of a recurrent system's digraph is said in words.
@@ -142,11 +133,7 @@ impl<'a> Plan<'a> {
     fn panel(&self, share: f64) -> (DAffine2, DVec2) {
         let size = self.bounds.size();
         let scale = (MOST * share / size.max(DVec2::splat(1e-300))).min_element();
-        let pad = DVec2::splat(8.0);
-        let map = DAffine2::from_translation(pad)
-            * DAffine2::from_scale(DVec2::new(scale, -scale))
-            * DAffine2::from_translation(-DVec2::new(self.bounds.min().x, self.bounds.max().y));
-        (map, size * scale + 2.0 * pad)
+        onto_panel(&self.bounds, scale)
     }
 
     fn initial(&self) -> Block {
