@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free and flam3, on the same fractals: ratios of time, peak memory, and the targets.
+"""kfrac beside Context Free, flam3 and numba, on the same fractals: ratios of time, peak memory, and the targets.
 
 On a fresh Debian:
 
@@ -7,6 +7,7 @@ On a fresh Debian:
     cargo build --release
     python3 benches/peers.py            # some ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; only what is small
+    python3 -m pip install numba        # for the chaos game beside numba
 
 Whole commands are run in turn, ours and theirs, and the medians compared: on a machine that does
 other things beside, only the ratios mean something. Outputs are files in a temporary folder (TMPDIR
@@ -15,10 +16,12 @@ not less than this script's own, some 15 MiB.
 
 The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
 Colours are switched off: cfdg draws black bars, and so does kfrac. Both
-kfrac and flam3 get one thread, then two; flam3 is left out where it is not installed.
+kfrac and flam3 get one thread, then two; flam3 is left out where it is not installed, and so is numba
+(that of the Python that runs this). Of numba only the loop counts, of kfrac the whole command.
 """
 
 import argparse
+import importlib.util
 import os
 import shutil
 import statistics
@@ -43,6 +46,9 @@ BESIDE = [
 
 # Threads, and the least ratio of times beside flam3.
 RANDOM = [(1, 10), (2, 20)]
+
+# Points, and the least ratio of times beside numba, on one thread.
+NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
 
 # What is done, the command, and the most milliseconds.
 ALONE = [
@@ -136,6 +142,29 @@ def beside_flam3(kfrac, folder, quick):
         )
 
 
+def beside_numba(kfrac, folder, quick):
+    """The fern by random iteration, by numba as textbooks have it."""
+    print()
+    row("beside numba", "kfrac", "numba", "ratio", "target", "")
+    for points, ratio in NUMBA[: 1 if quick else None]:
+        ours, theirs = [], []
+        for _ in range(1 if quick else 3):
+            command = [kfrac, "grow", "barnsley-fern-four", "--method", "chaos", "--quiet"]
+            command += ["--points", points, "--size", "1024x1024", "--threads", 1]
+            ours.append(run([*command, "-o", folder / "ours.png"])[0])
+            peer = [sys.executable, HERE / "peers/fern.py", str(points)]
+            theirs.append(float(subprocess.run(peer, check=True, capture_output=True).stdout))
+        seconds, peer = statistics.median(ours), statistics.median(theirs)
+        row(
+            f"fern, {points / 1e6:.0f} M points, 1 thread",
+            f"{seconds:.3f} s",
+            f"{peer:.2f} s",
+            f"{peer / seconds:.1f} x",
+            f"{ratio} x",
+            verdict(peer / seconds >= ratio),
+        )
+
+
 def streamed(kfrac, folder, quick):
     """Segments a second to a file, and memory that does not grow with the steps."""
     steps, fewer = (22, 18) if quick else (26, 22)
@@ -182,6 +211,8 @@ def main():
         beside(kfrac, Path(folder), arguments.quick)
         if shutil.which("flam3-render") is not None:
             beside_flam3(kfrac, Path(folder), arguments.quick)
+        if importlib.util.find_spec("numba") is not None:
+            beside_numba(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)
         alone(kfrac, arguments.quick)
 

@@ -28,7 +28,8 @@
 //! ```
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
-//! interpolation are worked out on it without a graph.
+//! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
+//! file is resolved: the model holds what it draws.
 //!
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
 //! `render` turns into pictures.

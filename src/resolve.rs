@@ -5,10 +5,12 @@
 //! be read and names that may belong to what was not found are unknown, and so is all that is
 //! computed from them.
 
+mod fractal;
 mod heading;
 mod ifs;
 mod instancing;
 mod interpolation;
+mod map;
 mod numbers;
 mod outline;
 mod parameters;
@@ -91,6 +93,8 @@ struct Resolver<K> {
     used: HashSet<String>,
     /// Whether a parent or a component is missing, which may have other names.
     incomplete: bool,
+    /// The lines, curves and sides of sets that are fractals.
+    pieces: usize,
     kind: K,
 }
 

@@ -1,10 +1,12 @@
-//! Rules that are built in code: the same as those that are written in files.
+//! What is built in code: the same as what is written in files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 mod common;
 #[path = "build/random.rs"]
 mod random;
+#[path = "build/systems.rs"]
+mod systems;
 
 use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
 use kfrac::diagnostic::Severity;

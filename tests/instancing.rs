@@ -89,6 +89,7 @@ fn assert_grows_as_expanded(structure: &Instancing, steps: u32) {
             Some(Shape::Point(point)) => {
                 assert_eq!(graph.base_elements()[object.base_element].start(), *point);
             }
+            Some(Shape::Union(_)) => unreachable!("a structure has every outline alone"),
             None => assert_eq!(object.visible, structure.initial().is_some() || !has_shapes),
         }
     }
@@ -227,4 +228,30 @@ proptest! {
         let count = grown(&graph, &Growth::steps(steps))[0].elements.len();
         prop_assert_eq!(forecast.level().elements.to_u64(), Some(count as u64));
     }
+}
+
+/// A loop may be drawn to ever larger scales on its way, if it comes back smaller. Of 14 objects that all
+/// lead to each other, single products of instances would be too many to tell.
+#[test]
+fn loops_shrink_by_what_they_stretch_in_all() {
+    let objects: String = (0..14)
+        .map(|from| {
+            let scale = |to| if to > from { "1.05" } else { "0.3" };
+            let instance = |to| format!("{{object: a{to}, scale: {}, rotate: {to}}}", scale(to));
+            let all: Vec<_> = (0..14).map(instance).collect();
+            format!("  a{from}: [{}]\n", all.join(", "))
+        })
+        .collect();
+    let text = format!("kind: instancing\nobjects:\n{objects}scene: [a0]\n");
+    let (_, doubts) = document_of(&text).resolve(&[]).unwrap();
+    assert!(doubts.is_empty(), "{doubts}");
+}
+
+#[test]
+fn what_ends_need_not_shrink() {
+    let structure = structure(
+        "kind: instancing\nobjects:\n  a(0): [{segment: [[0, 0], [1, 0]]}]\n  a(n): [{object: a(n - 1), scale: 2}]\nscene: [a(400)]\n",
+    );
+    let dimension = similarity_dimension(&Graph::of_structure(&structure));
+    assert_eq!(dimension.note.as_deref(), Some("nothing stays fertile"));
 }

@@ -1,7 +1,7 @@
-//! Rules that are written in a program instead of a file.
+//! Rules, systems and structures that are written in a program instead of a file.
 //!
-//! A [`RuleBuilder`] has a method for every key of a rule file and writes the file that says the
-//! same. That file is read like any other: whatever a file can say can be said here, every mistake
+//! A [`RuleBuilder`], a [`SystemBuilder`] or a [`StructureBuilder`] has a method for every key of a file
+//! of its kind and writes the file that says the same. That file is read like any other: whatever a file can say can be said here, every mistake
 //! is found by the same checks, and a message shows the line of the file that it is about. The
 //! meaning of the keys is that of `library/README.md`.
 //!
@@ -55,15 +55,47 @@
 //! assert!(model.rule().is_some_and(|rule| rule.is_random()) && doubts.is_empty());
 //! # Ok::<(), kfrac::diagnostic::Diagnostics>(())
 //! ```
+//!
+//! A tree of two maps, with a stem that is drawn at every level, and the same as objects:
+//!
+//! ```
+//! use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
+//! use kfrac::graph::Graph;
+//!
+//! let stem = Set::segment((0, 0), (0, 1));
+//! let system = SystemBuilder::new()
+//!     .map(Map::scale(0.6).rotate(40).shift((0, 1)))
+//!     .map(Map::scale(0.6).rotate(-40).shift((0, 1)))
+//!     .condensation(stem.clone())
+//!     .build()?;
+//! let twig = |angle| Instance::of("tree").scale(0.6).rotate(angle).translate((0, 1));
+//! let tree = Union::new().with(stem).with(twig(40)).with(twig(-40));
+//! let structure = StructureBuilder::new(Instance::of("tree"))
+//!     .object("tree", tree)
+//!     .build()?;
+//! let boxes = [Graph::of_system(&system), Graph::of_structure(&structure)]
+//!     .map(|graph| graph.limit_bounds().unwrap());
+//! assert!((boxes[0].size() - boxes[1].size()).length() < 1e-9);
+//! # Ok::<(), kfrac::diagnostic::Diagnostics>(())
+//! ```
 
 mod elements;
 mod generator;
+mod heading;
+mod map;
 mod number;
+mod set;
+mod structure;
+mod system;
 pub(crate) mod written;
 
 pub use elements::{Element, Elements};
 pub use generator::{Generator, Move};
+pub use map::Map;
 pub use number::{Number, Point};
+pub use set::Set;
+pub use structure::{Instance, StructureBuilder, Union};
+pub use system::SystemBuilder;
 
 use std::sync::Arc;
 
@@ -72,12 +104,14 @@ use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
 use crate::heading::{Description, Parameter};
+use crate::model::Model;
 use crate::rule::{BaseElement, Rule};
 use crate::style::{Style, View};
 
+use heading::of_all_kinds;
 use written::Entries;
 
-/// What messages call a rule that was built.
+/// What messages call what was built.
 const NAME: &str = "(built)";
 
 /// Writes a production rule. What is said twice counts as said last, except that every generator
@@ -158,57 +192,7 @@ impl RuleBuilder {
         self.set("base_element", written::base_element(base_element))
     }
 
-    /// Adds a parameter, which expressions know by its name.
-    pub fn parameter(self, parameter: Parameter) -> Self {
-        let Parameter {
-            name,
-            value,
-            min,
-            max,
-            about,
-        } = parameter;
-        let number = |value| Number::from(value).0;
-        let entries = Entries::default()
-            .set("value", number(value))
-            .set_some("min", min.map(number))
-            .set_some("max", max.map(number))
-            .set_some("about", about.map(Value::Text));
-        Self {
-            parameters: self.parameters.add(name, entries.value()),
-            ..self
-        }
-    }
-
-    /// The number of steps that the rule proposes.
-    pub fn steps(self, steps: u32) -> Self {
-        self.set("steps", Value::Number(f64::from(steps)))
-    }
-
-    /// The published similarity dimension.
-    pub fn dimension(self, dimension: impl Into<Number>) -> Self {
-        self.set("dimension", dimension.into().0)
-    }
-
-    /// The published Hausdorff dimension, where it differs from the similarity dimension.
-    pub fn hausdorff_dimension(self, dimension: impl Into<Number>) -> Self {
-        self.set("hausdorff_dimension", dimension.into().0)
-    }
-
-    /// Title, source and the like.
-    pub fn description(mut self, description: &Description) -> Self {
-        self.entries = written::description(self.entries, description);
-        self
-    }
-
-    /// How it is drawn.
-    pub fn style(self, style: &Style) -> Self {
-        self.set("style", written::style(style).value())
-    }
-
-    /// What part of the plane is drawn.
-    pub fn view(self, view: &View) -> Self {
-        self.set("view", written::view(view).value())
-    }
+    of_all_kinds!();
 
     /// The rule as a file that has been read: to be saved as YAML, to be resolved with other values
     /// of its parameters, or with what is doubtful in it.
@@ -217,17 +201,13 @@ impl RuleBuilder {
     ///
     /// What is wrong, as [`Document::read`] tells it.
     pub fn document(&self) -> Result<Document, Diagnostics> {
-        let mut entries = self.entries.clone();
-        for (key, named) in [
-            ("params", &self.parameters),
-            ("generators", &self.generators),
-        ] {
-            if !named.is_empty() {
-                entries = entries.set(key, named.clone().value());
-            }
-        }
-        let text = Node::from(entries.value()).to_yaml();
-        Document::read(&Source::new(NAME, text), &Catalogue::embedded())
+        read(
+            &self.entries,
+            &[
+                ("params", &self.parameters),
+                ("generators", &self.generators),
+            ],
+        )
     }
 
     /// The validated rule.
@@ -237,10 +217,27 @@ impl RuleBuilder {
     /// All that is wrong with it: no element in a list, no generator or one that is not there, a
     /// number that is not finite, an expression that cannot be read, and so on.
     pub fn build(&self) -> Result<Rule, Diagnostics> {
-        let (model, _doubts) = self.document()?.resolve(&[])?;
-        let rule = model.into_rule();
+        let rule = resolved(&self.document()?)?.into_rule();
         Ok(Arc::unwrap_or_clone(rule.unwrap_or_else(|| {
             unreachable!("what is built says no other kind")
         })))
     }
+}
+
+/// The file that has these entries, and names under some keys.
+fn read(entries: &Entries, named: &[(&str, &Entries)]) -> Result<Document, Diagnostics> {
+    let mut entries = entries.clone();
+    for (key, named) in named {
+        if !named.is_empty() {
+            entries = entries.set(key, (*named).clone().value());
+        }
+    }
+    let text = Node::from(entries.value()).to_yaml();
+    Document::read(&Source::new(NAME, text), &Catalogue::embedded())
+}
+
+/// What a file that was built comes to.
+fn resolved(document: &Document) -> Result<Model, Diagnostics> {
+    let (model, _doubts) = document.resolve(&[])?;
+    Ok(model)
 }

@@ -127,7 +127,7 @@ pub(crate) fn style(style: &Style) -> Entries {
     entries(style).without(&entries(&Style::default()))
 }
 
-fn colour_text(colour: Colour) -> Value {
+pub(super) fn colour_text(colour: Colour) -> Value {
     Value::Text(format!("{colour:#}"))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::geometry::DVec2;
 use crate::ifs::Shape;
-use crate::rule;
+use crate::rule::{self, BaseElement};
 
 use super::random::Scalar;
 
@@ -29,6 +29,12 @@ const CHORDS: u32 = 64;
 /// The most heights at which the sides of an outline end or cross, and the most triangles.
 const MOST_PARTS: usize = 1 << 16;
 
+/// The most sides of a closed outline: each is looked at beside each.
+const MOST_SIDES: usize = 1 << 13;
+
+/// The most pieces of a union.
+const MOST_PIECES: usize = 1 << 21;
+
 impl Sampler {
     /// The sampler of a shape; `None` if it has no extent, or if its outline has so many corners and
     /// crossings that it takes too much to part it into triangles.
@@ -39,7 +45,31 @@ impl Sampler {
                 return point.is_finite().then_some(Self { pieces });
             }
             Shape::Outline(outline) => outline,
+            Shape::Union(_) => return Self::of_union(shape),
         };
+        Self::of_outline(outline)
+    }
+
+    /// The sampler of a union, whose outlines have their shares.
+    fn of_union(shape: &Shape) -> Option<Self> {
+        let mut pieces = Vec::new();
+        let mut before = 0.0;
+        for (share, outline) in shape.shares() {
+            let own = Self::of_outline(outline)?.pieces;
+            let scale = share / own.last()?.0;
+            pieces.extend(
+                own.iter()
+                    .map(|(end, piece)| (before + end * scale, *piece)),
+            );
+            before += share;
+            if pieces.len() > MOST_PIECES {
+                return None;
+            }
+        }
+        (before > 0.0 && before.is_finite()).then_some(Self { pieces })
+    }
+
+    fn of_outline(outline: &BaseElement) -> Option<Self> {
         let mut corners = vec![outline.start()];
         for piece in outline.pieces() {
             add_chords(&mut corners, piece);
@@ -48,6 +78,9 @@ impl Sampler {
             return None;
         }
         if outline.is_closed() {
+            if corners.len() > MOST_SIDES {
+                return None;
+            }
             let triangles = triangles(&corners)?.into_iter();
             Self::of_pieces(triangles.map(|[a, b, c]| {
                 let area = (b - a).perp_dot(c - a).abs() / 2.0;

@@ -234,7 +234,15 @@ impl Arguments {
         let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
         let points = |which: usize| {
             let points = subjects[which].cover(difference::pixel(&canvas), self.max_points);
-            points.map_err(|error| explain(error, &both[which].loaded))
+            points.map_err(|error| match error {
+                NoCover::TooMany(_) => anyhow!(
+                    "{} cannot be drawn: its pixels take too many points; a smaller --size \
+                     takes fewer, and --max-points allows more",
+                    both[which].loaded.name
+                )
+                .into(),
+                error => explain(error, &both[which].loaded),
+            })
         };
         let (first, second) = (points(0)?, points(1)?);
         let options = render::Options {

@@ -72,7 +72,15 @@ impl Loaded {
     /// The same for pictures whose colours tell something.
     pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
         match (&self.model, color_by) {
-            (Model::Ifs(system), ColorBy::LastMap) => Ok(Graph::telling_last_maps(system)),
+            (Model::Ifs(system), ColorBy::LastMap) => {
+                Graph::telling_last_maps(system).ok_or_else(|| {
+                    let message = format!(
+                        "{} has too many maps and sets to tell the map that is applied last",
+                        self.name
+                    );
+                    anyhow::anyhow!(message).into()
+                })
+            }
             (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) => {
                 let message = format!(
                     "{} is a rule and has no maps that --color-by {} could tell apart",

@@ -77,6 +77,12 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     }
     let graph = model.compile(STEPS)?;
     graph.check_limit_set().map_err(Refusal::from)?;
+    if let (Model::Ifs(system), Keeps::Approximants) = (model, keeps)
+        && system.ifs().initial().is_some_and(|set| set.count() > 1)
+    {
+        let what = "its initial set is of several lines, and there it would be a single one";
+        return Err(Refusal::Steps(what).into());
+    }
     let structure = match model {
         Model::Ifs(system) if keeps == Keeps::Limit => {
             let shapes = graph.base_elements().to_vec();

@@ -106,14 +106,16 @@ impl Structure {
     /// every map has just moved, or a single one where any map may follow any other. `shapes` are
     /// the initial set and the condensation sets.
     pub(super) fn of_ifs(ifs: &Ifs, shapes: Vec<BaseElement>) -> Self {
+        // An initial set of several outlines is no shape. The limit does not hang on it.
+        let is_shape = ifs.initial().is_none_or(|set| set.count() == 1);
         let placed = |map: DAffine2, shape: usize, object: Option<usize>| Placed {
             map,
             shape,
-            visible: true,
+            visible: object.is_none() || is_shape,
             tint: None,
             object,
         };
-        let sets = || 1..=ifs.condensation().len();
+        let sets = || 1..=ifs.condensation().iter().map(|set| set.shape.count()).sum();
         let drawn = || sets().map(|set| placed(DAffine2::IDENTITY, set, None));
         let maps = ifs.maps().iter().map(|map| map.affine);
         let (objects, scene) = if let Some(successors) = ifs.successors() {

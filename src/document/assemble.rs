@@ -1,5 +1,9 @@
 //! Puts a rule's parents and components into it, so that one file says everything.
 
+mod fractals;
+mod harmless;
+mod parameters;
+
 use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf, is_same_file};
@@ -8,10 +12,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest}
 use crate::model::Kind;
 
 use super::data;
-use super::merge::{Entries, merge, merge_entries};
+use super::merge::{Entries, merge};
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, check_description, shape};
 use super::yaml::{Budget, Size};
+use harmless::{harmless, harmless_parent};
 
 /// A parent may have a parent, and so on, up to this many.
 const MOST_PARENTS: usize = 32;
@@ -25,9 +30,26 @@ pub(super) fn assemble(
     catalogue: &Catalogue,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Node, Kind, bool)> {
+    let node = Node::parse_with(source, diagnostics)?;
+    let mut fractals = 0;
+    assemble_within(&[], &mut fractals, source, node, catalogue, diagnostics)
+}
+
+/// The same of what a source says, where other files name this one: those are made of each other in this
+/// order. `fractals` have been put into all of them.
+fn assemble_within(
+    around: &[Arc<Source>],
+    fractals: &mut usize,
+    source: &Arc<Source>,
+    node: Node,
+    catalogue: &Catalogue,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Node, Kind, bool)> {
     let mut assembly = Assembly {
         catalogue,
         diagnostics,
+        around,
+        fractals,
         chain: vec![Arc::clone(source)],
         parameters: Vec::new(),
         components: Vec::new(),
@@ -39,13 +61,14 @@ pub(super) fn assemble(
         kind: None,
         extending: None,
     };
-    let (place, mut entries) = assembly.extended(source)?;
+    let (place, mut entries) = assembly.extended(node)?;
     for (_, node) in &entries {
         assembly.budget.own(Size::of(node));
     }
     assembly.inline(&mut entries);
     assembly.hoist_parameters(&mut entries);
     assembly.inline_data(&mut entries);
+    assembly.inline_fractals(&mut entries);
     let (kind, complete) = (assembly.kind.unwrap_or_default(), assembly.complete);
     let value = Value::Mapping(entries);
     Some((Node { place, value }, kind, complete))
@@ -54,6 +77,10 @@ pub(super) fn assemble(
 struct Assembly<'a> {
     catalogue: &'a Catalogue,
     diagnostics: &'a mut Diagnostics,
+    /// The files that name this one, the outermost first.
+    around: &'a [Arc<Source>],
+    /// How many fractals have been put into the outermost and all that it is made of.
+    fractals: &'a mut usize,
     /// The rule, its parent, and so on. A rule's number in it is its generation.
     chain: Vec<Arc<Source>>,
     /// The parameters that the rules have of their own, with the generation.
@@ -99,8 +126,7 @@ impl Assembly<'_> {
     }
 
     /// The entries of a rule alone, under the keys that are meant.
-    fn entries(&mut self, source: &Arc<Source>) -> Option<(Place, Entries)> {
-        let node = self.parse(source)?;
+    fn entries(&mut self, node: Node) -> Option<(Place, Entries)> {
         let Value::Mapping(entries) = node.value else {
             let message = format!("a rule is needed here, this is {}", node.kind());
             self.error(&node.place, message, shape(Kind::default()).hint);
@@ -160,8 +186,8 @@ impl Assembly<'_> {
     }
 
     /// A rule with its parents' keys where it names none of its own.
-    fn extended(&mut self, source: &Arc<Source>) -> Option<(Place, Entries)> {
-        let (place, mut entries) = self.entries(source)?;
+    fn extended(&mut self, node: Node) -> Option<(Place, Entries)> {
+        let (place, mut entries) = self.entries(node)?;
         let Some(index) = entries.iter().position(|(key, _)| key.name == "extends") else {
             return Some((place, entries));
         };
@@ -205,7 +231,8 @@ impl Assembly<'_> {
         }
         self.chain.push(Arc::clone(&found));
         self.extending = Some(parent.place.clone());
-        Some(self.extended(&found)?.1)
+        let node = self.parse(&found)?;
+        Some(self.extended(node)?.1)
     }
 
     /// Replaces the names of components by what they stand for.
@@ -423,143 +450,4 @@ impl Assembly<'_> {
         self.error(&params.place, message, "params: {angle: 45}");
         Vec::new()
     }
-
-    /// Lets the components' parameters join the rule's.
-    fn hoist_parameters(&mut self, entries: &mut Entries) {
-        let mut joined = Entries::new();
-        for component in std::mem::take(&mut self.components) {
-            for (key, node) in component.parameters {
-                match joined.iter().find(|(known, _)| known.name == key.name) {
-                    // A component that is used twice has its parameters once.
-                    Some((known, _)) if known.place == key.place => {}
-                    Some((other, _)) => self.collision(&component.place, &key, Some(other)),
-                    None if self.is_free(&key, component.generation, &component.place) => {
-                        joined.push((key, node));
-                    }
-                    None => {}
-                }
-            }
-        }
-        if joined.is_empty() {
-            return;
-        }
-        let index = entries.iter().position(|(key, _)| key.name == "params");
-        let params = match index {
-            Some(index) => &mut entries[index].1,
-            None => {
-                // Where a person would look for them: before what uses them.
-                let before = entries.iter().position(|(key, _)| key.name == "initiator");
-                let place = joined[0].1.place.clone();
-                let key = Key {
-                    name: "params".into(),
-                    place: place.clone(),
-                };
-                let at = before.unwrap_or(entries.len());
-                entries.insert(
-                    at,
-                    (
-                        key,
-                        Node {
-                            place,
-                            value: Value::Mapping(Vec::new()),
-                        },
-                    ),
-                );
-                &mut entries[at].1
-            }
-        };
-        let Value::Mapping(own) = &mut params.value else {
-            return;
-        };
-        merge_entries(own, joined, true);
-    }
-
-    /// Whether no rule has a parameter of its own that collides with one of a component.
-    ///
-    /// A rule sets the parameters that its parents have from their components; a rule that names a
-    /// component, and the parents of that rule, cannot have one of the same name.
-    fn is_free(&mut self, key: &Key, generation: usize, named: &Place) -> bool {
-        let other = self
-            .parameters
-            .iter()
-            .find(|(of, other)| *of >= generation && other.name == key.name);
-        let Some((of, other)) = other.cloned() else {
-            return true;
-        };
-        if of == generation {
-            self.collision(&other.place, key, None);
-        } else {
-            self.collision(named, key, Some(&other));
-        }
-        false
-    }
-
-    /// Reports, in the line that brings it in, a parameter that a component has and something else
-    /// has too: that line, or another file.
-    fn collision(&mut self, place: &Place, key: &Key, other: Option<&Key>) {
-        let at = |key: &Key| format!("{}, line {}", key.place.source().name(), key.place.line());
-        let hint = match other {
-            None => format!("the other is in {}: rename one of them", at(key)),
-            Some(other) => format!("in {}, and in {}: rename one of them", at(other), at(key)),
-        };
-        let message = format!("the rule has two parameters named '{}'", key.name);
-        self.error(place, message, &hint);
-    }
-}
-
-/// Stands in for the parent of a rule that was not found.
-fn harmless_parent(place: &Place, kind: Kind) -> Entries {
-    let key = |name: &str| Key {
-        name: name.into(),
-        place: place.clone(),
-    };
-    let node = |value| Node {
-        place: place.clone(),
-        value,
-    };
-    match kind {
-        Kind::Rule => vec![
-            (key("initiator"), harmless(Shelf::Initiators, place)),
-            (key("generator"), harmless(Shelf::Generators, place)),
-        ],
-        Kind::Ifs => {
-            let map = Value::Mapping(vec![(key("scale"), node(Value::Number(0.5)))]);
-            vec![(key("maps"), node(Value::Sequence(vec![node(map)])))]
-        }
-        Kind::Instancing => {
-            let segment = [0.0, 1.0].map(|x| {
-                node(Value::Sequence(
-                    [x, 0.0].map(|x| node(Value::Number(x))).into(),
-                ))
-            });
-            let segment = (key("segment"), node(Value::Sequence(segment.into())));
-            let union = node(Value::Sequence(vec![node(Value::Mapping(vec![segment]))]));
-            let objects = Value::Mapping(vec![(key("object"), union.clone())]);
-            vec![(key("objects"), node(objects)), (key("scene"), union)]
-        }
-    }
-}
-
-/// Stands in for a component that was not found, so that no second error is reported for it.
-fn harmless(shelf: Shelf, place: &Place) -> Node {
-    let node = |value| Node {
-        place: place.clone(),
-        value,
-    };
-    let number = |value| node(Value::Number(value));
-    // Shorter than what it replaces, so that there is no warning either.
-    let line = [0.0, 0.5].map(|x| node(Value::Sequence(vec![number(x), number(0.0)])));
-    let key = if shelf == Shelf::BaseElements {
-        "points"
-    } else {
-        "elements"
-    };
-    let key = Key {
-        name: key.into(),
-        place: place.clone(),
-    };
-    node(Value::Mapping(vec![(
-        key,
-        node(Value::Sequence(line.to_vec())),
-    )]))
 }

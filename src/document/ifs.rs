@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Place;
 
-use super::{HeadingDocument, Number, Point, Written};
+use super::{HeadingDocument, KindDocument, Number, Point, Written};
 
 /// An iterated function system as written.
 #[derive(Clone, Debug)]
@@ -141,6 +141,23 @@ pub enum FormDocument {
     },
     /// An ellipse.
     Ellipse(Box<EllipseDocument>),
+    /// An approximant of another fractal.
+    Fractal(Box<FractalDocument>),
+}
+
+/// An approximant of another fractal, as written.
+#[derive(Clone, Debug)]
+pub struct FractalDocument {
+    /// What the fractal's file says.
+    pub file: KindDocument,
+    /// The number of steps; the file's own if left out.
+    pub steps: Option<Number>,
+    /// What its random draws depend on; 0 if left out.
+    pub seed: Option<Number>,
+    /// Where it stands.
+    pub map: Option<MapDocument>,
+    /// Where it was named.
+    pub place: Place,
 }
 
 /// An ellipse as written.

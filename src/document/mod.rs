@@ -20,8 +20,9 @@ mod yaml;
 
 pub use heading::{HeadingDocument, ParameterDocument};
 pub use ifs::{
-    CondensationDocument, EdgeDocument, EllipseDocument, FormDocument, IfsDocument,
-    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
+    CondensationDocument, EdgeDocument, EllipseDocument, FormDocument, FractalDocument,
+    IfsDocument, InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales,
+    ShapeDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,

@@ -128,11 +128,7 @@ impl Definitions {
         let mut alternatives = Vec::new();
         for form in forms {
             if let Form::File(shelf) = form {
-                // Editors offer these names; a library of one's own may have others.
-                let entries = Catalogue::embedded().entries().into_iter();
-                let names = entries.filter(|entry| entry.shelf == *shelf);
-                let names = list(names.map(|entry| entry.name));
-                alternatives.push(Object::default().with("enum", names));
+                alternatives.push(Object::default().with("enum", names(&[*shelf])));
                 alternatives.push(of_type("string"));
             } else {
                 alternatives.push(self.form(form));
@@ -162,6 +158,11 @@ impl Definitions {
             Form::Words(words) => Object::default().with("enum", list(words.iter().copied())),
             Form::Colour => of_types(["string", "null"]),
             Form::File(_) => self.either(std::slice::from_ref(form)),
+            Form::Grown => {
+                let names = Object::default().with("enum", names(&Shelf::grown()));
+                let written = [names, of_type("string"), of_type("object")];
+                Object::default().with("anyOf", list(written))
+            }
             Form::Point => self.defined("point", |definitions| {
                 definitions.form(&Form::List(&Form::Number, 2, Some(2)))
             }),
@@ -190,6 +191,13 @@ impl Definitions {
         }
         Object::default().with("$ref", format!("#/definitions/{name}"))
     }
+}
+
+/// The names of the embedded library, which editors offer; a library of one's own may have others.
+fn names(shelves: &[Shelf]) -> Json {
+    let entries = Catalogue::embedded().entries().into_iter();
+    let entries = entries.filter(|entry| shelves.contains(&entry.shelf));
+    list(entries.map(|entry| entry.name))
 }
 
 /// The keys that must be there.

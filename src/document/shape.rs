@@ -68,6 +68,8 @@ pub(super) enum Form {
     Colour,
     /// The name of a file of the library.
     File(Shelf),
+    /// The name of a file that can be grown, or what it says.
+    Grown,
     /// Two numbers.
     Point,
     /// A list of as many entries at least and, if limited, at most.

@@ -18,11 +18,10 @@ mod system;
 mod words;
 
 use std::io::Write;
-
 use std::num::NonZero;
 
 use crate::document::RuleDocument;
-use crate::geometry::DVec2;
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::parallel::Team;
 use crate::render::{Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing};
 use crate::rule::Rule;
@@ -72,15 +71,18 @@ pub fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
-    let figure = Figure {
-        page: page::page(rule, document, &options.labels.title),
-        size: options.size,
-        background: options.background,
-    };
-    // A figure is small.
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&figure, options.format, &options.labels, one, out)?;
-    Ok(figure.size())
+    let page = page::page(rule, document, &options.labels.title);
+    Figure::write(page, options, out)
+}
+
+/// The map from what lies in a box to a panel of this scale, and the panel's size.
+fn onto_panel(bounds: &Bounds, scale: f64) -> (DAffine2, DVec2) {
+    /// What lies around it.
+    const PAD: DVec2 = DVec2::splat(8.0);
+    let map = DAffine2::from_translation(PAD)
+        * DAffine2::from_scale(DVec2::new(scale, -scale))
+        * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
+    (map, bounds.size() * scale + 2.0 * PAD)
 }
 
 struct Figure {
@@ -90,6 +92,23 @@ struct Figure {
 }
 
 impl Figure {
+    /// Writes a page as a figure; tells its width and height in pixels.
+    fn write(
+        page: Block,
+        options: &Options,
+        out: &mut impl Write,
+    ) -> Result<[u32; 2], RenderError> {
+        let figure = Self {
+            page,
+            size: options.size,
+            background: options.background,
+        };
+        // A figure is small.
+        let one = NonZero::<usize>::MIN;
+        write_drawing(&figure, options.format, &options.labels, one, out)?;
+        Ok(figure.size())
+    }
+
     /// How much larger the page becomes, and where its corner lies.
     fn fit(&self) -> (f64, DVec2) {
         let own = self.page.size;

@@ -9,6 +9,9 @@ use crate::rule::{BaseElement, Piece};
 use super::instancing::instance;
 use super::{Chain, Graph, Object, Production, Replacement};
 
+/// Where the last map is told, a graph has no more instances.
+const MOST_INSTANCES: usize = 4_000_000;
+
 /// The base element of what has its base element still to come, or none.
 const INITIAL: usize = 0;
 
@@ -20,16 +23,22 @@ impl Graph {
     /// f_i, over the edges from i to j, for f_j is applied after f_i. So approximant 0 is the initial
     /// set I, approximant 1 the union of all f_j(I), approximant 2 that of all f_j(f_i(I)), and so on.
     /// Condensation sets are infertile. Where no initial set is given, the first condensation set is
-    /// it, and the others are drawn from the beginning.
+    /// it, and the others are drawn from the beginning. Of an initial set of several outlines the
+    /// others are objects that vanish when the first one is replaced.
     #[must_use]
     pub fn of_system(system: &System) -> Self {
         Self::compile_system(system, false)
     }
 
-    /// The same with objects that tell the map that is applied last. They are more.
+    /// The same with objects that tell the map that is applied last. They are more; `None` if they are
+    /// too many.
     #[must_use]
-    pub fn telling_last_maps(system: &System) -> Self {
-        Self::compile_system(system, true)
+    pub fn telling_last_maps(system: &System) -> Option<Self> {
+        let size = system
+            .ifs()
+            .size()
+            .saturating_mul(system.ifs().maps().len());
+        (size <= MOST_INSTANCES).then(|| Self::compile_system(system, true))
     }
 
     fn compile_system(system: &System, tells_last: bool) -> Self {
@@ -83,10 +92,20 @@ pub(crate) fn filling(bounds: Option<Bounds>) -> BaseElement {
     outline(&shape.unwrap_or(Shape::Point(min)))
 }
 
-/// A shape's outline; a point is the shortest line that there is, of which a pen makes a dot.
+/// A shape's outlines.
+fn outlines(shape: &Shape) -> Vec<BaseElement> {
+    match shape {
+        Shape::Union(outlines) => outlines.to_vec(),
+        one => vec![outline(one)],
+    }
+}
+
+/// A shape's outline, of a union the first; a point is the shortest line that there is, of which a pen
+/// makes a dot.
 pub(crate) fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
+        Shape::Union(outlines) => outlines[0].clone(),
         Shape::Point(point) => {
             let next = DVec2::new(point.x.next_up(), point.y);
             BaseElement::new(*point, vec![Piece::Line(next)], false)
@@ -97,6 +116,10 @@ pub(crate) fn outline(shape: &Shape) -> BaseElement {
 
 struct Compiler<'s> {
     ifs: &'s Ifs,
+    /// The outlines of the condensation sets.
+    sets: Vec<BaseElement>,
+    /// Those of a given initial set but for the first.
+    others: Vec<BaseElement>,
     chained: bool,
     /// Whether there are objects for every map that may be applied last.
     tells_last: bool,
@@ -114,8 +137,15 @@ impl<'s> Compiler<'s> {
             None => before = vec![(0..count).collect(); count],
         }
         before.iter_mut().for_each(|maps| maps.sort_unstable());
+        let sets = ifs.condensation().iter();
         Self {
             ifs,
+            sets: sets.flat_map(|set| outlines(&set.shape)).collect(),
+            others: ifs.initial().map_or_else(Vec::new, |initial| {
+                let mut outlines = outlines(initial);
+                outlines.remove(0);
+                outlines
+            }),
             chained: system.chained,
             tells_last,
             before,
@@ -131,9 +161,15 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The objects of a branch: one inside every map, and the condensation sets inside every map.
+    /// The outlines that stand inside every map: of the condensation sets, then the others of the
+    /// initial set.
+    fn outlines(&self) -> usize {
+        self.sets.len() + self.others.len()
+    }
+
+    /// The objects of a branch: one inside every map, and the outlines inside every map.
     fn branch(&self) -> usize {
-        self.ifs.maps().len() * (1 + self.ifs.condensation().len())
+        self.ifs.maps().len() * (1 + self.outlines())
     }
 
     /// The object inside a map; of the whole there is one, the first.
@@ -141,12 +177,12 @@ impl<'s> Compiler<'s> {
         1 + branch * self.branch() + map
     }
 
-    /// A condensation set inside a map of a branch, or inside none.
-    fn condensed(&self, place: Option<(usize, usize)>, set: usize) -> usize {
-        let (maps, sets) = (self.ifs.maps().len(), self.ifs.condensation().len());
+    /// An outline inside a map of a branch, or inside none.
+    fn drawn(&self, place: Option<(usize, usize)>, outline: usize) -> usize {
+        let (maps, outlines) = (self.ifs.maps().len(), self.outlines());
         match place {
-            Some((branch, map)) => self.inside(branch, maps + map * sets + set),
-            None => self.inside(self.branches(), set),
+            Some((branch, map)) => self.inside(branch, maps + map * outlines + outline),
+            None => self.inside(self.branches(), outline),
         }
     }
 
@@ -168,22 +204,20 @@ impl<'s> Compiler<'s> {
                 });
             }
             for map in 0..maps {
-                objects.extend(self.condensation(Some(map), last_map));
+                objects.extend(self.drawn_objects(Some(map), last_map));
             }
         }
-        objects.extend(self.condensation(None, None));
+        objects.extend(self.drawn_objects(None, None));
         self.number_behaviours(&mut objects);
         let provisional = BaseElement::line();
-        let sets = self.ifs.condensation().iter();
-        let sets = sets.map(|set| outline(&set.shape));
-        let first = usize::from(self.ifs.initial().is_none());
-        let drawn = (first..self.ifs.condensation().len())
-            .filter(|_| first == 1)
-            .map(|set| instance(self.condensed(None, set), &DAffine2::IDENTITY, 0));
+        let outlines = self.sets.iter().chain(&self.others).cloned();
+        let drawn = self.drawn_with_first();
+        let drawn =
+            drawn.map(|outline| instance(self.drawn(None, outline), &DAffine2::IDENTITY, 0));
         let root = instance(0, &DAffine2::IDENTITY, 0);
         Graph {
             rule: None,
-            base_elements: std::iter::once(provisional).chain(sets).collect(),
+            base_elements: std::iter::once(provisional).chain(outlines).collect(),
             origins: maps,
             objects,
             initiator: Chain {
@@ -214,13 +248,28 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn condensation(
+    /// The outlines that are drawn wherever what stands inside a map is drawn as the first one.
+    fn drawn_with_first(&self) -> std::ops::Range<usize> {
+        match self.ifs.initial() {
+            Some(_) => self.sets.len()..self.outlines(),
+            None => 1.min(self.sets.len())..self.sets.len(),
+        }
+    }
+
+    fn drawn_objects(
         &self,
         map: Option<usize>,
         last_map: Option<usize>,
     ) -> impl Iterator<Item = Object> + '_ {
-        let sets = 1..=self.ifs.condensation().len();
-        sets.map(move |base_element| self.object(base_element, map, last_map))
+        let vanishes = Arc::new(Production::default());
+        (0..self.outlines()).map(move |outline| Object {
+            replacement: if outline < self.sets.len() {
+                Replacement::Kept
+            } else {
+                Replacement::Fixed(Arc::clone(&vanishes))
+            },
+            ..self.object(1 + outline, map, last_map)
+        })
     }
 
     /// Objects that are replaced by the same have one behaviour.
@@ -231,6 +280,7 @@ impl<'s> Compiler<'s> {
             // The whole is replaced as what stands inside a map is without a digraph.
             let key = match (&object.replacement, object.origin) {
                 (Replacement::Kept, _) => usize::MAX,
+                (Replacement::Fixed(gone), _) if gone.body.instances.is_empty() => usize::MAX - 1,
                 (_, Some(map)) if self.ifs.is_recurrent() => map,
                 _ => maps,
             };
@@ -250,8 +300,6 @@ impl<'s> Compiler<'s> {
     /// What stands in a place, the whole or inside a map of a branch: images under some maps, and the
     /// condensation sets.
     fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Production {
-        let sets = self.ifs.condensation().len();
-        let drawn_as_first = self.ifs.initial().is_none();
         let mut instances = Vec::new();
         // What stands inside the outermost map belongs to its branch.
         let branch = |map: usize| match place {
@@ -265,15 +313,15 @@ impl<'s> Compiler<'s> {
             instance.joined = self.chained && number > 0;
             instances.push(instance);
         }
-        let own = if drawn_as_first { sets.min(1) } else { sets };
-        for set in 0..own {
-            let object = self.condensed(place, set);
+        let with_first = self.drawn_with_first();
+        for set in (0..self.sets.len()).filter(|set| !with_first.contains(set)) {
+            let object = self.drawn(place, set);
             instances.push(instance(object, &DAffine2::IDENTITY, instances.len()));
         }
-        // The others stand inside the maps already when what is drawn as the first one does.
-        for set in own..sets {
+        // These stand inside the maps already when what is drawn as the first one does.
+        for outline in with_first {
             for &map in maps {
-                let object = self.condensed(Some((branch(map), map)), set);
+                let object = self.drawn(Some((branch(map), map)), outline);
                 let affine = self.ifs.maps()[map].affine;
                 instances.push(instance(object, &affine, instances.len()));
             }

@@ -51,7 +51,8 @@ impl Graph {
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
-                let is_told = boxes.len() < most;
+                // Where one takes too much to be told, so do the others.
+                let is_told = boxes.len() < most && boxes.iter().all(Option::is_some);
                 boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
         }

@@ -189,6 +189,14 @@ impl Ifs {
         self.definition.initial.as_ref()
     }
 
+    /// About how many instances its graph has: of every map inside every map, and of all outlines there.
+    pub(crate) fn size(&self) -> usize {
+        let sets = self.condensation().iter().map(|set| &set.shape);
+        let outlines = sets.chain(self.initial()).map(Shape::count).sum::<usize>();
+        let maps = self.maps().len();
+        maps.saturating_mul(maps).saturating_mul(1 + outlines)
+    }
+
     /// What maps do that are applied one after the other, the first of the list first.
     ///
     /// # Panics

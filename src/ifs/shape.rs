@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use super::Moments;
 use super::moments::square;
 use crate::expression::degrees;
@@ -11,6 +13,8 @@ pub enum Shape {
     Point(DVec2),
     /// A line if it is open, and what it encloses if it is closed.
     Outline(BaseElement),
+    /// Several of them: an approximant of another fractal. Never none.
+    Union(Arc<[BaseElement]>),
 }
 
 /// A curve is measured in so many parts.
@@ -65,7 +69,8 @@ impl Shape {
     }
 
     /// Mean and covariance of the uniform distribution: along an open outline by length, within a
-    /// closed one by area. `None` if something is not finite or a closed outline has no area.
+    /// closed one by area; in a union by area where all are closed, else by length, to which closed ones
+    /// add their circumference. `None` if something is not finite or a closed outline has no area.
     ///
     /// Exact to rounding for the outline as it is, but for lengths of curves, where some 9 digits are
     /// right unless they have sharp bends. A closed outline must not cross itself, else parts count as often as it turns
@@ -74,41 +79,124 @@ impl Shape {
     pub fn moments(&self) -> Option<Moments> {
         match self {
             Self::Point(point) => point.is_finite().then(|| Moments::point(*point)),
-            Self::Outline(outline) => moments(outline),
+            Self::Outline(outline) => Some(Measured::of(outline)?.moments),
+            Self::Union(outlines) => {
+                let measured: Vec<_> = outlines.iter().map(Measured::of).collect();
+                let measured: Vec<_> = measured.into_iter().collect::<Option<_>>()?;
+                union(&measured)
+            }
         }
+    }
+
+    /// The number of outlines, or points.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Self::Union(outlines) => outlines.len(),
+            Self::Point(_) | Self::Outline(_) => 1,
+        }
+    }
+
+    /// The outlines of a union, each with its share of the uniform distribution on it: by area where
+    /// all are closed, else by length, which is the circumference of closed ones; equal shares of
+    /// points. Any other shape has no parts.
+    pub(crate) fn shares(&self) -> Vec<(f64, &BaseElement)> {
+        let Self::Union(outlines) = self else {
+            return Vec::new();
+        };
+        let measured: Option<Vec<_>> = outlines.iter().map(Measured::of).collect();
+        let shares = measured.map(|measured| shares(&measured));
+        shares
+            .unwrap_or_default()
+            .into_iter()
+            .zip(outlines.iter())
+            .collect()
     }
 }
 
-fn moments(outline: &BaseElement) -> Option<Moments> {
-    let (mut length, mut around) = (Sums::NONE, Sums::NONE);
-    let mut from = outline.start();
-    for piece in outline.pieces() {
-        let parts = if matches!(piece, Piece::Line(_)) {
-            1
-        } else {
-            PARTS
-        };
-        let share = 1.0 / f64::from(parts);
-        for part in 0..parts {
-            for (node, weight) in GAUSS {
-                let (point, velocity) = at(from, piece, (f64::from(part) + node) * share);
-                // From the start, lest distant shapes lose digits.
-                let point = point - outline.start();
-                length.add(point, weight * share * velocity.length());
-                around.add_around(point, weight * share * velocity);
+/// How large an outline is, and the moments of the uniform distribution on it.
+struct Measured {
+    length: f64,
+    /// What a closed outline encloses.
+    area: Option<f64>,
+    moments: Moments,
+}
+
+impl Measured {
+    /// `None` if something is not finite, or a closed outline has no area.
+    fn of(outline: &BaseElement) -> Option<Self> {
+        let (mut length, mut around) = (Sums::NONE, Sums::NONE);
+        let mut from = outline.start();
+        for piece in outline.pieces() {
+            let parts = if matches!(piece, Piece::Line(_)) {
+                1
+            } else {
+                PARTS
+            };
+            let share = 1.0 / f64::from(parts);
+            for part in 0..parts {
+                for (node, weight) in GAUSS {
+                    let (point, velocity) = at(from, piece, (f64::from(part) + node) * share);
+                    // From the start, lest distant shapes lose digits.
+                    let point = point - outline.start();
+                    length.add(point, weight * share * velocity.length());
+                    around.add_around(point, weight * share * velocity);
+                }
             }
+            from = piece.end();
         }
-        from = piece.end();
+        let has_area = around.total.abs() > 1e-14 * length.total * length.total;
+        if outline.is_closed() && !has_area {
+            return None;
+        }
+        let sums = if outline.is_closed() {
+            &around
+        } else {
+            &length
+        };
+        let mean = sums.first / sums.total;
+        let covariance = sums.second * (1.0 / sums.total) - square(mean);
+        let mean = mean + outline.start();
+        (mean.is_finite() && covariance.is_finite()).then_some(Self {
+            length: length.total,
+            area: outline.is_closed().then_some(around.total.abs()),
+            moments: Moments { mean, covariance },
+        })
     }
-    let has_area = around.total.abs() > 1e-14 * length.total * length.total;
-    if outline.is_closed() && !has_area {
-        return None;
+
+    /// Whether it stands for a point: is the shortest line that there is.
+    fn is_point(&self) -> bool {
+        self.length <= 1e-15 * (1.0 + self.moments.mean.abs().max_element())
     }
-    let sums = if outline.is_closed() { around } else { length };
-    let mean = sums.first / sums.total;
-    let covariance = sums.second * (1.0 / sums.total) - square(mean);
-    let mean = mean + outline.start();
-    (mean.is_finite() && covariance.is_finite()).then_some(Moments { mean, covariance })
+}
+
+/// As [`Shape::shares`].
+fn shares(measured: &[Measured]) -> Vec<f64> {
+    if measured.iter().all(Measured::is_point) {
+        return vec![1.0; measured.len()];
+    }
+    let areas: Option<Vec<f64>> = measured.iter().map(|outline| outline.area).collect();
+    areas.unwrap_or_else(|| measured.iter().map(|outline| outline.length).collect())
+}
+
+/// The moments of a mixture.
+fn union(measured: &[Measured]) -> Option<Moments> {
+    let shares = shares(measured);
+    let total: f64 = shares.iter().sum();
+    let mixed = || shares.iter().map(|share| share / total).zip(measured);
+    let mean = mixed()
+        .map(|(share, outline)| share * outline.moments.mean)
+        .sum::<DVec2>();
+    let spread = mixed().fold(DMat2::ZERO, |sum, (share, outline)| {
+        let Moments {
+            mean: own,
+            covariance,
+        } = outline.moments;
+        sum + (covariance + square(own - mean)) * share
+    });
+    (mean.is_finite() && spread.is_finite()).then_some(Moments {
+        mean,
+        covariance: spread,
+    })
 }
 
 /// Point and velocity of a piece at the time `t` from 0 to 1.

@@ -51,13 +51,14 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     let Some(edges) = edges else {
         return Similarity::none("there is no limit set: seeds are placed as the initiator");
     };
-    if !graph.contracts() {
-        return Similarity::none("there is no limit set: a generator does not shrink");
-    }
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
     let parts = parts(graph.behaviours().count(), &edges);
+    // What ends need not shrink.
     if parts.is_empty() {
         return Similarity::none("nothing stays fertile");
+    }
+    if !graph.contracts() {
+        return Similarity::none("there is no limit set: what is replaced does not shrink");
     }
     let parts = parts.into_iter().map(Part::contracted);
     let value = parts.map(|part| part.dimension()).fold(0.0, f64::max);

@@ -25,7 +25,7 @@ impl<K> Resolver<K> {
         }
     }
 
-    fn steps(&mut self, number: &Number) -> Option<u32> {
+    pub(super) fn steps(&mut self, number: &Number) -> Option<u32> {
         let value = self.constant(number)?;
         let whole = whole_number(value, MOST_STEPS);
         if whole.is_none() {

@@ -1,17 +1,17 @@
 //! Iterated function systems.
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
-use crate::document::{
-    EdgeDocument, IfsDocument, LinearDocument, MapDocument, MapsDocument, Written,
-};
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
 use crate::heading::Heading;
 use crate::ifs::{
     Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, Shape, System, Verdict,
-    Weighted, about, axes, complex, complex_conjugate, hull, toward,
+    Weighted, hull, toward,
 };
 
 use super::Resolver;
+
+/// A system has no more instances of sets and maps inside maps.
+const MOST_INSTANCES: usize = 2_000_000;
 
 /// What is known while a system is resolved: nothing but what is known of any file.
 #[derive(Default)]
@@ -80,6 +80,14 @@ impl Resolver<OfIfs> {
                 return None;
             }
         };
+        if ifs.size() > MOST_INSTANCES {
+            let message = "so many sets under so many maps are too much";
+            let hint = format!(
+                "of all sets and maps inside all maps there are no more than {MOST_INSTANCES}"
+            );
+            self.error_with_hint(&first_line(&document.heading.place), message, hint);
+            return None;
+        }
         let contraction = ifs.contraction();
         self.check_contraction(document, &ifs, &contraction)?;
         Some(System {
@@ -116,50 +124,16 @@ impl Resolver<OfIfs> {
     }
 
     fn map(&mut self, document: &MapDocument) -> Option<Map> {
-        let linear = document.linear.as_ref().and_then(|it| self.linear(it));
-        let shift = document.shift.as_ref().map(|it| self.constant_point(it));
-        let fixed = document.fixed.as_ref().map(|it| self.constant_point(it));
+        let affine = self.affine(document);
         let weight = document.weight.as_ref().map(|it| self.constant(it));
-        let linear = linear?;
-        let affine = match (shift, fixed) {
-            (_, Some(fixed)) => about(linear, fixed?),
-            (Some(shift), None) => DAffine2::from_mat2_translation(linear, shift?),
-            (None, None) => DAffine2::from_mat2_translation(linear, DVec2::ZERO),
-        };
         Some(Map {
             name: document.name.as_ref().map(|name| name.value.clone()),
-            affine,
+            affine: affine?,
             weight: match weight {
                 None => None,
                 Some(weight) => Some(weight?),
             },
         })
-    }
-
-    fn linear(&mut self, document: &LinearDocument) -> Option<DMat2> {
-        match document {
-            LinearDocument::Matrix([first, second]) => {
-                let (first, second) = (self.constant_point(first), self.constant_point(second));
-                // Rows are written, columns are kept.
-                Some(DMat2::from_cols(first?, second?).transpose())
-            }
-            LinearDocument::Axes { scale, rotate } => {
-                let scale = self.numbers(scale);
-                let rotate = match rotate {
-                    Some(rotate) => self.numbers(rotate),
-                    None => Some([0.0; 2]),
-                };
-                Some(axes(scale?.into(), rotate?.into()))
-            }
-            LinearDocument::Complex { times, conjugate } => {
-                let map = if *conjugate {
-                    complex_conjugate
-                } else {
-                    complex
-                };
-                Some(map(self.constant_point(times)?, DVec2::ZERO).matrix2)
-            }
-        }
     }
 
     fn edge(&mut self, edge: &EdgeDocument, names: &[Option<&str>]) -> Option<Edge> {

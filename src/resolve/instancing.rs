@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::diagnostic::{Diagnostic, Place, did_you_mean, listed};
 use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, Number, ObjectDocument,
-    TransformDocument, UnionDocument,
+    ShapeDocument, TransformDocument, UnionDocument,
 };
 use crate::expression::{Program, Scope};
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -122,7 +122,7 @@ impl Resolver<OfInstancing> {
         heading: Heading,
     ) -> Option<Instancing> {
         self.kind.constants = Arc::new(self.constants.clone());
-        let initial = document.initial.as_ref().map(|set| self.set(set));
+        let initial = document.initial.as_ref().map(|set| self.initial(set));
         for object in &document.objects {
             self.define(object);
         }
@@ -179,6 +179,23 @@ impl Resolver<OfInstancing> {
         }
         self.check_loops(document, &structure)?;
         Some(structure)
+    }
+
+    /// What stands for objects that have not been replaced: a single outline.
+    fn initial(&mut self, document: &ShapeDocument) -> Option<Shape> {
+        match self.set(document)? {
+            Shape::Union(outlines) if outlines.len() > 1 => {
+                let message = format!(
+                    "an initial set is one line or polygon here, and this fractal draws {}",
+                    outlines.len()
+                );
+                let hint = "draw it as an object, or take fewer steps";
+                self.error_with_hint(&document.place, message, hint);
+                None
+            }
+            Shape::Union(outlines) => outlines.first().cloned().map(Shape::Outline),
+            shape => Some(shape),
+        }
     }
 
     /// Takes in an object as written.
@@ -340,19 +357,28 @@ impl Resolver<OfInstancing> {
                 self.error_with_hint(&prepared.place, message, hint);
                 continue;
             }
-            let master = match &prepared.master {
-                Some(PreparedMaster::Shape(shape)) => Some(Master::Shape(shape.clone())),
+            let masters = match &prepared.master {
+                Some(PreparedMaster::Shape(Shape::Union(outlines))) => {
+                    let outlines = outlines.iter().cloned();
+                    outlines
+                        .map(|one| Master::Shape(Shape::Outline(one)))
+                        .collect()
+                }
+                Some(PreparedMaster::Shape(shape)) => vec![Master::Shape(shape.clone())],
                 Some(PreparedMaster::Object { name, level, place }) => {
                     let level = level.as_ref().map(|level| level.eval(&slots));
-                    self.object(name, level, place).map(Master::Object)
+                    let object = self.object(name, level, place).map(Master::Object);
+                    object.into_iter().collect()
                 }
-                None => None,
+                None => Vec::new(),
             };
-            self.kind.size += match &master {
-                Some(Master::Shape(Shape::Outline(outline))) => 1 + outline.pieces().len(),
-                _ => 1,
-            };
-            instances.extend(master.map(|master| Instance { map, master, tint }));
+            for master in masters {
+                self.kind.size += match &master {
+                    Master::Shape(Shape::Outline(outline)) => 1 + outline.pieces().len(),
+                    _ => 1,
+                };
+                instances.push(Instance { map, master, tint });
+            }
         }
         instances
     }

@@ -32,9 +32,10 @@ impl Resolver<OfIfs> {
         };
         let maps = scales.and_then(|scales| interpolate(&points, &scales));
         let maps = maps.map_err(|error| self.refuse_interpolation(document, &error));
+        let maps = maps.ok()?;
         let ends = [points[0], points[points.len() - 1]];
         Some(Maps {
-            maps: maps.ok()?,
+            maps,
             initial: Shape::polyline(&ends),
             chained: true,
         })

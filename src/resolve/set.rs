@@ -50,6 +50,7 @@ impl<K> Resolver<K> {
                 }
                 Shape::ellipse(centre?, values.into(), angle?)
             }
+            FormDocument::Fractal(fractal) => Some(self.fractal(fractal)?),
         };
         // A closed shape without an area is told by its moments.
         let shape = shape.filter(|shape| shape.moments().is_some());

@@ -241,3 +241,17 @@ fn a_walk_that_finds_nothing_can_be_cancelled() {
     };
     assert_eq!(extent(&graph, &growth), Err(WalkError::Cancelled));
 }
+
+#[test]
+fn fractals_of_fractals_are_counted() {
+    let text = |steps: u32, count: usize| {
+        let set = format!("  - {{fractal: koch, steps: {steps}}}\n");
+        let sets = set.repeat(count);
+        format!("kind: ifs\nmaps: [{{scale: 1/2}}]\ncondensation:\n{sets}")
+    };
+    accepted(&text(1, 1000), &CHECK);
+    refused(text(1, 1001).as_bytes(), "more than 1000 others");
+    accepted(&text(6, 24), &CHECK);
+    refused(text(6, 25).as_bytes(), "more than 100000 lines");
+    refused(text(1_000_000, 1).as_bytes(), "more than 100000 lines");
+}

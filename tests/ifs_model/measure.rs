@@ -214,6 +214,7 @@ fn representatives(shape: &Shape) -> [DVec2; 2] {
             let share = 0.5 - 1.0 / 12f64.sqrt();
             [from.lerp(to, share), to.lerp(from, share)]
         }
+        Shape::Union(_) => unreachable!("none is made here"),
     }
 }
 
@@ -271,6 +272,7 @@ proptest! {
                 Shape::Outline(line) => Shape::polyline(
                     &[line.start(), line.pieces()[0].end()].map(|p| coordinates.transform_point2(p)),
                 ).unwrap(),
+                Shape::Union(_) => unreachable!("none is made here"),
             },
             weight: Some(weight),
         });

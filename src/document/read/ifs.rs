@@ -98,61 +98,79 @@ const IFS_ALONE: [Member; 9] = [
 
 const MAP: Shape = Shape {
     what: "a map",
-    keys: &[&[
-        key(
-            "matrix",
-            Form::List(&Form::Point, 2, Some(2)),
-            "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].",
-        ),
-        key(
-            "scale",
-            Form::Either(&[Form::Number, Form::Point]),
-            "A factor, or one along x and one along y.",
-        ),
-        key(
-            "rotate",
-            Form::Either(&[Form::Number, Form::Point]),
-            "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.",
-        ),
-        key(
-            "times",
-            Form::Point,
-            "A complex factor s, as [real part, imaginary part]: z goes to s z.",
-        ),
-        key(
-            "conjugate",
-            Form::Flag(false),
-            "With `times`: z goes to s conj z.",
-        ),
-        key("shift", Form::Point, "What is added last: [x, y]."),
-        key(
-            "fixed",
-            Form::Point,
-            "In place of `shift`: the point that stays where it is.",
-        ),
-        key(
+    keys: &[
+        &PLACING,
+        &[key(
             "weight",
             Form::Positive,
             "How often random iteration picks the map, relative to the others: above 0, for all maps \
              or for none.",
-        ),
-    ]],
-    ways: &[
-        Way {
-            needs: &["matrix"],
-            excludes: &["scale", "rotate", "times", "conjugate"],
-        },
-        Way {
-            needs: &["scale"],
-            excludes: &["matrix", "times", "conjugate"],
-        },
-        Way {
-            needs: &["times"],
-            excludes: &["matrix", "scale", "rotate"],
-        },
+        )],
     ],
-    hint: "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}",
+    ways: &WAYS_TO_PLACE,
+    hint: MAP_HINT,
 };
+
+/// A map that nothing is to be picked by.
+pub(super) const PLACE: Shape = Shape {
+    what: "a map of a set",
+    keys: &[&PLACING],
+    ways: &WAYS_TO_PLACE,
+    hint: MAP_HINT,
+};
+
+const MAP_HINT: &str =
+    "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}";
+
+/// The keys that say what a map does.
+const PLACING: [Member; 7] = [
+    key(
+        "matrix",
+        Form::List(&Form::Point, 2, Some(2)),
+        "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].",
+    ),
+    key(
+        "scale",
+        Form::Either(&[Form::Number, Form::Point]),
+        "A factor, or one along x and one along y.",
+    ),
+    key(
+        "rotate",
+        Form::Either(&[Form::Number, Form::Point]),
+        "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.",
+    ),
+    key(
+        "times",
+        Form::Point,
+        "A complex factor s, as [real part, imaginary part]: z goes to s z.",
+    ),
+    key(
+        "conjugate",
+        Form::Flag(false),
+        "With `times`: z goes to s conj z.",
+    ),
+    key("shift", Form::Point, "What is added last: [x, y]."),
+    key(
+        "fixed",
+        Form::Point,
+        "In place of `shift`: the point that stays where it is.",
+    ),
+];
+
+const WAYS_TO_PLACE: [Way; 3] = [
+    Way {
+        needs: &["matrix"],
+        excludes: &["scale", "rotate", "times", "conjugate"],
+    },
+    Way {
+        needs: &["scale"],
+        excludes: &["matrix", "times", "conjugate"],
+    },
+    Way {
+        needs: &["times"],
+        excludes: &["matrix", "scale", "rotate"],
+    },
+];
 
 const VERTICES: Shape = Shape {
     what: "vertices",
@@ -177,7 +195,8 @@ const INTERPOLATION: Shape = Shape {
     keys: &[&[
         needed_key(
             "points",
-            Form::Either(&[Form::List(&Form::Point, 3, None), Form::Text]),
+            // The name of a file is no number alone.
+            Form::Either(&[Form::List(&Form::Point, 3, None), Form::Expression]),
             "The points that the curve runs through, from left to right; or the name of a file \
              beside this one with a column of x and one of y.",
         ),
@@ -293,21 +312,33 @@ fn read_listed(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
 }
 
 fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> MapDocument {
-    let mut map = MapDocument {
-        name,
-        linear: None,
-        shift: None,
-        fixed: None,
-        weight: None,
-        place: node.place.clone(),
-    };
     let Some(fields) = reader.fields(node, &MAP) else {
-        return map;
+        return MapDocument {
+            name,
+            linear: None,
+            shift: None,
+            fixed: None,
+            weight: None,
+            place: node.place.clone(),
+        };
     };
-    map.linear = read_linear(reader, &fields);
-    map.shift = reader.optional_point(fields.take("shift"));
-    map.fixed = reader.optional_point(fields.take("fixed"));
-    map.weight = reader.optional_number(fields.take("weight"));
+    MapDocument {
+        name,
+        weight: reader.optional_number(fields.take("weight")),
+        ..read_placing(reader, &fields)
+    }
+}
+
+/// What a map does, of which name and weight are said elsewhere.
+pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocument {
+    let map = MapDocument {
+        name: None,
+        linear: read_linear(reader, fields),
+        shift: reader.optional_point(fields.take("shift")),
+        fixed: reader.optional_point(fields.take("fixed")),
+        weight: None,
+        place: fields.place.clone(),
+    };
     if map.shift.is_some() && map.fixed.is_some() {
         let message = "`fixed` stands in place of `shift`";
         let hint = "write one of them";
@@ -324,18 +355,18 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     let conjugate = reader.flag(fields, "conjugate");
     let ways = [matrix.is_some(), scale.is_some(), times.is_some()];
     let way = ways.iter().position(|there| *there);
-    let Some(way) = way.and_then(|way| MAP.ways.get(way)) else {
+    let Some(way) = way.and_then(|way| WAYS_TO_PLACE.get(way)) else {
         let message = match rotate {
             Some(_) => "this map turns, but does not say by how much it shrinks",
             None => "this map does not say what it does",
         };
-        reader.error_with_hint(&first_line(fields.place), message, MAP.hint);
+        reader.error_with_hint(&first_line(fields.place), message, MAP_HINT);
         return None;
     };
     for other in way.excludes {
         if fields.take(other).is_some() {
             let message = format!("`{other}` does not go with `{}`", way.needs[0]);
-            reader.error_with_hint(fields.place_of(other), message, MAP.hint);
+            reader.error_with_hint(fields.place_of(other), message, MAP_HINT);
         }
     }
     match (matrix, scale, times) {

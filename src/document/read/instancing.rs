@@ -17,7 +17,7 @@ use crate::model::Kind;
 use super::first_line;
 use super::heading::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
-use super::set::{FORMS, SET, read_set};
+use super::set::{FORMS, OF_FRACTAL, SET, read_set};
 use super::transform::{TRANSFORMS, read_transforms};
 
 /// The keys of a structure.
@@ -102,6 +102,7 @@ const INSTANCE: Shape = Shape {
             ),
         ],
         &FORMS,
+        &OF_FRACTAL,
         &TRANSFORMS,
     ],
     ways: &[],
@@ -282,6 +283,12 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
 /// What an instance is one of: an object, or the shape that one of its keys says.
 fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocument> {
     let shape = FORMS.iter().find(|form| fields.take(form.name).is_some());
+    for key in OF_FRACTAL.iter().map(|key| key.name) {
+        if shape.is_none() && fields.take(key).is_some() {
+            let message = format!("`{key}` goes with `fractal`, and there is none");
+            reader.error_with_hint(fields.place_of(key), message, INSTANCE.hint);
+        }
+    }
     match (fields.take("object"), shape) {
         (Some(node), None) => read_named(reader, node),
         (Some(_), Some(shape)) => {

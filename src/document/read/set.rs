@@ -1,17 +1,20 @@
 //! Sets of the plane: condensation sets and initial sets.
 
-use crate::document::ifs::{EllipseDocument, FormDocument, ShapeDocument};
+use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, ShapeDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
 use crate::document::{Number, Point};
+use crate::model::Kind;
+use crate::resolve::MOST_STEPS;
 
-use super::first_line;
+use super::ifs::{PLACE, read_placing};
+use super::{first_line, read};
 
 /// The keys of an initial set.
 pub(super) const SET: Shape = Shape {
     what: "a set",
-    keys: &[&FORMS],
+    keys: &[&FORMS, &OF_FRACTAL],
     ways: &WAYS,
     hint: HINT,
 };
@@ -21,6 +24,7 @@ pub(super) const CONDENSATION: Shape = Shape {
     what: "a condensation set",
     keys: &[
         &FORMS,
+        &OF_FRACTAL,
         &[key(
             "weight",
             Form::Positive,
@@ -36,7 +40,7 @@ const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
 /// The keys that say what a set is.
-pub(super) const FORMS: [Member; 6] = [
+pub(super) const FORMS: [Member; 7] = [
     key("point", Form::Point, "A point: a dot as wide as a line."),
     key(
         "segment",
@@ -55,36 +59,76 @@ pub(super) const FORMS: [Member; 6] = [
     ),
     key("disk", Form::Mapping(&DISK), "A disk."),
     key("ellipse", Form::Mapping(&ELLIPSE), "An ellipse."),
+    key(
+        "fractal",
+        Form::Grown,
+        "Another fractal, as it is after some steps: the name of its file, or what that says.",
+    ),
+];
+
+/// The keys that go with `fractal`.
+pub(super) const OF_FRACTAL: [Member; 3] = [
+    key(
+        "steps",
+        Form::Whole(0, Some(MOST_STEPS)),
+        "The number of steps of the fractal; what its file says if left out.",
+    ),
+    key(
+        "seed",
+        Form::Whole(0, None),
+        "What the random draws of the fractal depend on; 0 if left out.",
+    ),
+    key(
+        "map",
+        Form::Mapping(&PLACE),
+        "Where the fractal stands, if not where its file has it.",
+    ),
 ];
 
 const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
     Way { needs, excludes }
 }
 
-const WAYS: [Way; 6] = [
+const WAYS: [Way; 7] = [
     alone(
         &["point"],
-        &["segment", "polyline", "polygon", "disk", "ellipse"],
+        &[
+            "segment", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+        ],
     ),
     alone(
         &["segment"],
-        &["point", "polyline", "polygon", "disk", "ellipse"],
+        &[
+            "point", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+        ],
     ),
     alone(
         &["polyline"],
-        &["point", "segment", "polygon", "disk", "ellipse"],
+        &[
+            "point", "segment", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+        ],
     ),
     alone(
         &["polygon"],
-        &["point", "segment", "polyline", "disk", "ellipse"],
+        &[
+            "point", "segment", "polyline", "disk", "ellipse", "fractal", "steps", "seed", "map",
+        ],
     ),
     alone(
         &["disk"],
-        &["point", "segment", "polyline", "polygon", "ellipse"],
+        &[
+            "point", "segment", "polyline", "polygon", "ellipse", "fractal", "steps", "seed", "map",
+        ],
     ),
     alone(
         &["ellipse"],
-        &["point", "segment", "polyline", "polygon", "disk"],
+        &[
+            "point", "segment", "polyline", "polygon", "disk", "fractal", "steps", "seed", "map",
+        ],
+    ),
+    alone(
+        &["fractal"],
+        &["point", "segment", "polyline", "polygon", "disk", "ellipse"],
     ),
 ];
 
@@ -132,10 +176,17 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
         let message = format!("this set is a {name} already");
         reader.error_with_hint(fields.place_of(other), message, "write two sets");
     }
+    for key in OF_FRACTAL.iter().map(|key| key.name) {
+        if name != "fractal" && fields.take(key).is_some() {
+            let message = format!("`{key}` goes with `fractal`, and this set is a {name}");
+            reader.error_with_hint(fields.place_of(key), message, HINT);
+        }
+    }
     let form = match name {
         "point" => Some(FormDocument::Point(reader.point(node))),
         "disk" => read_disk(reader, node),
         "ellipse" => read_ellipse(reader, node),
+        "fractal" => read_fractal(reader, fields, node),
         _ => read_outline(reader, name, node),
     };
     ShapeDocument { form, place }
@@ -190,6 +241,37 @@ fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
         centre: read_centre(reader, &fields),
         axes,
         rotate: reader.optional_number(fields.take("rotate")),
+    })))
+}
+
+/// A fractal whose file has been put in the place of its name.
+fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option<FormDocument> {
+    let steps = reader.optional_number(fields.take("steps"));
+    let seed = reader.optional_number(fields.take("seed"));
+    let map = fields.take("map").and_then(|node| {
+        let fields = reader.fields(node, &PLACE)?;
+        Some(read_placing(reader, &fields))
+    });
+    match node.value {
+        Value::Mapping(_) => {}
+        // What is wrong with the file has been said.
+        Value::Text(_) => return None,
+        _ => {
+            reader.mismatch(node, "the name of a fractal", "{fractal: koch, steps: 3}");
+            return None;
+        }
+    }
+    let kind = match node.get("kind").map(|kind| &kind.value) {
+        Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
+        _ => Kind::default(),
+    };
+    let file = read(kind, node, true, &mut reader.diagnostics)?;
+    Some(FormDocument::Fractal(Box::new(FractalDocument {
+        file,
+        steps,
+        seed,
+        map,
+        place: fields.place_of("fractal").clone(),
     })))
 }
 

@@ -3,19 +3,18 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::num::NonZero;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::{Graph, base_element, filling};
 use crate::instancing::{Instance, Instancing, Master};
-use crate::render::{Drawing, Paint, RenderError, write_drawing};
+use crate::render::{Paint, RenderError};
 
 use super::super::text::Font;
 use super::block::{Block, Item, Outline};
 use super::ink;
 use super::lines::{flattened, outline};
 use super::page::{SMALL, WORDS, lay_out, plural};
-use super::{Figure, Options};
+use super::{Figure, Options, onto_panel};
 
 /// The sides of panels in pixels, at most.
 const SCENE: f64 = 300.0;
@@ -37,9 +36,6 @@ const MOST_CHARACTERS: usize = 16;
 
 /// What lies farther out is not drawn.
 const FARTHEST: f64 = 1e100;
-
-/// What lies around a panel.
-const PAD: f64 = 8.0;
 
 /// Draws a structure and writes the figure; tells its width and height in pixels.
 ///
@@ -84,15 +80,7 @@ pub fn write_structure(
         |_| Block::default(),
         &notes,
     );
-    let figure = Figure {
-        page,
-        size: options.size,
-        background: options.background,
-    };
-    // A figure is small.
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&figure, options.format, &options.labels, one, out)?;
-    Ok(figure.size())
+    Figure::write(page, options, out)
 }
 
 /// The objects that have panels: of those that differ by their level the first few.
@@ -158,11 +146,8 @@ impl<'a> Plan<'a> {
         let mut unnamed: Vec<String> = Vec::new();
         if !bounds.is_empty() {
             let size = bounds.size();
-            let scale = side / size.max_element().max(1e-300);
-            let map = DAffine2::from_translation(DVec2::splat(PAD))
-                * DAffine2::from_scale(DVec2::new(scale, -scale))
-                * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
-            block.size = size * scale + 2.0 * PAD;
+            let (map, size) = onto_panel(&bounds, side / size.max_element().max(1e-300));
+            block.size = size;
             for drawn in &drawn {
                 let line = drawn.outline.transformed(&map);
                 block

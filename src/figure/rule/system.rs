@@ -2,12 +2,11 @@
 //! with their numbers, and the condensation sets.
 
 use std::io::Write;
-use std::num::NonZero;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
-use crate::render::{Drawing, RenderError, write_drawing};
+use crate::render::RenderError;
 use crate::rule::{BaseElement, Piece};
 
 use super::super::text::Font;
@@ -15,7 +14,7 @@ use super::block::{Block, Item, Outline};
 use super::ink::{self, Kind};
 use super::lines::outline;
 use super::page::{WORDS, lay_out, plural};
-use super::{Figure, Options};
+use super::{Figure, Options, onto_panel};
 
 /// The sides of panels in pixels, at most.
 const MOST: DVec2 = DVec2::new(380.0, 380.0);
@@ -57,15 +56,7 @@ pub fn write_system(
         |_| Block::default(),
         &edges(ifs),
     );
-    let figure = Figure {
-        page,
-        size: options.size,
-        background: options.background,
-    };
-    // A figure is small.
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&figure, options.format, &options.labels, one, out)?;
-    Ok(figure.size())
+    Figure::write(page, options, out)
 }
 
 /// What of a recurrent system's digraph is said in words.
@@ -90,71 +81,80 @@ fn edges(ifs: &Ifs) -> Vec<String> {
 /// What is drawn, and to what scale.
 struct Plan<'a> {
     ifs: &'a Ifs,
-    graph: &'a Graph,
-    /// What the images are shown of: the initial set, or a box around it if that is a line.
+    /// The outlines of the initial set.
+    initial: Vec<&'a BaseElement>,
+    /// Those of the condensation sets.
+    sets: &'a [BaseElement],
+    /// What the images are shown of: the initial set, or a box around it if that is a line, or several.
     shown: BaseElement,
     bounds: Bounds,
 }
 
 impl<'a> Plan<'a> {
     fn new(ifs: &'a Ifs, graph: &'a Graph) -> Self {
-        let initial = &graph.base_elements()[0];
+        let (first, others) = (&graph.base_elements()[0], &graph.base_elements()[1..]);
+        let sets = ifs.condensation().iter().map(|set| set.shape.count()).sum();
+        let (sets, others) = others.split_at(sets);
+        let initial: Vec<_> = std::iter::once(first).chain(others).collect();
         let mut around = graph.limit_bounds().unwrap_or(Bounds::EMPTY);
-        initial.add_to(&mut around, &DAffine2::IDENTITY, 0.0);
+        for outline in &initial {
+            outline.add_to(&mut around, &DAffine2::IDENTITY, 0.0);
+        }
         let size = around.size();
         let flat = size.min_element() < 0.02 * size.max_element();
-        let shown = if initial.is_closed() || flat {
-            initial.clone()
+        let shown = if others.is_empty() && (first.is_closed() || flat) {
+            first.clone()
         } else {
-            boxed(&around).unwrap_or_else(|| initial.clone())
+            boxed(&around).unwrap_or_else(|| first.clone())
         };
         let mut bounds = Bounds::EMPTY;
         shown.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
         for map in ifs.maps() {
             shown.add_to(&mut bounds, &map.affine, 0.0);
         }
-        for set in &graph.base_elements()[1..] {
+        for set in sets {
             set.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
         }
         Self {
             ifs,
-            graph,
+            initial,
+            sets,
             shown,
             bounds,
         }
+    }
+
+    /// Whether a box is shown around the initial set.
+    fn is_boxed(&self) -> bool {
+        self.initial != [&self.shown]
     }
 
     /// The map from the plane to a panel, and the panel's size.
     fn panel(&self, share: f64) -> (DAffine2, DVec2) {
         let size = self.bounds.size();
         let scale = (MOST * share / size.max(DVec2::splat(1e-300))).min_element();
-        let pad = DVec2::splat(8.0);
-        let map = DAffine2::from_translation(pad)
-            * DAffine2::from_scale(DVec2::new(scale, -scale))
-            * DAffine2::from_translation(-DVec2::new(self.bounds.min().x, self.bounds.max().y));
-        (map, size * scale + 2.0 * pad)
+        onto_panel(&self.bounds, scale)
     }
 
     fn initial(&self) -> Block {
         let (map, size) = self.panel(SMALL);
-        let initial = &self.graph.base_elements()[0];
-        let drawn = outline(initial).transformed(&map);
         let mut items = Vec::new();
-        if self.shown != *initial {
+        if self.is_boxed() {
             let frame = outline(&self.shown).transformed(&map);
             items.push(Item::Path(vec![frame], ink::side(), None));
         }
-        items.push(Item::Path(
-            vec![drawn],
-            ink::base_element(initial.is_closed()),
-            None,
-        ));
+        for initial in &self.initial {
+            items.push(Item::Path(
+                vec![outline(initial).transformed(&map)],
+                ink::base_element(initial.is_closed()),
+                None,
+            ));
+        }
         Block { size, items }
     }
 
     fn images(&self, font: &Font) -> Block {
         let (map, size) = self.panel(1.0);
-        let initial = &self.graph.base_elements()[0];
         let whole = outline(&self.shown).transformed(&map);
         let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
         let images = |shape: &BaseElement| -> Vec<Outline> {
@@ -167,9 +167,9 @@ impl<'a> Plan<'a> {
             Kind::Fertile.outline(self.shown.is_closed()),
             None,
         ));
-        if self.shown != *initial {
+        if self.is_boxed() {
             items.push(Item::Path(
-                images(initial),
+                self.initial.iter().flat_map(|one| images(one)).collect(),
                 Kind::Fertile.element(true),
                 None,
             ));
@@ -191,7 +191,7 @@ impl<'a> Plan<'a> {
         let (map, size) = self.panel(SMALL);
         let whole = outline(&self.shown).transformed(&map);
         let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
-        for set in &self.graph.base_elements()[1..] {
+        for set in self.sets {
             let drawn = outline(set).transformed(&map);
             items.push(Item::Path(
                 vec![drawn],

@@ -13,6 +13,9 @@ use super::OfInstancing;
 /// Where more instances than these follow each other, it is not told whether they contract.
 const MOST_WAYS: usize = 1_000_000;
 
+/// So often is an instance looked at to tell whether loops shrink.
+const MOST_LOOKS: usize = 10_000_000;
+
 const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
 
 /// An instance that lies on a loop.
@@ -23,14 +26,13 @@ struct Edge {
 }
 
 impl Edge {
-    /// Whether the instance is smaller than what it stands in, whatever it is turned by.
-    fn shrinks(&self) -> bool {
-        const ROUNDING: f64 = 1e-12;
+    /// The most that the instance stretches anything.
+    fn stretch(&self) -> f64 {
         let frame = Frame {
             map: DAffine2::from_mat2(self.linear),
             direction: Direction::Normal,
         };
-        frame.stretch() < 1.0 - ROUNDING
+        frame.stretch()
     }
 }
 
@@ -42,7 +44,7 @@ impl Resolver<OfInstancing> {
         structure: &Instancing,
     ) -> Option<()> {
         let edges = edges(structure);
-        if edges.iter().all(Edge::shrinks) {
+        if shrink_by_stretch(&edges, structure.objects.len()) {
             return Some(());
         }
         let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
@@ -89,6 +91,28 @@ impl Resolver<OfInstancing> {
             }
         }
     }
+}
+
+/// Whether every loop shrinks by what its instances stretch at most: the largest products of stretches
+/// on all ways settle, as they do not where one grows on a way back to where it begins (Bellman 1958).
+fn shrink_by_stretch(edges: &[Edge], objects: usize) -> bool {
+    /// A loop of so many instances shrinks by this to their number, or more.
+    const LEAST: f64 = 1.0 - 1e-9;
+    let stretches = edges.iter().map(|edge| libm::log(edge.stretch() / LEAST));
+    let stretches: Vec<f64> = stretches.collect();
+    let mut largest = vec![0.0; objects];
+    let rounds = objects.min(MOST_LOOKS / edges.len().max(1));
+    (0..=rounds).any(|_| {
+        let mut has_settled = true;
+        for (edge, stretch) in edges.iter().zip(&stretches) {
+            let along = largest[edge.from] + stretch;
+            if along > largest[edge.to] {
+                largest[edge.to] = along;
+                has_settled = false;
+            }
+        }
+        has_settled
+    })
 }
 
 /// The instances of objects in objects that lead back.

@@ -1,0 +1,86 @@
+//! Sets of the plane.
+
+use crate::document::node::Value;
+
+use super::written::{Entries, sequence};
+use super::{Map, Number, Point};
+
+/// A condensation set, an initial set or a primitive.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Set(pub(super) Entries);
+
+impl Set {
+    fn new(key: &str, value: Value) -> Self {
+        Self(Entries::default().set(key, value))
+    }
+
+    fn points(key: &str, points: impl IntoIterator<Item = impl Into<Point>>) -> Self {
+        let points = points.into_iter().map(|point| point.into().0);
+        Self::new(key, sequence(points))
+    }
+
+    /// A point.
+    pub fn point(point: impl Into<Point>) -> Self {
+        Self::new("point", point.into().0)
+    }
+
+    /// A line from one point to another.
+    pub fn segment(from: impl Into<Point>, to: impl Into<Point>) -> Self {
+        Self::points("segment", [from.into(), to.into()])
+    }
+
+    /// A line through points.
+    pub fn polyline(points: impl IntoIterator<Item = impl Into<Point>>) -> Self {
+        Self::points("polyline", points)
+    }
+
+    /// What a line through points and back to the first encloses.
+    pub fn polygon(points: impl IntoIterator<Item = impl Into<Point>>) -> Self {
+        Self::points("polygon", points)
+    }
+
+    /// A disk.
+    pub fn disk(centre: impl Into<Point>, radius: impl Into<Number>) -> Self {
+        let disk = Entries::default().set("centre", centre.into().0);
+        Self::new("disk", disk.set("radius", radius.into().0).value())
+    }
+
+    /// An ellipse by its half axes, of which the first is turned by an angle in degrees,
+    /// counter-clockwise, from the x axis.
+    pub fn ellipse(
+        centre: impl Into<Point>,
+        half_axes: impl Into<Point>,
+        angle: impl Into<Number>,
+    ) -> Self {
+        let ellipse = Entries::default()
+            .set("centre", centre.into().0)
+            .set("axes", half_axes.into().0)
+            .set("rotate", angle.into().0);
+        Self::new("ellipse", ellipse.value())
+    }
+
+    /// Another fractal of the library, as it is after some steps.
+    pub fn fractal(name: impl Into<String>, steps: impl Into<Number>) -> Self {
+        Self(
+            Self::new("fractal", Value::Text(name.into()))
+                .0
+                .set("steps", steps.into().0),
+        )
+    }
+
+    /// What the random draws of a [fractal](Set::fractal) depend on.
+    pub fn seed(self, seed: impl Into<Number>) -> Self {
+        Self(self.0.set("seed", seed.into().0))
+    }
+
+    /// Where a [fractal](Set::fractal) stands.
+    pub fn placed(self, map: impl Into<Map>) -> Self {
+        Self(self.0.set("map", map.into().entries.value()))
+    }
+
+    /// How often random iteration draws a point anew from a condensation set.
+    pub fn weight(self, weight: impl Into<Number>) -> Self {
+        Self(self.0.set("weight", weight.into().0))
+    }
+}

@@ -1,0 +1,216 @@
+//! Structures of objects that instance each other.
+
+use std::sync::Arc;
+
+use crate::diagnostic::Diagnostics;
+use crate::document::Document;
+use crate::document::node::Value;
+use crate::heading::{Description, Parameter};
+use crate::instancing::Instancing;
+use crate::model::{Kind, Model};
+use crate::style::{Colour, Style, View};
+
+use super::heading::of_all_kinds;
+use super::written::{self, Entries, colour_text, sequence};
+use super::{Number, Point, Set, read, resolved};
+
+/// Transforms in the order in which they are done.
+#[derive(Clone, Debug, Default)]
+struct Transforms(Vec<Value>);
+
+impl Transforms {
+    fn with(mut self, key: &str, value: Value) -> Self {
+        self.0.push(Entries::default().set(key, value).value());
+        self
+    }
+
+    fn add_to(self, entries: Entries) -> Entries {
+        let list = (!self.0.is_empty()).then(|| sequence(self.0));
+        entries.set_some("transform", list)
+    }
+}
+
+/// The methods that transform.
+macro_rules! transforms {
+    () => {
+        fn transformed(self, key: &str, value: Value) -> Self {
+            Self {
+                transforms: self.transforms.with(key, value),
+                ..self
+            }
+        }
+
+        /// Then it is scaled about (0, 0) by a factor.
+        pub fn scale(self, factor: impl Into<Number>) -> Self {
+            self.transformed("scale", factor.into().0)
+        }
+
+        /// Then it is scaled along x and along y, each by its factor.
+        pub fn scales(self, factors: impl Into<Point>) -> Self {
+            self.transformed("scale", factors.into().0)
+        }
+
+        /// Then it is turned about (0, 0) by degrees, counter-clockwise.
+        pub fn rotate(self, angle: impl Into<Number>) -> Self {
+            self.transformed("rotate", angle.into().0)
+        }
+
+        /// Then it is shifted.
+        pub fn translate(self, shift: impl Into<Point>) -> Self {
+            self.transformed("translate", shift.into().0)
+        }
+
+        /// Then a matrix is applied, given by its rows.
+        pub fn matrix(self, rows: [impl Into<Point>; 2]) -> Self {
+            self.transformed("matrix", sequence(rows.map(|row| row.into().0)))
+        }
+    };
+}
+
+/// An instance of an object, or of a set.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Instance {
+    entries: Entries,
+    transforms: Transforms,
+}
+
+impl Instance {
+    /// An instance of an object by name, with its level if it has one: `A(n - 1)`.
+    pub fn of(object: impl Into<String>) -> Self {
+        Self {
+            entries: Entries::default().set("object", Value::Text(object.into())),
+            transforms: Transforms::default(),
+        }
+    }
+
+    transforms!();
+
+    /// Tints all that is in it with a colour; `alpha` says how much, from 0 to 1.
+    pub fn tint(self, colour: Colour, alpha: impl Into<Number>) -> Self {
+        let tint = Entries::default()
+            .set("color", colour_text(colour))
+            .set("alpha", alpha.into().0);
+        Self {
+            entries: self.entries.set("tint", tint.value()),
+            ..self
+        }
+    }
+}
+
+impl From<Set> for Instance {
+    fn from(set: Set) -> Self {
+        Self {
+            entries: set.0,
+            transforms: Transforms::default(),
+        }
+    }
+}
+
+/// An object: a union of instances.
+#[derive(Clone, Debug, Default)]
+#[must_use]
+pub struct Union {
+    instances: Vec<Value>,
+    transforms: Transforms,
+}
+
+impl Union {
+    /// A union without instances, to which some are added.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an instance.
+    pub fn with(mut self, instance: impl Into<Instance>) -> Self {
+        let Instance {
+            entries,
+            transforms,
+        } = instance.into();
+        self.instances.push(transforms.add_to(entries).value());
+        self
+    }
+
+    transforms!();
+
+    fn value(self) -> Value {
+        let union = Entries::default().set("union", sequence(self.instances));
+        self.transforms.add_to(union).value()
+    }
+}
+
+impl From<Instance> for Union {
+    fn from(instance: Instance) -> Self {
+        Self::new().with(instance)
+    }
+}
+
+/// Writes a structure of objects. What is said twice counts as said last, except that every object has a
+/// name, or a level, of its own.
+#[derive(Clone, Debug)]
+#[must_use = "a structure is made by `build` or `document`"]
+pub struct StructureBuilder {
+    entries: Entries,
+    parameters: Entries,
+    objects: Entries,
+}
+
+impl StructureBuilder {
+    /// A structure with a scene, and no objects yet.
+    pub fn new(scene: impl Into<Union>) -> Self {
+        let kind = Value::Text(Kind::Instancing.name().into());
+        Self {
+            entries: Entries::default()
+                .set("kind", kind)
+                .set("scene", scene.into().value()),
+            parameters: Entries::default(),
+            objects: Entries::default(),
+        }
+    }
+
+    fn set(self, key: &str, value: Value) -> Self {
+        Self {
+            entries: self.entries.set(key, value),
+            ..self
+        }
+    }
+
+    /// Adds an object: `A`, at all levels `A(n)`, or at a single one `A(0)`.
+    pub fn object(self, name: impl Into<String>, union: impl Into<Union>) -> Self {
+        Self {
+            objects: self.objects.add(name, union.into().value()),
+            ..self
+        }
+    }
+
+    /// What stands for objects that have not been replaced yet.
+    pub fn initial(self, set: Set) -> Self {
+        self.set("initial", set.0.value())
+    }
+
+    of_all_kinds!();
+
+    /// The structure as a file that has been read.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, as [`Document::read`] tells it.
+    pub fn document(&self) -> Result<Document, Diagnostics> {
+        read(
+            &self.entries,
+            &[("params", &self.parameters), ("objects", &self.objects)],
+        )
+    }
+
+    /// The validated structure.
+    ///
+    /// # Errors
+    ///
+    /// All that is wrong with it: objects that are not there, loops that do not contract, and so on.
+    pub fn build(&self) -> Result<Instancing, Diagnostics> {
+        let Model::Instancing(structure) = resolved(&self.document()?)? else {
+            unreachable!("what is built says its kind")
+        };
+        Ok(Arc::unwrap_or_clone(structure))
+    }
+}

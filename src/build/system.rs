@@ -1,0 +1,181 @@
+//! Iterated function systems.
+
+use std::sync::Arc;
+
+use crate::diagnostic::Diagnostics;
+use crate::document::Document;
+use crate::document::node::Value;
+use crate::heading::{Description, Parameter};
+use crate::ifs::System;
+use crate::model::{Kind, Model};
+use crate::style::{Style, View};
+
+use super::heading::of_all_kinds;
+use super::written::{self, Entries, sequence};
+use super::{Map, Number, Point, Set, read, resolved};
+
+/// Writes an iterated function system. What is said twice counts as said last; maps, condensation sets
+/// and edges add up.
+#[derive(Clone, Debug)]
+#[must_use = "a system is made by `build` or `document`"]
+pub struct SystemBuilder {
+    entries: Entries,
+    parameters: Entries,
+    maps: Vec<Map>,
+    condensation: Vec<Value>,
+    edges: Entries,
+}
+
+impl Default for SystemBuilder {
+    fn default() -> Self {
+        let kind = Value::Text(Kind::Ifs.name().into());
+        Self {
+            entries: Entries::default().set("kind", kind),
+            parameters: Entries::default(),
+            maps: Vec::new(),
+            condensation: Vec::new(),
+            edges: Entries::default(),
+        }
+    }
+}
+
+impl SystemBuilder {
+    /// A system that has no map yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn set(self, key: &str, value: Value) -> Self {
+        Self {
+            entries: self.entries.set(key, value),
+            ..self
+        }
+    }
+
+    /// Adds a map.
+    pub fn map(mut self, map: impl Into<Map>) -> Self {
+        self.maps.push(map.into());
+        self
+    }
+
+    /// A map towards each of some points, which leaves so much of the way, in place of other maps.
+    pub fn vertices(
+        self,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+        shrink: impl Into<Number>,
+    ) -> Self {
+        let points = points.into_iter().map(|point| point.into().0);
+        let vertices = Entries::default().set("points", sequence(points));
+        self.set("vertices", vertices.set("shrink", shrink.into().0).value())
+    }
+
+    /// The maps of a curve through points, from left to right, whose heights shrink by factors from the
+    /// whole to its pieces; in place of other maps.
+    pub fn interpolate(
+        self,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+        scales: impl IntoIterator<Item = impl Into<Number>>,
+    ) -> Self {
+        let scales = scales.into_iter().map(|scale| scale.into().0);
+        self.curve(points, "scale", sequence(scales))
+    }
+
+    /// The same for a curve of a dimension.
+    pub fn interpolate_to_dimension(
+        self,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+        dimension: impl Into<Number>,
+    ) -> Self {
+        self.curve(points, "dimension", dimension.into().0)
+    }
+
+    fn curve(
+        self,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+        key: &str,
+        value: Value,
+    ) -> Self {
+        let points = points.into_iter().map(|point| point.into().0);
+        let curve = Entries::default().set("points", sequence(points));
+        self.set("interpolate", curve.set(key, value).value())
+    }
+
+    /// Adds a condensation set.
+    pub fn condensation(mut self, set: Set) -> Self {
+        self.condensation.push(set.0.value());
+        self
+    }
+
+    /// What approximant 0 draws.
+    pub fn initial(self, set: Set) -> Self {
+        self.set("initial", set.0.value())
+    }
+
+    /// Says which maps may be applied after a map, by name or by number from 1. If that is said of any
+    /// map, it is to be said of all.
+    pub fn edges(self, from: impl ToString, to: impl IntoIterator<Item = impl ToString>) -> Self {
+        let to = to.into_iter().map(|to| Value::Text(to.to_string()));
+        Self {
+            edges: self.edges.add(from.to_string(), sequence(to)),
+            ..self
+        }
+    }
+
+    /// The same with weights of the maps that may follow.
+    pub fn weighted_edges(
+        self,
+        from: impl ToString,
+        to: impl IntoIterator<Item = (impl ToString, impl Into<Number>)>,
+    ) -> Self {
+        let to = to
+            .into_iter()
+            .fold(Entries::default(), |all, (to, weight)| {
+                all.add(to.to_string(), weight.into().0)
+            });
+        Self {
+            edges: self.edges.add(from.to_string(), to.value()),
+            ..self
+        }
+    }
+
+    of_all_kinds!();
+
+    /// The system as a file that has been read.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, as [`Document::read`] tells it.
+    pub fn document(&self) -> Result<Document, Diagnostics> {
+        let mut entries = self.entries.clone();
+        if self.maps.iter().any(|map| map.name.is_some()) {
+            let numbered = self.maps.iter().zip(1..);
+            let named = numbered.fold(Entries::default(), |named, (map, number): (_, u32)| {
+                let name = map.name.clone().unwrap_or_else(|| number.to_string());
+                named.add(name, map.entries.clone().value())
+            });
+            entries = entries.set("maps", named.value());
+        } else if !self.maps.is_empty() {
+            let maps = self.maps.iter().map(|map| map.entries.clone().value());
+            entries = entries.set("maps", sequence(maps));
+        }
+        if !self.condensation.is_empty() {
+            entries = entries.set("condensation", sequence(self.condensation.iter().cloned()));
+        }
+        read(
+            &entries,
+            &[("params", &self.parameters), ("edges", &self.edges)],
+        )
+    }
+
+    /// The validated system.
+    ///
+    /// # Errors
+    ///
+    /// All that is wrong with it: no maps, maps that do not contract, and so on.
+    pub fn build(&self) -> Result<System, Diagnostics> {
+        let Model::Ifs(system) = resolved(&self.document()?)? else {
+            unreachable!("what is built says its kind")
+        };
+        Ok(Arc::unwrap_or_clone(system))
+    }
+}

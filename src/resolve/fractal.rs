@@ -1,0 +1,79 @@
+//! Other fractals as sets: approximants of them, grown here and now.
+
+use crate::document::FractalDocument;
+use crate::geometry::DAffine2;
+use crate::grow::{Growth, OutlineError, WalkError, outlines};
+use crate::ifs::Shape;
+
+use super::{Resolver, resolve, whole_number};
+
+/// All sets of a file that are fractals have no more lines, curves and sides than this.
+const MOST_PIECES: usize = 100_000;
+
+impl<K> Resolver<K> {
+    /// What a fractal draws after its steps; `None` if something is wrong, which is said.
+    pub(super) fn fractal(&mut self, document: &FractalDocument) -> Option<Shape> {
+        let steps = document.steps.as_ref().map(|steps| self.steps(steps));
+        let seed = document.seed.as_ref().map(|seed| {
+            let value = self.constant(seed)?;
+            let whole = whole_number(value, u32::MAX);
+            if whole.is_none() {
+                let message = format!("a seed is a whole number from 0, not {value}");
+                self.error(&seed.place, message);
+            }
+            whole
+        });
+        let map = document.map.as_ref().map(|map| self.affine(map));
+        let model = match resolve(&document.file, &[]) {
+            Ok((model, _)) => model,
+            Err(mistakes) => {
+                self.mistakes += 1;
+                self.diagnostics.extend(mistakes);
+                return None;
+            }
+        };
+        let place = &document.place;
+        let Some(steps) = steps.unwrap_or(model.heading().steps) else {
+            if document.steps.is_none() {
+                let message = "this fractal does not say how many steps it is grown by";
+                self.error_with_hint(place, message, "add `steps: 4` beside `fractal`");
+            }
+            return None;
+        };
+        let graph = match model.compile(steps) {
+            Ok(graph) => graph,
+            Err(error) => {
+                self.mistakes += 1;
+                self.diagnostics.push(model.diagnostic(&error).at(place));
+                return None;
+            }
+        };
+        let growth = Growth {
+            seed: seed.unwrap_or(Some(0))?.into(),
+            ..Growth::steps(steps)
+        };
+        let map = map.unwrap_or(Some(DAffine2::IDENTITY))?;
+        let fills = model.heading().style.fill.is_some();
+        let most = MOST_PIECES.saturating_sub(self.pieces);
+        let message = match outlines(&graph, &growth, map, fills, most) {
+            Ok(drawn) if drawn.is_empty() => {
+                "this fractal draws nothing after so many steps".into()
+            }
+            Ok(drawn) => {
+                self.pieces += drawn.iter().map(|one| one.pieces().len()).sum::<usize>();
+                return Some(Shape::Union(drawn.into()));
+            }
+            Err(WalkError::Visitor(OutlineError::TooMany) | WalkError::TooManyElements { .. }) => {
+                format!("sets that are fractals draw more than {MOST_PIECES} lines in all")
+            }
+            Err(error) => error.to_string(),
+        };
+        let s = if steps == 1 { "" } else { "s" };
+        self.error_with_hint(
+            place,
+            message,
+            format!("this one is grown by {steps} step{s}"),
+        );
+        None
+    }
+}
