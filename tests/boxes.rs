@@ -163,6 +163,35 @@ fn limit_sets_are_measured_without_a_picture() {
 }
 
 #[test]
+fn a_sample_tells_what_is_counted() {
+    for (name, base, dimension) in [
+        ("carpet", 3, libm::log(8.0) / libm::log(3.0)),
+        ("koch", 3, libm::log(4.0) / libm::log(3.0)),
+    ] {
+        let set = limit(name).unwrap();
+        let along = [Grid::ALONG];
+        let sampled = set.sampled_scales(number(base), &along, number(1));
+        assert_eq!(sampled, set.sampled_scales(number(base), &along, number(2)));
+        let counted = set.scales(base as f64, 10_000, &along, number(1));
+        for (sample, scale) in sampled.iter().zip(&counted) {
+            assert!((sample.size / scale.size - 1.0).abs() < 1e-9, "{name}");
+            if sample.sampled {
+                let off = sample.count as f64 / scale.count as f64 - 1.0;
+                assert!(off.abs() < 0.1, "{name}: {sample:?} {scale:?}");
+            } else {
+                assert_eq!(sample.count, scale.count, "{name}");
+            }
+        }
+        // Boxes of 10⁻⁹ of the extent: counts have grown by 9 decades times the dimension.
+        let (first, last) = (sampled[2], sampled[sampled.len() - 1]);
+        assert!(last.sampled && last.size < 3e-9 * first.size * 27.0);
+        let slope =
+            libm::log(last.count as f64 / first.count as f64) / libm::log(first.size / last.size);
+        assert!((slope - dimension).abs() < 0.03, "{name}: {slope}");
+    }
+}
+
+#[test]
 fn a_limit_set_lies_in_its_box_and_is_met_by_what_is_counted() {
     let set = limit("koch").unwrap();
     let (min, max) = (set.bounds().min(), set.bounds().max());

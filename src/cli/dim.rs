@@ -25,7 +25,8 @@ use super::{Failure, format, help, output, text};
 ///
 /// Boxes are counted at many sizes, on grids that are moved and turned, and the least cover is kept.
 /// The dimension is the slope of the logarithms, with its standard error and its evidence. Of a rule,
-/// the limit set of what stays fertile is measured, straight from the rule; beside it stands what is
+/// the limit set of what stays fertile is measured, straight from the rule: boxes that are too many to
+/// be counted are told by a sample of them. Beside it stands what is
 /// exact: its similarity dimension, how its copies lie, the dimension that follows for the set itself
 /// and for its boundary.
 #[derive(clap::Args)]
@@ -52,8 +53,8 @@ pub(super) struct Arguments {
     /// Draws counts, fit and local slopes into a file (SVG or PNG)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
-    /// By what number boxes get smaller [default: the ratio that a rule repeats itself by, or 2; a
-    /// whole number for pictures, 2 for points]
+    /// By what number boxes get smaller [default: the least whole number that is a power of the ratio
+    /// that a rule repeats itself by, or 2; a whole number for pictures, 2 for points]
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
     /// How many grids are tried
@@ -69,6 +70,9 @@ pub(super) struct Arguments {
     )]
     #[arg(value_parser = order, allow_hyphen_values = true)]
     orders: Vec<f64>,
+    /// What random draws of a rule depend on: another seed makes another individual
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
     /// The number of threads [default: as many as the machine has cores]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,

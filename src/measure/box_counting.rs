@@ -1,5 +1,6 @@
 use std::num::NonZero;
 
+use super::averaging::averaged;
 use super::bits::Bits;
 use super::cover::{Grid, Scale};
 use super::limit::LimitSet;
@@ -21,8 +22,10 @@ pub struct BoxCounting {
 pub struct Boxes {
     /// The side of a box, in the units of the set.
     pub size: f64,
-    /// The number of boxes in the least cover that was found.
+    /// The number of boxes in the least cover that was found, or what a sample tells it to be.
     pub count: u64,
+    /// Whether the count comes from a sample of boxes.
+    pub sampled: bool,
     /// The standard deviation of the logarithm of the count among grids.
     pub scatter: f64,
     /// The slope to the next smaller size; none for the smallest.
@@ -63,9 +66,12 @@ impl BoxCounting {
 
     /// Measures a limit set, with boxes that are each `base` times smaller than those before.
     ///
-    /// Without a base, it is the set's own period, so that its counts do not swing with the size (or
-    /// 2, if it has none or one above 4). Used are sizes up to half the extent at which the least
-    /// cover has 9 boxes or more, down to where it has some 130,000.
+    /// Without a base, it is the least whole number up to 8 that is a power of the set's own period,
+    /// so that its counts do not swing with the size, or 2. Boxes that are too many to be counted are
+    /// told by a sample of them, down to 10⁻⁹ of the extent; which sizes tell the dimension, their
+    /// likelihood decides. Where a sample does not come as far as counting (the base is not whole, or
+    /// too many copies lie over each other), the sizes are those up to half the extent at which the
+    /// least cover has 9 boxes or more, down to where it has some 130,000.
     #[must_use]
     pub fn of_limit(
         set: &LimitSet,
@@ -73,21 +79,26 @@ impl BoxCounting {
         grids: &[Grid],
         threads: NonZero<usize>,
     ) -> Self {
-        const LARGEST_PERIOD: f64 = 4.0;
         const MOST_BOXES: u64 = 1 << 17;
+        const FINE: f64 = 1.0 / 16_384.0;
         let extent = set.bounds().size().max_element();
         if extent <= 0.0 {
             return Self::of_point();
         }
-        let own = || set.period().filter(|&period| period <= LARGEST_PERIOD);
-        let base = base.or_else(own).unwrap_or(2.0);
         let window = Window {
             finest: 0.0,
             coarsest: extent / 2.0,
             least_boxes: 9,
             most_boxes: u64::MAX,
         };
-        Self::of(&set.scales(base, MOST_BOXES, grids, threads), &window)
+        let base = base.unwrap_or_else(|| whole_power(set.period()));
+        let scales = whole(base).map(|base| set.sampled_scales(base, grids, threads));
+        let comes_far =
+            |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < FINE * extent);
+        match scales.filter(comes_far) {
+            Some(scales) => Self::by(&scales, &window, averaged),
+            None => Self::of(&set.scales(base, MOST_BOXES, grids, threads), &window),
+        }
     }
 
     /// Measures the set pixels of a picture, with boxes of `base`, base² … pixels.
@@ -143,6 +154,14 @@ impl BoxCounting {
     /// sizes in a window.
     #[must_use]
     pub fn of(scales: &[Scale], window: &Window) -> Self {
+        Self::by(scales, window, estimate)
+    }
+
+    fn by(
+        scales: &[Scale],
+        window: &Window,
+        estimate: impl Fn(&[Reading]) -> Option<Estimate>,
+    ) -> Self {
         const SLACK: f64 = 1.0 + 1e-6;
         let log = |scale: &Scale| {
             #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
@@ -160,20 +179,45 @@ impl BoxCounting {
                 size: scale.size,
                 log: log(scale),
                 scatter: scale.scatter,
+                growth_error: scale.growth_error,
             });
-        let readings: Vec<_> = readings.collect();
+        let estimate = estimate(&readings.collect::<Vec<_>>());
+        let [finest, coarsest] = estimate.map_or([0.0, f64::INFINITY], |it| it.range);
         let boxes = scales.iter().enumerate().map(|(number, scale)| Boxes {
             size: scale.size,
             count: scale.count,
+            sampled: scale.sampled,
             scatter: scale.scatter,
             local_slope: scales
                 .get(number + 1)
                 .map(|finer| (log(finer) - log(scale)) / libm::log(scale.size / finer.size)),
-            used: used(scale),
+            used: used(scale) && (finest..=coarsest).contains(&scale.size),
         });
         Self {
-            estimate: estimate(&readings),
+            estimate,
             boxes: boxes.collect(),
         }
     }
+}
+
+/// The least whole number that is a power of a period, if there is one that is not too large, or 2.
+fn whole_power(period: Option<f64>) -> f64 {
+    const LARGEST: f64 = 8.5;
+    const TOLERANCE: f64 = 1e-9;
+    let powers = period.into_iter().flat_map(|period| {
+        let powers = std::iter::successors(Some(period), move |power| Some(power * period));
+        powers.take_while(|power| *power < LARGEST)
+    });
+    let mut whole = powers.filter(|power| (power - power.round()).abs() < TOLERANCE * power);
+    whole.next().map_or(2.0, f64::round)
+}
+
+/// A base that is a whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "bases are small"
+)]
+fn whole(base: f64) -> Option<NonZero<usize>> {
+    NonZero::new(base as usize).filter(|whole| base.fract() == 0.0 && whole.get() > 1)
 }

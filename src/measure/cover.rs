@@ -11,10 +11,14 @@ use crate::geometry::{Bounds, DAffine2, DVec2};
 pub struct Scale {
     /// The side of a box, in the units of the set.
     pub size: f64,
-    /// The number of boxes of the least cover that was found.
+    /// The number of boxes of the least cover that was found, or what a sample tells it to be.
     pub count: u64,
     /// The standard deviation of the natural logarithm of the count among all grids.
     pub scatter: f64,
+    /// The standard error of the growth of that logarithm since the size before.
+    pub growth_error: f64,
+    /// Whether the count comes from a sample of boxes.
+    pub sampled: bool,
 }
 
 /// How a grid lies on a set.
@@ -81,6 +85,40 @@ fn whole(extent: f64) -> usize {
     (extent.ceil() as usize).max(1)
 }
 
+/// What `count` tells of every grid, in the order of the grids.
+pub(super) fn on_all<T: Send>(
+    grids: &[Grid],
+    threads: NonZero<usize>,
+    count: impl Fn(usize, &Grid) -> T + Sync,
+) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut told = Vec::new();
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(grid) = grids.get(number) else {
+                return told;
+            };
+            told.push((number, count(number, grid)));
+        }
+    };
+    let mut told = Vec::new();
+    thread::scope(|scope| {
+        let others: Vec<_> = (1..threads.get().min(grids.len()))
+            .map(|_| scope.spawn(work))
+            .collect();
+        told.extend(work());
+        for other in others {
+            match other.join() {
+                Ok(more) => told.extend(more),
+                Err(cause) => std::panic::resume_unwind(cause),
+            }
+        }
+    });
+    told.sort_by_key(|(number, _)| *number);
+    told.into_iter().map(|(_, told)| told).collect()
+}
+
 /// Counts the boxes of all sizes on all grids, and keeps the least count of every size.
 ///
 /// `count` tells the counts for all sizes on one grid. The result does not depend on the threads.
@@ -90,51 +128,46 @@ pub(super) fn least(
     threads: NonZero<usize>,
     count: impl Fn(&Grid) -> Vec<u64> + Sync,
 ) -> Vec<Scale> {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut counts = Vec::new();
-        while let Some(grid) = grids.get(next.fetch_add(1, Ordering::Relaxed)) {
-            counts.push(count(grid));
-        }
-        counts
-    };
-    let mut counts = Vec::new();
-    thread::scope(|scope| {
-        let others: Vec<_> = (1..threads.get().min(grids.len()))
-            .map(|_| scope.spawn(work))
-            .collect();
-        counts.extend(work());
-        for other in others {
-            match other.join() {
-                Ok(more) => counts.extend(more),
-                Err(cause) => std::panic::resume_unwind(cause),
-            }
-        }
-    });
+    let counts = on_all(grids, threads, |_, grid| count(grid));
+    let logs = |number: usize| counts.iter().map(move |counts| logarithm(counts[number]));
     let scale = |(number, &size): (usize, &f64)| {
-        let mut all: Vec<u64> = counts.iter().map(|counts| counts[number]).collect();
-        // Sums must not depend on who was first.
-        all.sort_unstable();
+        let growth = |last| logs(number).zip(logs(last)).map(|(log, last)| log - last);
+        let growth = number.checked_sub(1).map(|last| deviation(growth(last)));
         Scale {
             size,
-            count: all.first().copied().unwrap_or_default(),
-            scatter: scatter(&all),
+            count: counts
+                .iter()
+                .map(|counts| counts[number])
+                .min()
+                .unwrap_or(0),
+            scatter: deviation(logs(number)),
+            growth_error: growth.unwrap_or_default(),
+            sampled: false,
         }
     };
     sizes.iter().enumerate().map(scale).collect()
 }
 
-/// The standard deviation of logarithms.
-#[expect(clippy::cast_precision_loss, reason = "a deviation is an estimate")]
-fn scatter(counts: &[u64]) -> f64 {
-    if counts.len() < 2 {
+#[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
+fn logarithm(count: u64) -> f64 {
+    libm::log(count.max(1) as f64)
+}
+
+/// The standard deviation of some values; 0 of fewer than two.
+pub(super) fn deviation(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    if values.len() < 2 {
         return 0.0;
     }
-    let logs: Vec<f64> = counts
-        .iter()
-        .map(|&count| libm::log(count.max(1) as f64))
-        .collect();
-    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-    let squares = logs.iter().map(|log| (log - mean) * (log - mean));
-    (squares.sum::<f64>() / (logs.len() - 1) as f64).sqrt()
+    let mean = mean(&values);
+    let squares = values.iter().map(|value| (value - mean) * (value - mean));
+    #[expect(clippy::cast_precision_loss, reason = "grids are few")]
+    let freedom = (values.len() - 1) as f64;
+    (squares.sum::<f64>() / freedom).sqrt()
+}
+
+/// The mean of some values.
+#[expect(clippy::cast_precision_loss, reason = "grids are few")]
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }

@@ -1,5 +1,7 @@
 //! The limit set of a graph as points, as close as one likes, with nothing drawn.
 
+mod descent;
+
 use std::num::NonZero;
 
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
@@ -46,6 +48,9 @@ struct Part {
     /// A point of its set, and the radius of a disc about it that holds the set.
     point: DVec2,
     radius: f64,
+    /// The middle of a box that holds the set, and the radius of a disc about it that does.
+    middle: DVec2,
+    reach: f64,
     children: Vec<Placed>,
 }
 
@@ -76,6 +81,9 @@ impl Placed {
         }
     }
 }
+
+/// A box that is entered by no more than twice this part of its side may be missed.
+const GRAZED: f64 = 1.0 / 8.0;
 
 /// A distance that is nothing beside the unit.
 const NEGLIGIBLE: f64 = 1e-17;
@@ -243,7 +251,6 @@ impl LimitSet {
     /// quarter of its side may be missed.
     #[must_use]
     pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Bits {
-        const GRAZED: f64 = 1.0 / 8.0;
         let mut bits = Bits::new(boxes[0], boxes[1]);
         let grid = Placed {
             map: *map,
@@ -312,30 +319,54 @@ impl LimitSet {
         }
     }
 
-    /// The smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
-    /// c, approached from below.
+    /// The discs about all points and all middles.
     fn find_radii(&mut self) {
+        let points: Vec<DVec2> = self.objects.iter().map(|part| part.point).collect();
+        let radii = self.radii_about(&points);
+        for (part, radius) in self.objects.iter_mut().zip(radii) {
+            part.radius = radius;
+        }
+        let middle = |object| {
+            let itself = Placed {
+                map: DAffine2::IDENTITY,
+                scale: 1.0,
+                object,
+            };
+            let bounds = Self::extent(&self.objects, &[itself]);
+            bounds.min().midpoint(bounds.max())
+        };
+        let lasting = |object: &usize| !self.objects[*object].children.is_empty();
+        let middles = (0..self.objects.len())
+            .map(|object| Some(object).filter(lasting).map_or(DVec2::ZERO, middle));
+        let middles: Vec<DVec2> = middles.collect();
+        let reaches = self.radii_about(&middles);
+        let discs = middles.into_iter().zip(reaches);
+        for (part, (middle, reach)) in self.objects.iter_mut().zip(discs) {
+            (part.middle, part.reach) = (middle, reach);
+        }
+    }
+
+    /// The smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
+    /// c, approached from below, for points p.
+    fn radii_about(&self, points: &[DVec2]) -> Vec<f64> {
         const TOLERANCE: f64 = 1e-9;
+        let mut radii = vec![0.0; points.len()];
         for _ in 0..MOST_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..self.objects.len()).rev() {
-                let part = &self.objects[object];
-                let reach = part.children.iter().map(|copy| {
-                    let child = &self.objects[copy.object];
-                    let away = copy.map.transform_point2(child.point) - part.point;
-                    away.length() + copy.scale * child.radius
+                let reach = self.objects[object].children.iter().map(|copy| {
+                    let away = copy.map.transform_point2(points[copy.object]) - points[object];
+                    away.length() + copy.scale * radii[copy.object]
                 });
                 let radius = reach.fold(0.0, f64::max);
-                change = change.max(radius - part.radius);
-                self.objects[object].radius = radius;
+                change = change.max(radius - radii[object]);
+                radii[object] = radius;
             }
             if change <= TOLERANCE {
                 break;
             }
         }
-        for part in &mut self.objects {
-            part.radius *= 1.0 + 1e-6;
-        }
+        radii.iter().map(|radius| radius * (1.0 + 1e-6)).collect()
     }
 
     /// The box of copies, to some 12 digits.

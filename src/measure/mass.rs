@@ -171,6 +171,7 @@ impl Masses {
                 size,
                 log: entropy,
                 scatter: 0.0,
+                growth_error: 0.0,
             });
             Generalised {
                 order,

@@ -3,14 +3,16 @@
 //! Three kinds of sets are covered by boxes: the pixels of a picture ([`Bits`]), [`Points`] of the
 //! plane, and the [`LimitSet`] of a graph, with nothing drawn in between (or what is [`grown`] of it,
 //! where maps are drawn by chance). Every size of boxes is counted on several [`Grid`]s, of which the
-//! least cover counts. [`BoxCounting`] is the slope of the counts with its error and its evidence;
-//! [`Masses`] tell the other dimensions D_q, and lacunarity. [`hausdorff`] tells how far two sets are
-//! apart.
+//! least cover counts; boxes of a limit set that are too many to be counted are told by a sample of
+//! them, which is followed down to 10⁻⁹ of its extent. [`BoxCounting`] is the slope of the counts with
+//! its error and its evidence; [`Masses`] tell the other dimensions D_q, and lacunarity. [`hausdorff`]
+//! tells how far two sets are apart.
 //!
 //! The axes are those of the sets: x to the right and y up, but rows of pictures from the top down.
 //!
 #![doc = include_str!("library.md")]
 
+mod averaging;
 mod bits;
 mod box_counting;
 mod cover;

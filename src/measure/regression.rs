@@ -1,4 +1,4 @@
-//! Dimensions as slopes, with an error that does not flatter them.
+//! Dimensions as slopes over few decades, with an error that does not flatter them.
 //!
 //! Counts of boxes are a power of the size only in the limit: rims, gaps and coarse boxes bend the
 //! line, and the residuals of neighbouring sizes go together. So the slope is told in two ways. One
@@ -17,22 +17,27 @@ pub(super) struct Reading {
     pub(super) log: f64,
     /// The standard deviation of the logarithm among grids.
     pub(super) scatter: f64,
+    /// The standard error of its growth since the size before.
+    pub(super) growth_error: f64,
 }
 
 /// A dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The dimension: the slope of the finer half of the sizes, or its mean with the slope of all of
-    /// them with a correction to scaling, where that is significant.
+    /// The dimension. Of pictures and points: the slope of the finer half of the sizes, or its mean
+    /// with the slope of all of them with a correction to scaling, where that is significant. Of limit
+    /// sets that are followed to small sizes: the mean over models and ranges, by their likelihood.
     pub value: f64,
     /// Its standard error: that of the regression, made larger as far as residuals of neighbouring
-    /// sizes go together, and how far another way to tell the slope lies from it.
+    /// sizes go together, and how far other ways to tell the slope lie from it.
     pub std_error: f64,
-    /// The smallest and the largest size that were used, in the units of the set.
+    /// The smallest and the largest size that were used, in the units of the set; on the mean, where
+    /// there are several ranges.
     pub range: [f64; 2],
     /// The part of the variance that a straight line through all sizes explains, from 0 to 1.
     pub r_squared: f64,
-    /// The logarithm at size 1, on the line with this slope through the middle of the finer half.
+    /// The logarithm at size 1, on the line with this slope through the middle of the sizes that tell
+    /// it.
     pub intercept: f64,
     /// The number of sizes that were used; 0 if nothing had to be measured.
     pub sizes: usize,
@@ -84,6 +89,14 @@ pub(super) fn estimate(readings: &[Reading]) -> Option<Estimate> {
         intercept: y - value * x,
         sizes: readings.len(),
     })
+}
+
+/// What part of the variance a straight line through readings explains, and the logarithm at size 1 on
+/// a line with a slope through their middle.
+pub(super) fn line(readings: &[Reading], slope: f64) -> (f64, f64) {
+    let points = Points::of(readings);
+    let (x, y) = points.middle();
+    (points.r_squared(&points.fit(None)), y - slope * x)
 }
 
 /// Readings as columns: abscissas, ordinates and weights.
@@ -249,6 +262,7 @@ mod tests {
                 size: libm::exp(-x),
                 log: log(x),
                 scatter: 0.0,
+                growth_error: 0.0,
             }
         };
         (3..3 + sizes).map(reading).collect()

@@ -42,9 +42,11 @@ fn bad_input_is_refused_with_a_reason() {
     no_width[16..20].fill(0);
     let mut huge = white.clone();
     huge[16..24].fill(0x7f);
-    let cases: [(&str, &[u8], &str); 14] = [
+    let cases: [(&str, &[u8], &str); 16] = [
         ("empty.csv", b"", "there are no points"),
         ("header.csv", b"x,y\n", "there are no points"),
+        ("one.csv", b"1,2\n", "all points are equal"),
+        ("equal.csv", b"1,2\n1,2\n1,2\n", "all points are equal"),
         (
             "nan.csv",
             b"x,y\n0,0\n1,nan\n",
@@ -119,17 +121,6 @@ fn wrong_options_are_a_wrong_command_line() {
 }
 
 #[test]
-fn equal_points_are_a_point() {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in [("one.csv", "1,2\n"), ("equal.csv", "1,2\n1,2\n1,2\n")] {
-        fs::write(folder.path().join(name), text).unwrap();
-        let output = dim(folder.path(), &[name, "--json"]);
-        assert_eq!(json(&output)["box_counting"]["value"], 0.0);
-        assert!(said(&output).contains("all points are equal"), "{output:?}");
-    }
-}
-
-#[test]
 fn pictures_are_read_in_either_format_and_inverted() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -185,4 +176,23 @@ fn the_json_has_what_is_promised() {
             .count()
             > 20
     );
+}
+
+#[test]
+fn another_seed_grows_another_individual() {
+    let folder = tempfile::tempdir().unwrap();
+    let rule = "initiator: segment\ngenerator:\n  random: {height: \"uniform(0.1, 0.4)\"}\n  elements: [[0, 0], \
+                [1/2, height], [1, 0]]\n";
+    fs::write(folder.path().join("hills.yaml"), rule).unwrap();
+    let boxes = |seed: &str| {
+        let report = json(&dim(
+            folder.path(),
+            &["hills.yaml", "--seed", seed, "--json"],
+        ));
+        let set = report["box_counting"]["set"].as_str().unwrap();
+        assert!(set.ends_with(&format!("seed {seed}")), "{set}");
+        report["box_counting"]["boxes"].clone()
+    };
+    assert_eq!(boxes("3"), boxes("3"));
+    assert_ne!(boxes("3"), boxes("4"));
 }

@@ -14,7 +14,7 @@ use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::import::{Channel, Picture, read_points};
 use crate::measure::exact::dimensions_of_graph;
-use crate::measure::{Bits, BoxCounting, LimitSet, Masses, NoExtent, NoLimit, Points, grown};
+use crate::measure::{Bits, BoxCounting, LimitSet, Masses, NoLimit, Points, grown};
 
 use super::super::Failure;
 use super::super::rule::Loaded;
@@ -150,7 +150,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     Ok(measured)
 }
 
-/// What has to be grown to be known, by the draws of seed 0.
+/// What has to be grown to be known, by the draws of a seed.
 fn of_growth(
     arguments: &Arguments,
     graph: &Graph,
@@ -159,6 +159,7 @@ fn of_growth(
     const MOST_POINTS: usize = 1 << 20;
     let growth = Growth {
         cancel: Some(stop::flag()),
+        seed: arguments.seed,
         ..Growth::steps(STEPS)
     };
     let grown = match grown(graph, &growth, MOST_POINTS) {
@@ -167,9 +168,10 @@ fn of_growth(
         Err(error) => return Ok(measured.without(&error)),
     };
     measured.set = format!(
-        "{} fertile elements of lengths below {:.3e}, grown with seed 0",
+        "{} fertile elements of lengths below {:.3e}, grown with seed {}",
         grown.points.len(),
-        grown.detail
+        grown.detail,
+        arguments.seed
     );
     let points = match Points::new(grown.points) {
         Ok(points) => points,
@@ -270,15 +272,7 @@ fn of_points(
         lacunarity: Vec::new(),
         warnings: Vec::new(),
     };
-    let points = match Points::new(points) {
-        Ok(points) => points,
-        Err(NoExtent::One) => {
-            measured.counting = BoxCounting::of_point();
-            measured.warnings.push("all points are equal".into());
-            return Ok(measured);
-        }
-        Err(error) => return Err(anyhow::Error::new(error).context(name.to_owned()).into()),
-    };
+    let points = Points::new(points).with_context(|| name.to_owned())?;
     measured.counting = BoxCounting::of_points(&points, &arguments.grids(), arguments.threads());
     let finest = measured
         .counting

@@ -40,6 +40,7 @@ struct Counting<'a> {
 struct Boxes {
     size: f64,
     count: u64,
+    sampled: bool,
     local_slope: Option<f64>,
     scatter: f64,
     used: bool,
@@ -72,6 +73,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
     let boxes = measured.counting.boxes.iter().map(|it| Boxes {
         size: it.size,
         count: it.count,
+        sampled: it.sampled,
         local_slope: it.local_slope,
         scatter: it.scatter,
         used: it.used,
@@ -327,19 +329,26 @@ fn table(text: &mut String, counting: &BoxCounting, unit: Option<&str>) {
         return;
     }
     let side = unit.map_or("side".into(), |unit| format!("side ({unit})"));
-    let _ = writeln!(text, "{side:>13}  {:>12}  {:>11}", "boxes", "local slope");
+    let _ = writeln!(text, "{side:>13}  {:>20}  {:>11}", "boxes", "local slope");
     for it in &counting.boxes {
         let slope = it
             .local_slope
             .map(|slope| format!("{slope:.4}"))
             .unwrap_or_default();
         let star = if it.used { "*" } else { "" };
+        let about = if it.sampled { "~" } else { "" };
         let line = format!(
-            "{:>13}  {:>12}  {slope:>11} {star}",
+            "{:>13}  {:>20}  {slope:>11} {star}",
             short(it.size),
-            it.count
+            format!("{about}{}", it.count)
         );
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    let _ = writeln!(text, "(* used by the fit)");
+    let sampled = counting.boxes.iter().any(|it| it.sampled);
+    let about = if sampled {
+        "; ~ from a sample of boxes"
+    } else {
+        ""
+    };
+    let _ = writeln!(text, "(* used by the fit{about})");
 }

@@ -1,0 +1,253 @@
+//! Dimensions as means over models, for counts over many decades.
+//!
+//! Counts are a power of the size only in the limit. Beside the straight line, all lines with a second
+//! power are looked at, N = A size^-D (1 + C size^θ), from every size on. For each, D is fitted to
+//! the growth of counts from size to size, and the model counts as much as its likelihood and an
+//! e-th for every size that it leaves out and every parameter that it has more (Akaike 1974; averages
+//! over models and ranges: Jay & Neil 2021). D is the mean over all of them, and its error holds how
+//! far they differ.
+
+use super::regression::{Estimate, Reading, line};
+
+/// The exponents θ of a second power, and the parts C that it has at the largest size.
+const EXPONENTS: [f64; 2] = [0.1, 1.6];
+const EXPONENT_STEPS: i32 = 24;
+const MOST_PART: [f64; 2] = [0.1, 50.0];
+const LEAST_PART: [f64; 2] = [0.1, 0.8];
+const PARTS_ABOVE: i32 = 32;
+const PARTS_BELOW: i32 = 8;
+
+/// Growth is not believed to be known better.
+const LEAST_ERROR: f64 = 0.001;
+
+/// So many sizes are left in every range, at least.
+const LEAST_SIZES: usize = 4;
+
+/// No set of the plane has a larger dimension.
+const PLANE: f64 = 2.0;
+
+/// How counts grow from a size to the next smaller one.
+struct Growth {
+    /// The logarithm of the ratio of sizes.
+    step: f64,
+    /// That of the counts.
+    log: f64,
+    weight: f64,
+}
+
+/// What a second power adds to the growth, from each size to the next, and the logarithm of what the
+/// model counts before anything is measured.
+struct Correction {
+    growth: Vec<f64>,
+    prior: f64,
+}
+
+/// A line, with a second power or without, fitted from a size on.
+#[derive(Clone, Copy)]
+struct Fit {
+    from: usize,
+    slope: f64,
+    variance: f64,
+    chi_squared: f64,
+    prior: f64,
+}
+
+/// The slope of readings, from the largest size to the smallest; none if there are too few.
+pub(super) fn averaged(readings: &[Reading]) -> Option<Estimate> {
+    if readings.len() < LEAST_SIZES + 1 {
+        return None;
+    }
+    let growths: Vec<Growth> = readings.windows(2).map(Growth::between).collect();
+    let corrections = corrections(readings);
+    let last = growths.len() + 1 - LEAST_SIZES;
+    let starts = (0..=last).flat_map(|from| {
+        let fit = |correction: &Correction| Fit::of(&growths, correction, from);
+        corrections.iter().map(fit).collect::<Vec<_>>()
+    });
+    let fits: Vec<Fit> = starts.collect();
+    // Where no model fits as well as errors say, these are too small.
+    let reduced = fits.iter().filter(|fit| fit.from < last);
+    let reduced = reduced.map(|fit| fit.chi_squared / count(growths.len() - fit.from - 1));
+    let excess = reduced.fold(f64::INFINITY, f64::min);
+    let excess = if excess.is_finite() {
+        excess.max(1.0)
+    } else {
+        1.0
+    };
+    let weight = |fit: &Fit| fit.prior - count(fit.from) - fit.chi_squared / (2.0 * excess);
+    let best = fits.iter().map(weight).fold(f64::NEG_INFINITY, f64::max);
+    let mean = |of: &dyn Fn(&Fit) -> f64| {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for fit in &fits {
+            let weight = libm::exp(weight(fit) - best);
+            sum += weight * of(fit);
+            all += weight;
+        }
+        sum / all
+    };
+    let value = mean(&|fit| fit.slope);
+    let away = |fit: &Fit| fit.variance * excess + (fit.slope - value) * (fit.slope - value);
+    let from = mean(&|fit| count(fit.from)).round();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the number of a size"
+    )]
+    let range = &readings[from as usize..];
+    let (r_squared, intercept) = line(range, value);
+    Some(Estimate {
+        value: value + 0.0,
+        std_error: mean(&away).sqrt(),
+        range: [range[range.len() - 1].size, range[0].size],
+        r_squared,
+        intercept,
+        sizes: range.len(),
+    })
+}
+
+impl Growth {
+    fn between(pair: &[Reading]) -> Self {
+        let [coarse, fine] = [pair[0], pair[1]];
+        let error = fine.growth_error;
+        Self {
+            step: libm::log(coarse.size / fine.size),
+            log: fine.log - coarse.log,
+            weight: 1.0 / (error * error + LEAST_ERROR * LEAST_ERROR),
+        }
+    }
+}
+
+impl Fit {
+    fn of(growths: &[Growth], correction: &Correction, from: usize) -> Self {
+        let growths = growths[from..].iter().zip(&correction.growth[from..]);
+        let (mut norm, mut sum) = (0.0, 0.0);
+        for (growth, more) in growths.clone() {
+            norm += growth.weight * growth.step * growth.step;
+            sum += growth.weight * growth.step * (growth.log - more);
+        }
+        let slope = (sum / norm).min(PLANE);
+        let squares = growths.map(|(growth, more)| {
+            let rest = growth.log - more - slope * growth.step;
+            growth.weight * rest * rest
+        });
+        Self {
+            from,
+            slope,
+            variance: 1.0 / norm,
+            chi_squared: squares.sum(),
+            prior: correction.prior,
+        }
+    }
+}
+
+/// No correction, and corrections of all exponents and parts: two parameters more.
+fn corrections(readings: &[Reading]) -> Vec<Correction> {
+    let parts =
+        spread(MOST_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
+    let parts: Vec<f64> = parts.collect();
+    let models = count(parts.len()) * f64::from(EXPONENT_STEPS);
+    let prior = -2.0 - libm::log(models);
+    let of = |exponent: f64, part: f64| {
+        let log = |reading: &Reading| {
+            let size = reading.size / readings[0].size;
+            libm::log1p(part * libm::pow(size, exponent))
+        };
+        let pairs = readings.windows(2);
+        Correction {
+            growth: pairs.map(|pair| log(&pair[1]) - log(&pair[0])).collect(),
+            prior,
+        }
+    };
+    let mut corrections = vec![Correction {
+        growth: vec![0.0; readings.len() - 1],
+        prior: 0.0,
+    }];
+    for exponent in spread(EXPONENTS, EXPONENT_STEPS) {
+        corrections.extend(parts.iter().map(|&part| of(exponent, part)));
+    }
+    corrections
+}
+
+/// So many numbers from one to another, each larger by the same factor.
+fn spread([least, most]: [f64; 2], steps: i32) -> impl Iterator<Item = f64> {
+    let all = libm::log(most / least);
+    let part = move |step| f64::from(step) / f64::from(steps - 1);
+    (0..steps).map(move |step| least * libm::exp(all * part(step)))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "sizes and models are few")]
+fn count(number: usize) -> f64 {
+    number as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn readings(sizes: i32, error: f64, log: impl Fn(f64) -> f64) -> Vec<Reading> {
+        let reading = |level: i32| {
+            let x = f64::from(level) * std::f64::consts::LN_2;
+            Reading {
+                size: libm::exp(-x),
+                log: log(x),
+                scatter: 0.0,
+                growth_error: error,
+            }
+        };
+        (1..=sizes).map(reading).collect()
+    }
+
+    #[test]
+    fn a_power_has_its_exponent() {
+        for exponent in [0.5, 1.2618595, 1.9] {
+            let estimate = averaged(&readings(20, 0.0, |x| 0.7 + exponent * x)).unwrap();
+            assert!((estimate.value - exponent).abs() < 1e-3, "{estimate:?}");
+            assert!(estimate.std_error < 0.003, "{estimate:?}");
+            assert!(estimate.r_squared > 1.0 - 1e-9, "{estimate:?}");
+        }
+    }
+
+    #[test]
+    fn a_second_power_is_seen_and_told_apart() {
+        // Boxes of an area, and those of its rim.
+        let bent = readings(25, 0.002, |x| {
+            libm::log(libm::exp(1.9 * x) + 2.0 * libm::exp(1.4 * x))
+        });
+        let estimate = averaged(&bent).unwrap();
+        assert!((estimate.value - 1.9).abs() < 0.005, "{estimate:?}");
+        let off = (estimate.value - 1.9).abs();
+        assert!(off < 2.0 * estimate.std_error, "{estimate:?}");
+    }
+
+    #[test]
+    fn counts_that_are_known_less_well_have_a_larger_error() {
+        let error = |error| {
+            averaged(&readings(20, error, |x| 1.3 * x))
+                .unwrap()
+                .std_error
+        };
+        assert!(error(0.05) > 5.0 * error(0.005));
+    }
+
+    #[test]
+    fn waves_that_no_model_has_make_the_error_larger() {
+        let waves = |height: f64| {
+            let log = |x: f64| 1.3 * x + height * libm::sin(4.0 * x);
+            averaged(&readings(20, 0.002, log)).unwrap()
+        };
+        let estimate = waves(0.05);
+        assert!(
+            estimate.std_error > 3.0 * waves(0.0).std_error,
+            "{estimate:?}"
+        );
+        assert!(
+            (estimate.value - 1.3).abs() < 2.0 * estimate.std_error,
+            "{estimate:?}"
+        );
+    }
+
+    #[test]
+    fn four_sizes_are_too_few() {
+        assert_eq!(averaged(&readings(4, 0.0, |x| x)), None);
+    }
+}

@@ -1,0 +1,315 @@
+//! Covers by boxes that are too many to be counted, from a sample of them that is followed down.
+//!
+//! Every box is divided into smaller ones, and those of them that copies of the set come near to are
+//! divided again. Where there are too many, some are chosen at random and each stands for as many
+//! more of its size: *splitting* (Kahn & Harris 1951), which tells sums over all boxes without bias.
+//! The boxes that are chosen are spread evenly over the set, one of each run of neighbours.
+
+use std::num::NonZero;
+
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
+use crate::geometry::DVec2;
+use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
+
+use super::{GRAZED, LimitSet, Placed, norm};
+
+/// Copies in the boxes of a size that are followed, and the least number of such boxes. As long as
+/// there are fewer, counts are exact.
+const FOLLOWED_COPIES: usize = 1 << 14;
+const FOLLOWED: usize = 1 << 11;
+
+/// A copy whose disc has a larger radius than so many boxes is looked at by its parts.
+const LARGEST: f64 = 2.0;
+
+/// Copies of one size that may be looked at: where too many lie over each other, the descent ends.
+const MOST_COPIES: usize = 1 << 22;
+
+/// The smallest boxes, as a part of the extent: there, doubles still tell six digits of a box, and counts
+/// are whole numbers of 64 bits.
+const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
+
+/// Of so many copies in a box, some may be the same.
+const MANY: usize = 8;
+
+/// A box, as the copies near it, on a scale on which it is the unit square.
+type Cell = Vec<Placed>;
+
+/// A count of boxes, and whether it comes from a sample.
+type Count = (f64, bool);
+
+/// What is followed down.
+struct Descent<'s> {
+    set: &'s LimitSet,
+    cells: Vec<Cell>,
+    /// How many boxes one that is followed stands for.
+    weight: f64,
+    random: Pcg64Mcg,
+    looked_at: usize,
+}
+
+impl<'s> Descent<'s> {
+    /// From the boxes of a grid: `start` are copies on a scale on which these have side 1, and corners
+    /// at whole numbers from (0, 0) to `boxes`.
+    fn new(set: &'s LimitSet, start: Vec<Placed>, boxes: [usize; 2], seed: usize) -> Self {
+        let mut descent = Self {
+            set,
+            cells: Vec::new(),
+            weight: 1.0,
+            random: Pcg64Mcg::new((seed as u128) << 64 | 0xcafe_f00d_d15e_a5e5),
+            looked_at: 0,
+        };
+        descent.cells = descent.divided(start, boxes);
+        descent
+    }
+
+    /// How many boxes the set meets; `None` where too many copies lie over each other.
+    fn count(&self) -> Option<Count> {
+        if self.looked_at > MOST_COPIES {
+            return None;
+        }
+        let met = self.cells.iter().filter(|cell| self.set.meets(cell));
+        let met = met.count();
+        #[expect(clippy::cast_precision_loss, reason = "some thousands of boxes")]
+        (met > 0).then_some((met as f64 * self.weight, self.weight > 1.0))
+    }
+
+    /// Goes on to boxes `base` times smaller.
+    fn go_down(&mut self, base: usize) {
+        self.choose();
+        self.looked_at = 0;
+        #[expect(clippy::cast_precision_loss, reason = "a base is small")]
+        let scale = base as f64;
+        let mut cells = Vec::new();
+        for mut cell in std::mem::take(&mut self.cells) {
+            for copy in &mut cell {
+                copy.map.matrix2 *= scale;
+                copy.map.translation *= scale;
+                copy.scale *= scale;
+            }
+            cells.append(&mut self.divided(cell, [base; 2]));
+            if self.looked_at > MOST_COPIES {
+                break;
+            }
+        }
+        self.cells = cells;
+    }
+
+    /// Keeps one box of each run of neighbours, if there are too many.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        clippy::cast_sign_loss,
+        reason = "numbers of boxes are small"
+    )]
+    fn choose(&mut self) {
+        let copies: usize = self.cells.iter().map(Vec::len).sum();
+        let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1)).max(FOLLOWED);
+        if self.cells.len() <= most {
+            return;
+        }
+        let run = self.cells.len() as f64 / most as f64;
+        self.weight *= run;
+        let places = (0..most).map(|number| {
+            let part = (self.random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            ((number as f64 + part) * run) as usize
+        });
+        let places: Vec<usize> = places.collect();
+        // A box that two runs share may be chosen twice.
+        let chosen = places.iter().map(|&place| self.cells[place].clone());
+        self.cells = chosen.collect();
+    }
+
+    /// The boxes of a grid that copies come near to, row by row from the lower left.
+    fn divided(&mut self, mut copies: Vec<Placed>, boxes: [usize; 2]) -> Vec<Cell> {
+        let mut cells = vec![Cell::new(); boxes[0] * boxes[1]];
+        while let Some(copy) = copies.pop() {
+            let part = &self.set.objects[copy.object];
+            let middle = copy.map.transform_point2(part.middle);
+            let radius = part.reach * copy.scale;
+            self.looked_at += 1;
+            let [columns, rows] = [0, 1].map(|axis| {
+                let (low, high) = (middle[axis] - radius, middle[axis] + radius);
+                within(low)..within(high + 1.0).min(boxes[axis])
+            });
+            if radius > LARGEST {
+                if !columns.is_empty() && !rows.is_empty() {
+                    let children = part.children.iter().rev();
+                    copies.extend(children.map(|inner| copy.compose(inner)));
+                }
+                continue;
+            }
+            for row in rows {
+                for column in columns.clone() {
+                    #[expect(clippy::cast_precision_loss, reason = "grids are small")]
+                    let corner = DVec2::new(column as f64, row as f64);
+                    let nearest = middle.clamp(corner, corner + 1.0);
+                    if middle.distance_squared(nearest) <= radius * radius {
+                        let mut inner = copy;
+                        inner.map.translation -= corner;
+                        cells[row * boxes[0] + column].push(inner);
+                    }
+                }
+            }
+        }
+        cells.retain(|cell| !cell.is_empty());
+        cells.iter_mut().for_each(without_doubles);
+        cells
+    }
+}
+
+/// The box of a row that holds a coordinate; the first for those below.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn within(coordinate: f64) -> usize {
+    coordinate as usize
+}
+
+/// Takes out copies that are the same as others.
+fn without_doubles(cell: &mut Cell) {
+    const SAME: f64 = 1e-5;
+    if cell.len() < MANY {
+        return;
+    }
+    cell.sort_by(|a, b| a.map.translation.x.total_cmp(&b.map.translation.x));
+    let mut kept: Cell = Vec::with_capacity(cell.len());
+    for copy in cell.iter() {
+        let near = kept.iter().rev();
+        let mut near = near.take_while(|it| copy.map.translation.x - it.map.translation.x <= SAME);
+        let is_same = |it: &Placed| it.object == copy.object && it.map.abs_diff_eq(copy.map, SAME);
+        if !near.any(is_same) {
+            kept.push(*copy);
+        }
+    }
+    *cell = kept;
+}
+
+impl LimitSet {
+    /// How the set is covered by boxes of sides that are parts of its extent, each `base` times
+    /// smaller than the one before, down to where numbers end: by a sample of boxes where there are
+    /// too many to be counted.
+    ///
+    /// A sample tells how counts grow. From the last least cover that was counted, the count grows
+    /// by the mean of all grids. Where too many copies lie over each other, sizes end.
+    ///
+    /// # Panics
+    ///
+    /// If the base is 1.
+    #[must_use]
+    pub fn sampled_scales(
+        &self,
+        base: NonZero<usize>,
+        grids: &[Grid],
+        threads: NonZero<usize>,
+    ) -> Vec<Scale> {
+        let base = base.get();
+        assert!(base > 1, "boxes get smaller");
+        let extent = self.bounds.size().max_element();
+        if extent <= 0.0 {
+            return Vec::new();
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a base is small")]
+        let smaller = |size: &f64| size / base as f64;
+        let first = smaller(&(extent * (1.0 + 2e-9)));
+        let sizes = std::iter::successors(Some(first), |size| Some(smaller(size)));
+        let sizes: Vec<f64> = sizes.take_while(|size| *size > FINEST * extent).collect();
+        let counts = on_all(grids, threads, |number, grid| {
+            let (map, boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
+            let map = Placed {
+                map,
+                scale: norm(&map.matrix2),
+                object: 0,
+            };
+            let start = self.start.iter().map(|copy| map.compose(copy)).collect();
+            let mut descent = Descent::new(self, start, boxes, number);
+            let mut counts = Vec::new();
+            for _ in &sizes {
+                if !counts.is_empty() {
+                    descent.go_down(base);
+                }
+                let Some(count) = descent.count() else {
+                    break;
+                };
+                counts.push(count);
+            }
+            counts
+        });
+        joined(&sizes, &counts)
+    }
+
+    /// Whether the unit square holds a point of the set; `copies` are what comes near it.
+    fn meets(&self, copies: &[Placed]) -> bool {
+        let lies_in = |copy: &Placed| {
+            let point = copy.map.transform_point2(self.objects[copy.object].point);
+            point.cmpge(DVec2::ZERO).all() && point.cmplt(DVec2::ONE).all()
+        };
+        if copies.iter().any(lies_in) {
+            return true;
+        }
+        let mut stack = copies.to_vec();
+        while let Some(copy) = stack.pop() {
+            let part = &self.objects[copy.object];
+            let middle = copy.map.transform_point2(part.middle);
+            let radius = part.reach * copy.scale;
+            let nearest = middle.clamp(DVec2::ZERO, DVec2::ONE);
+            if radius <= GRAZED || middle.distance_squared(nearest) > radius * radius {
+                continue;
+            }
+            for inner in &part.children {
+                let inner = copy.compose(inner);
+                if lies_in(&inner) {
+                    return true;
+                }
+                stack.push(inner);
+            }
+        }
+        false
+    }
+}
+
+/// The least counts of all grids, and how they grow where they come from samples.
+fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
+    let levels = counts.iter().map(Vec::len).min().unwrap_or_default();
+    let logs = |level: usize| counts.iter().map(move |counts| libm::log(counts[level].0));
+    #[expect(clippy::cast_precision_loss, reason = "grids are few")]
+    let grids = counts.len() as f64;
+    let mut log = 0.0;
+    let mut scales = Vec::new();
+    for level in 0..levels {
+        let growth: Vec<f64> = match level.checked_sub(1) {
+            Some(last) => logs(level)
+                .zip(logs(last))
+                .map(|(log, last)| log - last)
+                .collect(),
+            None => Vec::new(),
+        };
+        let error = deviation(growth.iter().copied());
+        let sampled = counts.iter().any(|counts| counts[level].1);
+        log = if sampled {
+            log + mean(&growth)
+        } else {
+            logs(level).fold(f64::INFINITY, f64::min)
+        };
+        scales.push(Scale {
+            size: sizes[level],
+            count: rounded(log),
+            scatter: deviation(logs(level)),
+            growth_error: if sampled { error / grids.sqrt() } else { error },
+            sampled,
+        });
+    }
+    scales
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn rounded(log: f64) -> u64 {
+    libm::exp(log).round() as u64
+}
