@@ -1,6 +1,6 @@
 //! Where rule files and components are found: the user's folders, then the embedded library.
 //!
-//! A library folder holds `rules`, `ifs`, `instancing`, `initiators`, `generators` and `base_elements`, each with YAML
+//! A library folder holds `rules`, `ifs`, `instancing`, `lsystems`, `initiators`, `generators` and `base_elements`, each with YAML
 //! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
 
 use std::collections::BTreeMap;
@@ -24,6 +24,8 @@ pub enum Shelf {
     Ifs,
     /// A structure of objects that instance each other.
     Instancing,
+    /// An L-system.
+    LSystems,
     /// An initiator.
     Initiators,
     /// A generator.
@@ -40,6 +42,7 @@ impl Shelf {
             Kind::Rule => Self::Rules,
             Kind::Ifs => Self::Ifs,
             Kind::Instancing => Self::Instancing,
+            Kind::LSystem => Self::LSystems,
         }
     }
 
@@ -50,10 +53,11 @@ impl Shelf {
     }
 
     /// All shelves, in the order in which they are listed.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Rules,
         Self::Ifs,
         Self::Instancing,
+        Self::LSystems,
         Self::Initiators,
         Self::Generators,
         Self::BaseElements,
@@ -66,6 +70,7 @@ impl Shelf {
             Self::Rules => "rules",
             Self::Ifs => "ifs",
             Self::Instancing => "instancing",
+            Self::LSystems => "lsystems",
             Self::Initiators => "initiators",
             Self::Generators => "generators",
             Self::BaseElements => "base_elements",
@@ -79,6 +84,7 @@ impl Shelf {
             Self::Rules => "rule",
             Self::Ifs => "ifs",
             Self::Instancing => "instancing",
+            Self::LSystems => "lsystem",
             Self::Initiators => "initiator",
             Self::Generators => "generator",
             Self::BaseElements => "base_element",
@@ -91,6 +97,7 @@ impl Shelf {
         match self {
             Self::Ifs => "system",
             Self::Instancing => "structure",
+            Self::LSystems => "L-system",
             Self::BaseElements => "base element",
             other => other.kind(),
         }

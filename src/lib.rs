@@ -13,7 +13,7 @@
 //!  the document of its kind, under a heading that all kinds have
 //!     │  resolve    names looked up, expressions compiled, everything checked
 //!     ▼
-//!  model            a rule, a system of maps or a structure of objects, validated
+//!  model            a rule, a system of maps, a structure of objects or an L-system, validated
 //!     │  graph      dependence on the moment becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
@@ -62,6 +62,7 @@ pub mod heading;
 pub mod ifs;
 pub mod import;
 pub mod instancing;
+pub mod lsystem;
 pub mod measure;
 pub mod model;
 pub mod parallel;

@@ -7,6 +7,7 @@ use crate::graph::{CompileError, Graph};
 use crate::heading::Heading;
 use crate::ifs::System;
 use crate::instancing::Instancing;
+use crate::lsystem::LSystem;
 use crate::rule::Rule;
 
 /// A kind of files that can be grown.
@@ -19,11 +20,13 @@ pub enum Kind {
     Ifs,
     /// A structure of objects that instance each other.
     Instancing,
+    /// An L-system.
+    LSystem,
 }
 
 impl Kind {
     /// All kinds, in the order in which they are listed and names are looked up.
-    pub const ALL: [Self; 3] = [Self::Rule, Self::Ifs, Self::Instancing];
+    pub const ALL: [Self; 4] = [Self::Rule, Self::Ifs, Self::Instancing, Self::LSystem];
 
     /// What `kind:` says in its files.
     #[must_use]
@@ -32,6 +35,7 @@ impl Kind {
             Self::Rule => "rule",
             Self::Ifs => "ifs",
             Self::Instancing => "instancing",
+            Self::LSystem => "lsystem",
         }
     }
 }
@@ -45,6 +49,8 @@ pub enum Model {
     Ifs(Arc<System>),
     /// A structure of objects that instance each other.
     Instancing(Arc<Instancing>),
+    /// An L-system.
+    LSystem(Arc<LSystem>),
 }
 
 impl Model {
@@ -55,6 +61,7 @@ impl Model {
             Self::Rule(_) => Kind::Rule,
             Self::Ifs(_) => Kind::Ifs,
             Self::Instancing(_) => Kind::Instancing,
+            Self::LSystem(_) => Kind::LSystem,
         }
     }
 
@@ -65,6 +72,7 @@ impl Model {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(system) => &system.heading,
             Self::Instancing(structure) => &structure.heading,
+            Self::LSystem(system) => &system.heading,
         }
     }
 
@@ -73,7 +81,7 @@ impl Model {
     pub fn rule(&self) -> Option<&Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) | Self::Instancing(_) => None,
+            Self::Ifs(_) | Self::Instancing(_) | Self::LSystem(_) => None,
         }
     }
 
@@ -82,17 +90,37 @@ impl Model {
     pub fn into_rule(self) -> Option<Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) | Self::Instancing(_) => None,
+            Self::Ifs(_) | Self::Instancing(_) | Self::LSystem(_) => None,
         }
     }
 
-    /// The model's graph, resolved for at least `steps` steps.
+    /// The model's graph, resolved for at least `steps` steps; for the seed 0 and
+    /// [`MOST_ELEMENTS`](Self::MOST_ELEMENTS), where that matters.
     ///
     /// # Errors
     ///
-    /// As for [`Graph::compile`].
+    /// As for [`Model::compile_for`].
     pub fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
+        self.compile_for(steps, 0, Self::MOST_ELEMENTS)
+    }
+
+    /// So many elements are drawn unless somebody allows more.
+    pub const MOST_ELEMENTS: u64 = 50_000_000;
+
+    /// The model's graph, resolved for at least `steps` steps. The words of L-systems are written for
+    /// exactly as many, by the draws of a seed, if they draw no more elements than are allowed.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Graph::compile`] and [`Graph::of_lsystem`].
+    pub fn compile_for(
+        &self,
+        steps: u32,
+        seed: u64,
+        most_elements: u64,
+    ) -> Result<Graph, CompileError> {
         match self {
+            Self::LSystem(system) => Graph::of_lsystem(system, steps, seed, most_elements),
             Self::Rule(rule) => Graph::compile(rule, steps),
             Self::Ifs(system) => Ok(Graph::of_system(system)),
             Self::Instancing(structure) => Ok(Graph::of_structure(structure)),
@@ -104,6 +132,7 @@ impl Model {
     pub fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         match self {
             Self::Rule(rule) => error.diagnostic(rule),
+            Self::LSystem(system) => system.diagnostic(error),
             Self::Ifs(_) | Self::Instancing(_) => Diagnostic::error(error.to_string()),
         }
     }

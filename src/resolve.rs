@@ -10,6 +10,7 @@ mod heading;
 mod ifs;
 mod instancing;
 mod interpolation;
+mod lsystem;
 mod map;
 mod numbers;
 mod outline;
@@ -57,6 +58,12 @@ pub(crate) fn resolve(
             resolved(&document.heading, settings, |resolver, heading| {
                 let structure = resolver.structure(document, heading)?;
                 Some(Model::Instancing(structure.into()))
+            })
+        }
+        KindDocument::LSystem(document) => {
+            resolved(&document.heading, settings, |resolver, heading| {
+                let system = resolver.lsystem(document, heading)?;
+                Some(Model::LSystem(system.into()))
             })
         }
     }

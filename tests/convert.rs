@@ -22,11 +22,12 @@ fn model(document: &Document) -> Model {
         .0
 }
 
-/// All that can be grown, with its name.
+/// All that can be grown, with its name, but for L-systems.
 fn library() -> Vec<(String, Model)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
-    let grown = entries.filter(|entry| Shelf::grown().contains(&entry.shelf));
+    let is_meant = |shelf| Shelf::grown().contains(&shelf) && shelf != Shelf::LSystems;
+    let grown = entries.filter(|entry| is_meant(entry.shelf));
     grown
         .map(|entry| {
             let source = catalogue.component(entry.shelf, &entry.name).unwrap();

@@ -39,6 +39,7 @@ fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, 
         Model::Rule(rule) => rule::write(rule, document.rule().unwrap(), &options, &mut bytes),
         Model::Ifs(system) => rule::write_system(system, &options, &mut bytes),
         Model::Instancing(structure) => rule::write_structure(structure, &options, &mut bytes),
+        Model::LSystem(_) => panic!("there are no figures of L-systems"),
     };
     (bytes, size.unwrap())
 }

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 mod common;
+#[path = "library/lsystems.rs"]
+mod lsystems;
 #[path = "library/picture.rs"]
 mod picture;
 #[path = "library/structures.rs"]
@@ -169,7 +171,7 @@ fn every_component_can_be_used() {
     for entry in Catalogue::embedded().entries() {
         let name = &entry.name;
         let text = match entry.shelf {
-            Shelf::Rules | Shelf::Ifs | Shelf::Instancing => continue,
+            Shelf::Rules | Shelf::Ifs | Shelf::Instancing | Shelf::LSystems => continue,
             Shelf::Initiators => format!("initiator: {name}\ngenerator: koch\n"),
             Shelf::Generators => format!("initiator: segment\ngenerator: {name}\n"),
             Shelf::BaseElements => {

@@ -157,7 +157,7 @@ fn bash_completes() {
         ("kfrac grow pythagoras-3", "pythagoras-30 pythagoras-345"),
         ("kfrac grow koch --palette vi", "viridis"),
         ("kfrac grow koch --cap ''", "round butt square"),
-        ("kfrac check hil", "hilbert"),
+        ("kfrac check hilbert-", "hilbert-lsystem"),
         ("kfrac man compl", "completions"),
         ("kfrac grow no-such-rule", ""),
     ] {

@@ -37,6 +37,7 @@ fn shelf_of(value: &Value) -> Shelf {
     match value.get("kind").and_then(Value::as_str) {
         Some("ifs") => Shelf::Ifs,
         Some("instancing") => Shelf::Instancing,
+        Some("lsystem") => Shelf::LSystems,
         _ => Shelf::Rules,
     }
 }
@@ -207,7 +208,7 @@ fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
     let rule = match shelf {
-        Shelf::Rules | Shelf::Ifs | Shelf::Instancing => text.clone(),
+        Shelf::Rules | Shelf::Ifs | Shelf::Instancing | Shelf::LSystems => text.clone(),
         Shelf::Initiators => "initiator: changed\ngenerator: koch\n".into(),
         Shelf::Generators => "initiator: segment\ngenerator: changed\n".into(),
         Shelf::BaseElements => {

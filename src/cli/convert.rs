@@ -45,16 +45,20 @@ Examples:
       Writes a system of which kfrac grow draws the same at every step
 ";
 
+/// The kinds that others are written as.
+const KINDS: [Kind; 3] = [Kind::Rule, Kind::Ifs, Kind::Instancing];
+
 fn kind() -> impl TypedValueParser<Value = Kind> {
-    let kinds = Kind::ALL.map(|kind| {
+    let kinds = KINDS.map(|kind| {
         PossibleValue::new(kind.name()).help(match kind {
             Kind::Rule => "A production rule; all maps must be similarities",
             Kind::Ifs => "An iterated function system, recurrent where it has to be",
             Kind::Instancing => "Objects that instance each other",
+            Kind::LSystem => "An L-system",
         })
     });
     PossibleValuesParser::new(kinds).try_map(|name| {
-        let mut kinds = Kind::ALL.into_iter();
+        let mut kinds = KINDS.into_iter();
         kinds.find(|kind| kind.name() == name).ok_or("unknown")
     })
 }
@@ -98,5 +102,6 @@ fn with_article(kind: Kind) -> &'static str {
         Kind::Rule => "a production rule",
         Kind::Ifs => "an iterated function system",
         Kind::Instancing => "an instancing structure",
+        Kind::LSystem => "an L-system",
     }
 }

@@ -63,7 +63,7 @@ struct Found<'a> {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { rule, growth, .. } = arguments;
-    let loaded = rule.load(catalogue, growth.quiet)?;
+    let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     let steps = steps::choose(arguments.steps, &loaded)?;
     let graph = loaded.compile(steps)?;
     growth.check(steps, &graph, &loaded, None)?;

@@ -60,8 +60,7 @@ impl Goal {
             };
             let more = (2 * steps).min(steps::MOST_STEPS);
             graph = loaded
-                .model
-                .compile(more)
+                .graph(more)
                 .map_err(|error| RenderError::Walk(WalkError::NotFinite(error)))?;
             // A graph that is too large to resolve cannot be cut.
             if more == steps || graph.counts_index() {
@@ -135,7 +134,7 @@ fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
                 && structure.depth().is_none()
                 && Graph::of_structure(structure).limit_bounds().is_some()
         }
-        Model::Rule(_) => false,
+        Model::Rule(_) | Model::LSystem(_) => false,
     }
 }
 

@@ -120,6 +120,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(Failure::Usage(message.into()));
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
+    let loaded = loaded.grown(&arguments.growth);
     let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
     let color_by = arguments.picture.style(loaded.model.heading()).color_by;
     let graph = loaded.compile_for(goal.steps(), color_by)?;

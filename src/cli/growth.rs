@@ -9,6 +9,7 @@ use crate::estimate::{Estimate, Estimator};
 use crate::geometry::Bounds;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError, extent};
+use crate::model::Model;
 use crate::parallel::all_cores;
 use crate::render::{self, RenderError};
 use crate::rule::Placement;
@@ -26,7 +27,7 @@ pub(super) struct GrowthArguments {
     /// The most elements that are grown
     ///
     /// Where the number is known before, a step that has more is refused before the work starts.
-    #[arg(long, value_name = "N", default_value_t = 50_000_000)]
+    #[arg(long, value_name = "N", default_value_t = Model::MOST_ELEMENTS)]
     pub(super) max_elements: u64,
     /// How many threads work [default: as many as there are cores]
     ///

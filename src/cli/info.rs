@@ -236,11 +236,11 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         },
         system: match &loaded.model {
             Model::Ifs(system) => Some(SystemInfo::of(system)),
-            Model::Rule(_) | Model::Instancing(_) => None,
+            Model::Rule(_) | Model::Instancing(_) | Model::LSystem(_) => None,
         },
         structure: match &loaded.model {
             Model::Instancing(structure) => Some(StructureInfo::of(structure)),
-            Model::Rule(_) | Model::Ifs(_) => None,
+            Model::Rule(_) | Model::Ifs(_) | Model::LSystem(_) => None,
         },
     }
 }

@@ -10,11 +10,13 @@ use etcetera::BaseStrategy;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Severity, Source, did_you_mean};
 use crate::document::{Document, Setting};
-use crate::graph::Graph;
+use crate::graph::{CompileError, Graph};
+use crate::lsystem::RewriteError;
 use crate::model::Model;
 use crate::style::{ColorBy, Named};
 
 use super::family::{self, Assignment};
+use super::growth::GrowthArguments;
 use super::{Failure, text};
 
 /// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
@@ -60,13 +62,34 @@ pub(super) struct Loaded {
     pub(super) settings: Vec<Setting>,
     /// The maps that are left out, as the command line has them.
     pub(super) omitted: Vec<u32>,
+    /// What draws depend on, and how many elements are allowed, where that is known.
+    growth: (u64, u64),
 }
 
 impl Loaded {
+    /// The same to be grown in a way.
+    pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
+        self.growth = (growth.seed, growth.max_elements);
+        self
+    }
+
     /// The graph, resolved for a number of steps.
+    pub(super) fn graph(&self, steps: u32) -> Result<Graph, CompileError> {
+        let (seed, most_elements) = self.growth;
+        self.model.compile_for(steps, seed, most_elements)
+    }
+
+    /// The same, with what is wrong as a mistake in the file.
     pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
-        let compiled = self.model.compile(steps);
-        compiled.map_err(|error| self.model.diagnostic(&error).into())
+        self.graph(steps).map_err(|error| {
+            let diagnostic = self.model.diagnostic(&error);
+            match error {
+                CompileError::Word(RewriteError::TooLong {
+                    what: "elements", ..
+                }) => diagnostic.hint("--max-elements allows more").into(),
+                _ => diagnostic.into(),
+            }
+        })
     }
 
     /// The same for pictures whose colours tell something.
@@ -197,6 +220,7 @@ impl RuleArguments {
             model,
             settings,
             omitted: self.omit.clone(),
+            growth: (0, Model::MOST_ELEMENTS),
         })
     }
 

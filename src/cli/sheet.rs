@@ -72,9 +72,12 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             .rule
             .load_family(catalogue, arguments.growth.quiet, arguments.samples)?;
     if !family.is_empty() {
+        let grown = |(setting, loaded): (_, Loaded)| (setting, loaded.grown(&arguments.growth));
+        let family: Vec<_> = family.into_iter().map(grown).collect();
         return arguments.draw_family(&family, format, start);
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
+    let loaded = loaded.grown(&arguments.growth);
     let steps = match &arguments.steps {
         Some(steps) => steps.clone(),
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),

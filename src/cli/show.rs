@@ -54,6 +54,14 @@ Examples:
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let loaded = arguments.rule.load(catalogue, arguments.quiet)?;
+    if let Model::LSystem(_) = loaded.model {
+        let name = &loaded.name;
+        let message = format!(
+            "there is no figure of an L-system's productions: `kfrac cat {name}` shows them, and \
+             `kfrac sheet {name}` what they draw"
+        );
+        return Err(anyhow::anyhow!(message).into());
+    }
     let default = arguments.rule.file("-rule", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let options = arguments.options(&loaded, format);
@@ -64,7 +72,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             }
             (Model::Ifs(system), _) => rule::write_system(system, &options, out),
             (Model::Instancing(structure), _) => rule::write_structure(structure, &options, out),
-            (Model::Rule(_), _) => unreachable!("a model is of its document's kind"),
+            (Model::Rule(_) | Model::LSystem(_), _) => {
+                unreachable!("a model is of its document's kind")
+            }
         };
         written.map_err(|error| match error {
             RenderError::Io(error) => output::failed(error, path),
@@ -106,6 +116,7 @@ fn noun(model: &Model) -> &'static str {
         Model::Rule(_) => "rule",
         Model::Ifs(_) => "system",
         Model::Instancing(_) => "structure",
+        Model::LSystem(_) => "L-system",
     }
 }
 
@@ -114,5 +125,6 @@ fn shown(model: &Model) -> &'static str {
         Model::Rule(_) => "The production rule",
         Model::Ifs(_) => "The system",
         Model::Instancing(_) => "The structure",
+        Model::LSystem(_) => "The L-system",
     }
 }

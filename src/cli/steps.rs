@@ -84,6 +84,9 @@ pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure
     if let Some(steps) = asked.or(loaded.model.heading().steps) {
         return Ok(steps);
     }
+    if let Model::LSystem(system) = &loaded.model {
+        return Ok(system.deepest(DEEPEST, MOST_ELEMENTS));
+    }
     let graph = loaded.compile(DEEPEST)?;
     if graph.forecast().is_none() {
         return Ok(DEEPEST / 2);

@@ -94,6 +94,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         Kind::Ifs => ifs::write(&structure, keeps)?,
         Kind::Instancing => instancing::write(&structure, keeps)?,
         Kind::Rule => rule::write(&structure)?,
+        Kind::LSystem => return Err(Refusal::NoStrings.into()),
     };
     let text = Node::from(headed(model.heading(), to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());

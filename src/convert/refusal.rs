@@ -7,6 +7,9 @@ pub enum Refusal {
     /// It is of that kind already.
     #[error("it is of the kind '{}' already: `kfrac cat --inline` shows all of it", .0.name())]
     SameKind(Kind),
+    /// L-systems are not written.
+    #[error("nothing is written as strings of symbols")]
+    NoStrings,
     /// There is no limit set.
     #[error(transparent)]
     NoLimit(#[from] NoLimit),

@@ -8,6 +8,7 @@ mod data;
 mod heading;
 mod ifs;
 mod instancing;
+mod lsystem;
 mod merge;
 pub mod node;
 mod read;
@@ -27,6 +28,10 @@ pub use ifs::{
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
     TintDocument, TransformDocument, UnionDocument,
+};
+pub use lsystem::{
+    ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, SymbolDocument,
+    WordDocument,
 };
 pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
@@ -111,6 +116,8 @@ pub enum KindDocument {
     Ifs(IfsDocument),
     /// A structure of objects that instance each other.
     Instancing(InstancingDocument),
+    /// An L-system.
+    LSystem(LSystemDocument),
 }
 
 impl KindDocument {
@@ -121,6 +128,7 @@ impl KindDocument {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(ifs) => &ifs.heading,
             Self::Instancing(structure) => &structure.heading,
+            Self::LSystem(system) => &system.heading,
         }
     }
 }
@@ -177,7 +185,7 @@ impl Document {
     pub fn rule(&self) -> Option<&RuleDocument> {
         match &self.kind {
             KindDocument::Rule(rule) => Some(rule),
-            KindDocument::Ifs(_) | KindDocument::Instancing(_) => None,
+            KindDocument::Ifs(_) | KindDocument::Instancing(_) | KindDocument::LSystem(_) => None,
         }
     }
 

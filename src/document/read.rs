@@ -7,11 +7,14 @@ mod generator;
 mod heading;
 mod ifs;
 mod instancing;
+mod lsystem;
 mod parameters;
 mod rule;
 mod select;
 mod set;
 mod transform;
+mod turtle;
+mod word;
 
 pub(super) use base_element::BASE_ELEMENT;
 pub(super) use elements::{ELEMENTS, INITIATOR};
@@ -19,6 +22,7 @@ pub(super) use generator::GENERATOR;
 pub(super) use heading::{DESCRIPTION, check_description};
 pub(super) use ifs::IFS;
 pub(super) use instancing::INSTANCING;
+pub(super) use lsystem::LSYSTEM;
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 
@@ -36,6 +40,7 @@ pub(super) fn shape(kind: Kind) -> &'static Shape {
         Kind::Rule => &RULE,
         Kind::Ifs => &IFS,
         Kind::Instancing => &INSTANCING,
+        Kind::LSystem => &LSYSTEM,
     }
 }
 
@@ -52,6 +57,9 @@ pub(super) fn read(
         Kind::Ifs => ifs::read_ifs(&mut reader, node, complete).map(KindDocument::Ifs),
         Kind::Instancing => {
             instancing::read_instancing(&mut reader, node, complete).map(KindDocument::Instancing)
+        }
+        Kind::LSystem => {
+            lsystem::read_lsystem(&mut reader, node, complete).map(KindDocument::LSystem)
         }
     };
     diagnostics.extend(reader.diagnostics);

@@ -10,8 +10,8 @@ mod json;
 use crate::catalogue::{Catalogue, Shelf};
 
 use super::read::{
-    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, INSTANCING, PARAMETER, PARAMS,
-    RULE,
+    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, INSTANCING, LSYSTEM, PARAMETER,
+    PARAMS, RULE,
 };
 use super::shape::{Choice, Form, Needed, Shape};
 use json::{Json, Object, list};
@@ -57,6 +57,10 @@ pub fn schema(shelf: Shelf) -> String {
         Shelf::Instancing => (
             "A structure of objects that instance each other, or themselves.",
             definitions.grown(&INSTANCING),
+        ),
+        Shelf::LSystems => (
+            "An L-system: a word, what replaces its symbols, and what a turtle draws of it.",
+            definitions.grown(&LSYSTEM),
         ),
         Shelf::Initiators => (
             "An initiator: what the growth starts from.",

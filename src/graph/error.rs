@@ -1,7 +1,8 @@
 use crate::diagnostic::Diagnostic;
+use crate::lsystem::RewriteError;
 use crate::rule::{Moment, Rule};
 
-/// A rule that cannot be grown.
+/// A model that cannot be grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CompileError {
     /// A generator has a point that is not finite.
@@ -21,6 +22,12 @@ pub enum CompileError {
         /// Its length relative to the initiator's.
         length: f64,
     },
+    /// The word of an L-system cannot be written.
+    #[error(transparent)]
+    Word(#[from] RewriteError),
+    /// A turtle goes farther than a double can say.
+    #[error("the turtle goes too far: a coordinate is not finite")]
+    TooFar,
 }
 
 impl CompileError {
@@ -43,7 +50,10 @@ impl CompileError {
             age,
             step,
             length,
-        } = self;
+        } = self
+        else {
+            return Diagnostic::error(self.to_string());
+        };
         let moment = Moment {
             index: *index,
             age: *age,

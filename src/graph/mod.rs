@@ -20,6 +20,7 @@ mod forecast;
 mod ifs;
 mod instancing;
 mod limit;
+mod lsystem;
 mod no_limit;
 mod reach;
 mod state;

@@ -125,6 +125,22 @@ impl Palette {
         &self.colours
     }
 
+    /// A colour by its number, beginning again behind the last: one of those that it was made of, or of
+    /// eight of a palette of the field.
+    #[must_use]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_wrap,
+        clippy::cast_possible_truncation,
+        reason = "palettes have few colours"
+    )]
+    pub fn entry(&self, number: i64) -> Colour {
+        match self.colours.len() as i64 {
+            0 => self.at(number.rem_euclid(8) as f64 / 7.0),
+            count => self.colours[number.rem_euclid(count) as usize],
+        }
+    }
+
     /// The colour at a place from 0 to 1.
     #[must_use]
     pub fn at(&self, place: f64) -> Colour {

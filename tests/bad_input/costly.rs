@@ -255,3 +255,29 @@ fn fractals_of_fractals_are_counted() {
     refused(text(6, 25).as_bytes(), "more than 100000 lines");
     refused(text(1_000_000, 1).as_bytes(), "more than 100000 lines");
 }
+
+/// Brackets are nested deeper than any stack of calls.
+#[test]
+fn brackets_may_be_nested_deeply() {
+    const DEPTH: usize = 100_000;
+    let (open, close) = ("[".repeat(DEPTH), "]".repeat(DEPTH));
+    let text =
+        |axiom: String| format!("kind: lsystem\naxiom: '{axiom}'\nproductions: {{F: F+F}}\n");
+    accepted(
+        &text(format!("F{open}F{close}F")),
+        &["count", "many.yaml", "--steps", "3"],
+    );
+    let contexts = "productions: ['F < F > F -> F[F]']";
+    let context = text(format!("F{open}F{close}F")).replace("productions: {F: F+F}", contexts);
+    accepted(&context, &["count", "many.yaml", "--steps", "3"]);
+    refused(text(open.clone()).as_bytes(), "not closed");
+    refused(text(close).as_bytes(), "no bracket is open");
+    let polygons = "{".repeat(DEPTH) + "fff" + &"}".repeat(DEPTH);
+    accepted(&text(polygons), &["count", "many.yaml", "--steps", "1"]);
+    let brackets = "[".repeat(DEPTH) + &"]".repeat(DEPTH);
+    let context = format!("kind: lsystem\naxiom: F\nproductions: ['F > {brackets} -> F']\n");
+    refused(context.as_bytes(), "nested");
+    let arguments = format!("F{}", "(".repeat(DEPTH));
+    refused(text(arguments).as_bytes(), "not closed");
+    refused(text("F".repeat(300_000)).as_bytes(), "250000 modules");
+}

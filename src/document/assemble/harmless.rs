@@ -21,6 +21,10 @@ pub(super) fn harmless_parent(place: &Place, kind: Kind) -> Entries {
             (key("initiator"), harmless(Shelf::Initiators, place)),
             (key("generator"), harmless(Shelf::Generators, place)),
         ],
+        Kind::LSystem => vec![
+            (key("axiom"), node(Value::Text("F".into()))),
+            (key("productions"), node(Value::Mapping(Vec::new()))),
+        ],
         Kind::Ifs => {
             let map = Value::Mapping(vec![(key("scale"), node(Value::Number(0.5)))]);
             vec![(key("maps"), node(Value::Sequence(vec![node(map)])))]

@@ -180,6 +180,10 @@ pub(super) fn translate(
         ErrorKind::UnclosedQuotedScalar
         | ErrorKind::InvalidQuotedScalarIndent
         | ErrorKind::DocumentIndicatorInQuotedScalar => return open_quote(&place, last),
+        ErrorKind::InvalidBlockScalarHeader => (
+            "YAML reads a '|' or '>' at the beginning as that of a text of several lines".into(),
+            "put text that begins with it in quotes",
+        ),
         ErrorKind::InvalidTrailingSingleQuotedScalar
         | ErrorKind::InvalidTrailingDoubleQuotedScalar => (
             "something follows the closing quote".into(),

@@ -1,0 +1,374 @@
+//! An L-system: what its keys hold.
+
+use crate::catalogue::Shelf;
+use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument};
+use crate::document::node::{Key, Node, Value};
+use crate::document::reader::Reader;
+use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
+use crate::document::{Number, Written};
+use crate::expression::Expression;
+use crate::model::Kind;
+
+use super::first_line;
+use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::parameters::PARAMS;
+use super::turtle::{MEANING, read_symbol};
+use super::word::{Text, Words};
+
+/// The keys of an L-system.
+pub(in crate::document) const LSYSTEM: Shape = Shape {
+    what: "an L-system",
+    keys: &[&DESCRIPTION, &LSYSTEM_ALONE, &LIKING],
+    ways: &[],
+    hint: "an L-system is a mapping of keys: `kfrac cat koch-lsystem` shows a short one",
+};
+
+/// The keys that only an L-system has.
+const LSYSTEM_ALONE: [Member; 11] = [
+    needed_key(
+        "kind",
+        Form::Words(&[Kind::LSystem.name()]),
+        "The kind of file.",
+    ),
+    key(
+        "extends",
+        Form::File(Shelf::LSystems),
+        "Another L-system to start from, by name or by file. The keys written here replace its keys; \
+         `params`, `style` and `view` merge entry by entry.",
+    ),
+    PARAMS,
+    Member {
+        needed: Needed::Alone,
+        ..key(
+            "axiom",
+            Form::Text,
+            "The word that all begins with: symbols, perhaps with arguments, such as `F` or \
+             `A(1, 10)`. Blanks mean nothing.",
+        )
+    },
+    Member {
+        needed: Needed::Alone,
+        ..key(
+            "productions",
+            Form::Either(&[
+                Form::Names(
+                    &Form::Either(&[
+                        Form::Text,
+                        Form::List(
+                            &Form::Either(&[Form::Text, Form::Mapping(&ALTERNATIVE)]),
+                            1,
+                            None,
+                        ),
+                        Form::Mapping(&ALTERNATIVE),
+                    ]),
+                    0,
+                ),
+                Form::List(
+                    &Form::Either(&[Form::Text, Form::Mapping(&PRODUCTION)]),
+                    0,
+                    None,
+                ),
+            ]),
+            "What replaces what: a mapping of symbols to words, or to lists of words of which one is \
+             drawn; or a list of productions such as `A(w) : w > 1 -> F[A(w/2)]` and \
+             `A < B > C -> AB`.",
+        )
+    },
+    key(
+        "angle",
+        Form::Number,
+        "By how much `+` turns counter-clockwise and `-` clockwise, in degrees; 90 if left out.",
+    ),
+    key(
+        "heading",
+        Form::Number,
+        "Where the turtle looks first, in degrees counter-clockwise; 0, to the right, if left out.",
+    ),
+    key(
+        "length",
+        Form::Positive,
+        "The length of a step; 1 if left out.",
+    ),
+    key(
+        "thinning",
+        Form::Positive,
+        "What `!` multiplies widths by; 0.7 if left out.",
+    ),
+    key(
+        "symbols",
+        Form::Names(&MEANING, 0),
+        "What the turtle does where it meets a symbol, where that is not as usual: an action, or a \
+         list of actions. Arguments have names: `B(s)`.",
+    ),
+    key(
+        "ignore",
+        Form::Text,
+        "The symbols that contexts do not see.",
+    ),
+];
+
+const WEIGHT: Member = key(
+    "weight",
+    Form::Positive,
+    "How often it is taken, relative to the others; 1 if left out.",
+);
+
+const ALTERNATIVE: Shape = Shape {
+    what: "an alternative",
+    keys: &[&[
+        needed_key("to", Form::Text, "The word that replaces the module."),
+        WEIGHT,
+    ]],
+    ways: &[],
+    hint: "F: [\"F[+F]F\", {to: \"F[-F]F\", weight: 2}]",
+};
+
+const PRODUCTION: Shape = Shape {
+    what: "a production",
+    keys: &[&[
+        needed_key("production", Form::Text, "The production: `F -> F[+F]F`."),
+        key(
+            "weight",
+            Form::Positive,
+            "How often it is taken, relative to others with weights that fit.",
+        ),
+    ]],
+    ways: &[],
+    hint: "- \"F -> F[+F]F\", or - {production: \"F -> F[+F]F\", weight: 1/3}",
+};
+
+/// How to write words that YAML reads as something else.
+const QUOTE: &str = "a word that begins with a bracket, or with another sign of YAML, needs quotes: \
+                     F: \"[+F]F\"";
+
+/// Reads an L-system with its parents in it; `complete` if all of them were found.
+pub(super) fn read_lsystem(
+    reader: &mut Reader,
+    node: &Node,
+    complete: bool,
+) -> Option<LSystemDocument> {
+    let fields = reader.fields(node, &LSYSTEM)?;
+    let heading = read_heading(reader, &fields);
+    let mut number = |key| reader.optional_number(fields.take(key));
+    let (angle, start) = (number("angle"), number("heading"));
+    let (length, thinning) = (number("length"), number("thinning"));
+    for (key, hint) in [
+        ("axiom", "axiom: F"),
+        ("productions", "productions: {F: F+F--F+F}"),
+    ] {
+        if fields.take(key).is_none() {
+            let place = first_line(fields.place);
+            let message = format!("the L-system has no {key}");
+            reader.error_with_hint(&place, message, hint);
+        }
+    }
+    let mut words = Words::new(reader);
+    let axiom = fields.take("axiom").and_then(|node| words.of(node));
+    let productions = fields
+        .take("productions")
+        .map_or_else(Vec::new, |node| read_productions(&mut words, node));
+    let symbols = match fields.take("symbols").map(|node| (&node.value, node)) {
+        None => Vec::new(),
+        Some((Value::Mapping(symbols), _)) => symbols
+            .iter()
+            .filter_map(|(key, node)| read_symbol(&mut words, key, node))
+            .collect(),
+        Some((_, node)) => {
+            let hint = "symbols: {G: draw, \"*\": {turn: 36}}";
+            let what = "a mapping of symbols to actions";
+            words.reader.mismatch(node, what, hint);
+            Vec::new()
+        }
+    };
+    let ignored = fields.take("ignore").and_then(|node| words.of(node));
+    let ignored = ignored.into_iter().flat_map(|word| word.modules);
+    let ignored = ignored.map(|module| module.character).collect();
+    let mut system = LSystemDocument {
+        heading,
+        angle,
+        start,
+        length,
+        thinning,
+        axiom,
+        productions,
+        symbols,
+        ignored,
+        tells_colours: fields
+            .take("style")
+            .is_some_and(|style| style.get("color_by").is_some()),
+    };
+    system.heading.complete = complete && !reader.names_are_missing;
+    Some(system)
+}
+
+fn read_productions(words: &mut Words<'_>, node: &Node) -> Vec<ProductionDocument> {
+    let mut productions = Vec::new();
+    match &node.value {
+        Value::Mapping(entries) => {
+            for (key, node) in entries {
+                read_entry(words, key, node, &mut productions);
+            }
+        }
+        Value::Sequence(entries) => {
+            for node in entries {
+                productions.extend(read_production(words, node));
+            }
+        }
+        _ => {
+            let what = "a mapping of symbols to words";
+            words
+                .reader
+                .mismatch(node, what, "productions: {F: F+F--F+F}");
+        }
+    }
+    productions
+}
+
+/// An entry of the list: a production with its arrow.
+fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocument> {
+    let (text, weight) = match &node.value {
+        Value::Mapping(entries) => {
+            if let [(key, value)] = entries.as_slice()
+                && PRODUCTION.members().all(|member| member.name != key.name)
+                && value.written().is_some_and(|text| text.contains("->"))
+            {
+                let message = "YAML reads the ':' as that of a mapping";
+                let hint = format!("quote the production: \"{}\"", node.place.text().trim());
+                words.reader.error_with_hint(&key.place, message, hint);
+                return None;
+            }
+            let fields = words.reader.fields(node, &PRODUCTION)?;
+            let weight = words.reader.optional_number(fields.take("weight"));
+            let Some(text) = fields.take("production") else {
+                let message = "this entry has no production";
+                let place = first_line(&node.place);
+                words
+                    .reader
+                    .error_with_hint(&place, message, PRODUCTION.hint);
+                return None;
+            };
+            (text, weight)
+        }
+        _ => (node, None),
+    };
+    let Some(written) = Text::of(text) else {
+        words.reader.mismatch(text, "a production", PRODUCTION.hint);
+        return None;
+    };
+    let Some((head, successor)) = written.at_arrow() else {
+        let message = "a production has an arrow";
+        let hint = "write F -> F+F, or a mapping of symbols to words: F: F+F";
+        words.reader.error_with_hint(&text.place, message, hint);
+        return None;
+    };
+    let head = words.head(written, head);
+    let successor = words.part(written, successor);
+    let head = head?;
+    Some(ProductionDocument {
+        left: head.left,
+        predecessor: head.predecessor,
+        right: head.right,
+        condition: head.condition,
+        successor,
+        weight,
+    })
+}
+
+/// An entry of the mapping: what is replaced, and by what.
+fn read_entry(
+    words: &mut Words<'_>,
+    key: &Key,
+    node: &Node,
+    productions: &mut Vec<ProductionDocument>,
+) {
+    let written = Text::of_key(key);
+    let alternatives = match &node.value {
+        Value::Sequence(entries) => {
+            if let [entry] = entries.as_slice()
+                && entry.written().is_some()
+            {
+                let message = "this is a list of one word";
+                let hint = format!("quote the bracket: \"[{}]\"", entry.place.text());
+                words.reader.error_with_hint(&node.place, message, hint);
+            } else if entries.is_empty() {
+                let message = "this is an empty list";
+                words.reader.error_with_hint(&node.place, message, QUOTE);
+            }
+            let one = |node: &Node| Written {
+                value: Expression::number(1.0),
+                place: node.place.clone(),
+            };
+            entries
+                .iter()
+                .filter_map(|entry| {
+                    let (word, weight) = read_alternative(words, entry)?;
+                    Some((word, Some(weight.unwrap_or_else(|| one(entry)))))
+                })
+                .collect()
+        }
+        _ => read_alternative(words, node)
+            .into_iter()
+            .collect::<Vec<_>>(),
+    };
+    let Some(head) = words.head(written, 0..key.name.len()) else {
+        return;
+    };
+    for (successor, weight) in alternatives {
+        productions.push(ProductionDocument {
+            left: head.left.clone(),
+            predecessor: head.predecessor.clone(),
+            right: head.right.clone(),
+            condition: head.condition.clone(),
+            successor,
+            weight,
+        });
+    }
+}
+
+/// A successor, perhaps with a weight.
+fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument, Option<Number>)> {
+    let Value::Mapping(entries) = &node.value else {
+        if let Some(text) = Text::of(node)
+            && let Some((before, _)) = text.at_arrow()
+        {
+            let place = node.within(before.end..before.end + 2);
+            let message = "an arrow does not belong in a mapping";
+            let hint = "write a list of productions: - \"A(w) : w > 1 -> A(w/2)\"";
+            words.reader.error_with_hint(&place, message, hint);
+            return None;
+        }
+        return Some((words.of(node)?, None));
+    };
+    let known = |name: &str| ALTERNATIVE.members().any(|member| member.name == name);
+    if !entries.iter().any(|(key, _)| known(&key.name)) {
+        let message = "YAML reads this as a mapping, a word is needed";
+        words.reader.error_with_hint(&node.place, message, QUOTE);
+        return None;
+    }
+    let fields = words.reader.fields(node, &ALTERNATIVE)?;
+    let weight = words.reader.optional_number(fields.take("weight"));
+    let Some(to) = fields.take("to") else {
+        let message = "this alternative has no word";
+        let place = first_line(&node.place);
+        words
+            .reader
+            .error_with_hint(&place, message, ALTERNATIVE.hint);
+        return None;
+    };
+    Some((words.of(to)?, weight))
+}
+
+impl Words<'_> {
+    /// The word that a value is; nothing if it is none, which is said.
+    fn of(&mut self, node: &Node) -> Option<WordDocument> {
+        if let Some(text) = Text::of(node) {
+            return Some(self.word(text));
+        }
+        let hint = match node.value {
+            Value::Null => "quote a word that begins with '#', '~' or '!'; nothing at all is \"\"",
+            _ => QUOTE,
+        };
+        self.reader.mismatch(node, "a word", hint);
+        None
+    }
+}

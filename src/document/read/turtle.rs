@@ -1,0 +1,141 @@
+//! What the turtle does where it meets a symbol.
+
+use crate::diagnostic::did_you_mean;
+use crate::document::lsystem::{ActionDocument, SymbolDocument};
+use crate::document::node::{Key, Node, Value};
+use crate::document::shape::{Form, Shape, key};
+
+use super::word::{Text, Words};
+
+/// An action by its name alone.
+const WORDS: [&str; 10] = [
+    "draw", "move", "glide", "push", "pop", "reflect", "open", "close", "vertex", "nothing",
+];
+
+/// An action, or several.
+pub(super) const MEANING: Form = Form::Either(&[ONE, Form::List(&ONE, 0, None)]);
+
+const ONE: Form = Form::Either(&[Form::Words(&WORDS), Form::Mapping(&ACTION)]);
+
+const ACTION: Shape = Shape {
+    what: "an action",
+    keys: &[&[
+        key("draw", Form::Number, "Draws a line of so many steps."),
+        key(
+            "move",
+            Form::Number,
+            "Goes so many steps ahead and draws nothing.",
+        ),
+        key(
+            "glide",
+            Form::Number,
+            "Goes so many steps ahead; in a polygon it makes no vertex.",
+        ),
+        key(
+            "turn",
+            Form::Number,
+            "Turns by so many degrees, counter-clockwise.",
+        ),
+        key(
+            "scale",
+            Form::Number,
+            "Multiplies the length of all steps from here on.",
+        ),
+        key(
+            "width",
+            Form::Positive,
+            "Multiplies the width of lines from here on.",
+        ),
+        key(
+            "set_width",
+            Form::Positive,
+            "Sets the width, as a multiple of the file's.",
+        ),
+        key(
+            "colour",
+            Form::Number,
+            "Sets the colour: its number in the palette, from 0.",
+        ),
+        key(
+            "shift_colour",
+            Form::Number,
+            "Adds to the number of the colour.",
+        ),
+    ]],
+    ways: &[],
+    hint: "draw, move, {draw: 1/2}, {turn: 36}, {scale: 1/2}, push, pop or another action",
+};
+
+/// Reads the meaning of a symbol.
+pub(super) fn read_symbol(words: &mut Words<'_>, key: &Key, node: &Node) -> Option<SymbolDocument> {
+    let mut actions = Vec::new();
+    match &node.value {
+        Value::Sequence(entries) => {
+            for node in entries {
+                read_action(words, node, &mut actions);
+            }
+        }
+        _ => read_action(words, node, &mut actions),
+    }
+    let mut word = words.word(Text::of_key(key));
+    if word.complete && word.modules.len() != 1 {
+        let message = "one symbol has a meaning";
+        let hint = "write a symbol, perhaps with names for its arguments: G or B(s)";
+        words.reader.error_with_hint(&key.place, message, hint);
+        return None;
+    }
+    Some(SymbolDocument {
+        symbol: word.modules.pop()?,
+        actions,
+    })
+}
+
+fn read_action(words: &mut Words<'_>, node: &Node, actions: &mut Vec<ActionDocument>) {
+    let reader = &mut *words.reader;
+    let Value::Text(name) = &node.value else {
+        let Some(fields) = reader.fields(node, &ACTION) else {
+            return;
+        };
+        for (name, node) in fields.in_order() {
+            let number = reader.number(node);
+            actions.push(match name {
+                "draw" => ActionDocument::Draw(Some(number)),
+                "move" => ActionDocument::Move(Some(number)),
+                "glide" => ActionDocument::Glide(Some(number)),
+                "turn" => ActionDocument::Turn(number),
+                "scale" => ActionDocument::Scale(number),
+                "width" => ActionDocument::Width(number),
+                "set_width" => ActionDocument::SetWidth(number),
+                "colour" => ActionDocument::Colour(number),
+                _ => ActionDocument::ShiftColour(number),
+            });
+        }
+        return;
+    };
+    actions.push(match name.as_str() {
+        "draw" => ActionDocument::Draw(None),
+        "move" => ActionDocument::Move(None),
+        "glide" => ActionDocument::Glide(None),
+        "push" => ActionDocument::Push,
+        "pop" => ActionDocument::Pop,
+        "reflect" => ActionDocument::Reflect,
+        "open" => ActionDocument::Open,
+        "close" => ActionDocument::Close,
+        "vertex" => ActionDocument::Vertex,
+        "nothing" => return,
+        name => {
+            let mut numbered = ACTION.members();
+            let hint = if numbered.any(|member| member.name == name) {
+                format!("it needs a number: {{{name}: 1}}")
+            } else {
+                let names = WORDS
+                    .into_iter()
+                    .chain(ACTION.members().map(|member| member.name));
+                did_you_mean(name, names).unwrap_or_else(|| ACTION.hint.into())
+            };
+            let message = format!("'{name}' is no action");
+            reader.error_with_hint(&node.place, message, hint);
+            return;
+        }
+    });
+}

@@ -1,0 +1,220 @@
+use std::collections::BTreeSet;
+
+use crate::expression::degrees;
+use crate::geometry::DVec2;
+
+use super::{Action, LSystem, Symbol};
+
+/// Headings as whole numbers: parts of a turn, so that sums of turns are exact.
+///
+/// Where all angles of a system are known to be fractions of a turn, a turn has as many parts as their
+/// least common denominator; otherwise 2⁶⁴. 25.7 degrees are 257/3600 of a turn and the double next to
+/// 360/7 is 1/7: the fraction is of the least denominator up to 1000 that the double is the nearest to, or
+/// else that of its shortest decimal.
+///
+/// Guarantee: directions of whole multiples of 30 and 45 degrees have the exact sines and cosines, and
+/// opposite headings have opposite directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Compass {
+    /// Parts of a turn; 0 stands for 2⁶⁴.
+    parts: u64,
+}
+
+/// A turn has no more parts than this unless it has 2⁶⁴: 360 times as many fit a double exactly.
+const MOST_PARTS: u64 = 1 << 40;
+
+/// The largest denominator that is looked for.
+const MOST_DENOMINATOR: u32 = 1000;
+
+impl Compass {
+    /// The compass of all angles that a system turns by.
+    #[must_use]
+    pub fn of(system: &LSystem) -> Self {
+        let mut parts = Some(1);
+        let written = angles(system).chain([Some(system.start)]);
+        let different: BTreeSet<_> = written.map(|angle| angle.map(f64::to_bits)).collect();
+        for angle in different {
+            let denominator = angle.map(f64::from_bits).and_then(denominator);
+            parts = parts
+                .zip(denominator)
+                .and_then(|(a, b)| (a / gcd(a, b)).checked_mul(b))
+                .filter(|parts| *parts <= MOST_PARTS);
+        }
+        Self {
+            parts: parts.unwrap_or(0),
+        }
+    }
+
+    /// The number of parts of a turn; 0 stands for 2⁶⁴.
+    #[must_use]
+    pub fn parts(self) -> u64 {
+        self.parts
+    }
+
+    /// An angle in degrees as parts, to the nearest; 0 for one that is not finite.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "an angle below a turn has fewer parts than a turn, which fit; what is no number becomes 0"
+    )]
+    pub fn of_degrees(self, angle: f64) -> u64 {
+        let turn = (angle % 360.0) / 360.0;
+        if self.parts == 0 {
+            // Of a negative angle the parts wrap round.
+            return (turn * 2f64.powi(64)) as i128 as u64;
+        }
+        let parts = (turn.abs() * self.parts as f64).round() as u64 % self.parts;
+        if turn < 0.0 { self.back(parts) } else { parts }
+    }
+
+    /// The sum of two headings.
+    #[must_use]
+    pub fn sum(self, a: u64, b: u64) -> u64 {
+        match self.parts {
+            0 => a.wrapping_add(b),
+            parts => (a + b) % parts,
+        }
+    }
+
+    /// The turn the other way round.
+    #[must_use]
+    pub fn back(self, turn: u64) -> u64 {
+        match self.parts {
+            0 => turn.wrapping_neg(),
+            parts => (parts - turn) % parts,
+        }
+    }
+
+    /// A heading in degrees, from 0 up to 360.
+    #[must_use]
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "the parts fit, or are the finest that a double has"
+    )]
+    pub fn degrees(self, heading: u64) -> f64 {
+        match self.parts {
+            0 => heading as f64 / 2f64.powi(64) * 360.0,
+            parts => (heading * 360) as f64 / parts as f64,
+        }
+    }
+
+    /// The direction of a heading, of length 1.
+    #[must_use]
+    pub fn direction(self, heading: u64) -> DVec2 {
+        let angle = self.degrees(heading);
+        DVec2::new(degrees::cos(angle), degrees::sin(angle))
+    }
+}
+
+/// All angles that the symbols of a system turn by; `None` for one that is not known beforehand.
+fn angles(system: &LSystem) -> impl Iterator<Item = Option<f64>> {
+    let turns = |symbol: &'_ Symbol| {
+        let turns = symbol.meaning.iter().filter_map(|action| match action {
+            Action::Turn(program) => Some(program.clone()),
+            _ => None,
+        });
+        turns.collect::<Vec<_>>()
+    };
+    let symbols = &system.symbols;
+    let constant = symbols
+        .iter()
+        .filter(|symbol| symbol.arity == 0)
+        .flat_map(turns)
+        .map(|program| program.as_constant());
+    let axiom = system.axiom.iter().flat_map(move |module| {
+        let turns = turns(&symbols[module.symbol]);
+        turns
+            .into_iter()
+            .map(|program| Some(program.eval(&module.arguments)))
+    });
+    let templates = system.productions.iter().flat_map(|p| &p.successor);
+    let written = templates
+        .filter(move |template| symbols[template.symbol].arity > 0)
+        .flat_map(move |template| {
+            let values = template.arguments.iter().map(|p| p.as_constant());
+            let values: Option<Vec<f64>> = values.collect();
+            let turns = turns(&symbols[template.symbol]).into_iter();
+            turns.map(move |program| {
+                let known = values.as_ref().map(|values| program.eval(values));
+                known.or_else(|| program.as_constant())
+            })
+        });
+    constant.chain(axiom).chain(written)
+}
+
+/// The denominator of an angle in degrees as a fraction of a turn; nothing if it has none.
+fn denominator(angle: f64) -> Option<u64> {
+    let whole = |q: u32| {
+        let q = f64::from(q);
+        360.0 * (angle * q / 360.0).round() / q == angle
+    };
+    if let Some(q) = (1..=MOST_DENOMINATOR).find(|q| whole(*q)) {
+        return Some(q.into());
+    }
+    let text = angle.abs().to_string();
+    let (units, decimals) = text.split_once('.').unwrap_or((&text, ""));
+    let scale = 10u64.checked_pow(u32::try_from(decimals.len()).ok()?)?;
+    let numerator: u64 = format!("{units}{decimals}").parse().ok()?;
+    let turn = scale.checked_mul(360)?;
+    Some(turn / gcd(numerator, turn))
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Compass, MOST_PARTS, denominator};
+    use crate::geometry::DVec2;
+
+    #[test]
+    fn angles_are_fractions_of_a_turn() {
+        for (angle, parts) in [
+            (0.0, 1),
+            (60.0, 6),
+            (-90.0, 4),
+            (22.5, 16),
+            (36.0, 10),
+            (25.7, 3600),
+            (360.0 / 7.0, 7),
+            (180.0 / 7.0, 14),
+            (720.0, 1),
+            (85.123, 360_000),
+        ] {
+            assert_eq!(denominator(angle), Some(parts), "{angle}");
+        }
+        assert_eq!(denominator(f64::NAN), None);
+        let odd = denominator(std::f64::consts::LN_2);
+        assert!(odd.is_none_or(|parts| parts > MOST_PARTS));
+    }
+
+    #[test]
+    fn turns_add_up_exactly() {
+        for parts in [7, 3600, 0] {
+            let compass = Compass { parts };
+            for angle in [51.4, -51.4, 25.7, 359.9, -1e-3, 1080.0] {
+                let turn = compass.of_degrees(angle);
+                assert_eq!(compass.sum(turn, compass.back(turn)), 0);
+                assert_eq!(compass.of_degrees(-angle), compass.back(turn));
+            }
+        }
+        let compass = Compass { parts: 6 };
+        let there = compass.direction(compass.of_degrees(-60.0));
+        assert_eq!(there, DVec2::new(0.5, -(3f64.sqrt()) / 2.0));
+        assert_eq!(compass.degrees(5), 300.0);
+    }
+
+    /// A turn by what is not known beforehand is that angle to a double's precision.
+    #[test]
+    fn unknown_angles_are_fine() {
+        let compass = Compass { parts: 0 };
+        for angle in [1.0, 17.123_456_789, 0.000_1, 300.0] {
+            let there = compass.degrees(compass.of_degrees(angle));
+            assert!((there - angle).abs() < 1e-13, "{angle} {there}");
+        }
+        assert_eq!(compass.direction(1 << 62), DVec2::Y);
+    }
+}

@@ -1,0 +1,294 @@
+//! Words, rewritten step by step.
+
+use crate::rule::draw::{Path, pick_by_weight};
+
+use crate::wording::grouped;
+
+use super::surroundings::Surroundings;
+use super::word::number;
+use super::{LSystem, Word};
+
+/// Words of more modules than this are not made.
+const MOST_MODULES: u64 = 25_000_000;
+
+/// So often at most modules, productions and contexts are looked at in all steps together.
+const MOST_WORK: u64 = 1_000_000_000;
+
+/// A forecast that looks at more modules of successors than this is given up.
+const MOST_FORECAST: usize = 100_000_000;
+
+/// Why a word could not be rewritten.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RewriteError {
+    /// A word would hold more than are allowed.
+    #[error("the word of step {step} has more than {} {what}{}", grouped(&(*most).into()), deepest(*step))]
+    TooLong {
+        /// The step that makes it.
+        step: u32,
+        /// So many are allowed.
+        most: u64,
+        /// What of: modules, arguments or elements.
+        what: &'static str,
+    },
+    /// Writing it takes too long.
+    #[error("writing the word of step {step} takes too long{}", deepest(*step))]
+    TooMuchWork {
+        /// The step.
+        step: u32,
+    },
+    /// An argument is infinite or NaN.
+    #[error("step {step} makes an argument of '{character}' that is not finite")]
+    NotFinite {
+        /// The step.
+        step: u32,
+        /// The symbol whose argument it is.
+        character: char,
+        /// The production, by number.
+        production: usize,
+    },
+}
+
+/// The step before one whose word is too long.
+fn deepest(step: u32) -> String {
+    let before = step.checked_sub(1);
+    before.map_or_else(String::new, |step| format!("; step {step} is the deepest"))
+}
+
+impl LSystem {
+    /// The word after a number of steps.
+    ///
+    /// # Errors
+    ///
+    /// If a word is too long, with more than `most_elements` of what the turtle draws or with more than
+    /// some ten million modules, or if an argument is not finite. Where the lengths of words can be told
+    /// beforehand, nothing is rewritten then.
+    pub fn word(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Word, RewriteError> {
+        if let Some(error) = self.too_long(steps, most_elements) {
+            return Err(error);
+        }
+        self.rewritten(steps, seed, most_elements, MOST_WORK)
+    }
+
+    fn rewritten(
+        &self,
+        steps: u32,
+        seed: u64,
+        most_elements: u64,
+        most_work: u64,
+    ) -> Result<Word, RewriteError> {
+        let mut word = Word::axiom(self, seed);
+        let mut rewriter = Rewriter {
+            system: self,
+            slots: Vec::new(),
+            work: 0,
+            most_work,
+        };
+        for step in 1..=steps {
+            let mut next = Word::default();
+            rewriter.step(&word, &mut next, step, most_elements)?;
+            // What stays the same stays the same.
+            if next.symbols == word.symbols
+                && next.arguments == word.arguments
+                && self.is_deterministic()
+            {
+                break;
+            }
+            word = next;
+        }
+        Ok(word)
+    }
+
+    /// The deepest step, up to a number, whose word has no more than so many elements; 0 if none has.
+    #[must_use]
+    pub fn deepest(&self, steps: u32, most_elements: u64) -> u32 {
+        match self.word(steps, 0, most_elements) {
+            Ok(_) => steps,
+            Err(
+                RewriteError::TooLong { step, .. }
+                | RewriteError::TooMuchWork { step }
+                | RewriteError::NotFinite { step, .. },
+            ) => step.saturating_sub(1),
+        }
+    }
+
+    /// The first of the steps whose word is too long, as far as that can be told without rewriting.
+    fn too_long(&self, steps: u32, most_elements: u64) -> Option<RewriteError> {
+        let mut lengths = self.lengths()?;
+        let successors = self.productions.iter().map(|p| p.successor.len());
+        let work = self.symbols.len() + successors.sum::<usize>();
+        let soon = u32::try_from(MOST_FORECAST / work.max(1)).unwrap_or(u32::MAX);
+        for step in 0..=steps.min(soon) {
+            let (modules, elements) = lengths.count();
+            let too_long = [
+                (modules, MOST_MODULES, "modules"),
+                (elements, most_elements, "elements"),
+            ];
+            let found = too_long.into_iter().find(|(count, most, _)| count > most);
+            if let Some((_, most, what)) = found {
+                return Some(RewriteError::TooLong { step, most, what });
+            }
+            if !lengths.advance() {
+                break;
+            }
+        }
+        None
+    }
+
+    /// The production that replaces a module, if one does.
+    ///
+    /// `weight` tells whether a production fits, by contexts and its condition, with its weight.
+    pub(crate) fn chosen(
+        &self,
+        symbol: usize,
+        path: Option<Path>,
+        mut weight: impl FnMut(usize) -> Option<f64>,
+    ) -> Option<usize> {
+        let candidates = &self.symbols[symbol].productions;
+        let mut fitting = candidates.iter().copied().enumerate();
+        let (at, first) = fitting.find(|(_, number)| weight(*number).is_some())?;
+        let production = &self.productions[first];
+        let Some(path) = path.filter(|_| production.weight.is_some()) else {
+            return Some(first);
+        };
+        let mut drawn = Vec::new();
+        for &number in &candidates[at..] {
+            let other = &self.productions[number];
+            if other.weight.is_some()
+                && other.has_context() == production.has_context()
+                && let Some(weight) = weight(number)
+            {
+                // A weight that is no number is none.
+                drawn.push((number, weight.max(0.0)));
+            }
+        }
+        let weights = drawn.iter().map(|(_, weight)| *weight);
+        drawn
+            .get(pick_by_weight(path, weights))
+            .map(|(number, _)| *number)
+    }
+}
+
+struct Rewriter<'s> {
+    system: &'s LSystem,
+    /// The arguments that a production sees.
+    slots: Vec<f64>,
+    /// How many modules and productions have been looked at.
+    work: u64,
+    most_work: u64,
+}
+
+impl Rewriter<'_> {
+    fn step(
+        &mut self,
+        word: &Word,
+        next: &mut Word,
+        step: u32,
+        most_elements: u64,
+    ) -> Result<(), RewriteError> {
+        let system = self.system;
+        let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
+        let mut elements = 0;
+        for (at, (symbol, arguments)) in (0u32..).zip(word.modules(system)) {
+            let path = word.paths.get(at as usize).copied();
+            let (slots, work) = (&mut self.slots, &mut self.work);
+            *work += 1;
+            let mut fits = |number: usize| {
+                *work += 1;
+                let production = &system.productions[number];
+                slots.clear();
+                match &surroundings {
+                    None => slots.extend(arguments),
+                    Some(around) => {
+                        let fits = around.fits_left(at, &production.left, slots) && {
+                            slots.extend(arguments);
+                            around.fits_right(at, &production.right, slots)
+                        };
+                        if !fits {
+                            return None;
+                        }
+                    }
+                }
+                let condition = production.condition.as_ref();
+                let holds = condition.is_none_or(|condition| condition.holds(slots));
+                let weight = production.weight.as_ref();
+                holds.then(|| weight.map_or(1.0, |weight| weight.eval(slots)))
+            };
+            let from = next.len();
+            if let Some(chosen) = system.chosen(symbol, path, &mut fits) {
+                // The arguments are those that the production that was chosen sees.
+                fits(chosen);
+                let successor = &system.productions[chosen].successor;
+                for (position, template) in (0..).zip(successor) {
+                    next.symbols.push(number(template.symbol));
+                    for argument in &template.arguments {
+                        let value = argument.eval(&self.slots);
+                        if !value.is_finite() {
+                            let character = system.symbols[template.symbol].character;
+                            return Err(RewriteError::NotFinite {
+                                step,
+                                character,
+                                production: chosen,
+                            });
+                        }
+                        next.arguments.push(value);
+                    }
+                    next.paths.extend(path.map(|path| path.child(position)));
+                }
+            } else {
+                next.symbols.push(number(symbol));
+                next.arguments.extend(arguments);
+                next.paths.extend(path);
+            }
+            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > self.most_work {
+                return Err(RewriteError::TooMuchWork { step });
+            }
+            let new = &next.symbols[from..];
+            let draws = new
+                .iter()
+                .map(|symbol| system.symbols[*symbol as usize].draws());
+            elements += draws.sum::<u64>();
+            for (count, most, what) in [
+                (next.symbols.len() as u64, MOST_MODULES, "modules"),
+                (next.arguments.len() as u64, MOST_MODULES, "arguments"),
+                (elements, most_elements, "elements"),
+            ] {
+                if count > most {
+                    return Err(RewriteError::TooLong { step, most, what });
+                }
+            }
+        }
+        self.work += surroundings.map_or(0, |around| around.looks());
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::RewriteError;
+    use crate::catalogue::Catalogue;
+    use crate::diagnostic::Source;
+    use crate::document::Document;
+    use crate::model::Model;
+
+    /// Long contexts and many productions are looked at for a while, and then no more.
+    #[test]
+    fn too_much_work_is_given_up() {
+        let [word, left] = [900, 400].map(|count| "F".repeat(count));
+        for productions in [
+            format!("['{left} < F -> F', 'F > {left} -> F']"),
+            "['F : 1 > 2 -> F', 'F -> F+']".into(),
+        ] {
+            let text = format!("kind: lsystem\naxiom: {word}\nproductions: {productions}\n");
+            let source = Source::new("test.yaml", text);
+            let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+            let Model::LSystem(system) = document.resolve(&[]).unwrap().0 else {
+                panic!("this is an L-system");
+            };
+            let step = 1;
+            let error = system.rewritten(1, 0, 10_000, 1_000).unwrap_err();
+            assert_eq!(error, RewriteError::TooMuchWork { step });
+            assert!(system.rewritten(1, 0, 10_000, 1_000_000).is_ok());
+        }
+    }
+}

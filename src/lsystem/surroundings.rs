@@ -1,0 +1,198 @@
+//! What contexts see: a word as the tree that its brackets make of it.
+
+use std::cell::Cell;
+
+use super::{Context, LSystem, Word};
+
+/// No module.
+const NONE: u32 = u32::MAX;
+
+/// For every module of a word, its neighbours in the tree. Made in a time that is linear in the word,
+/// with a stack of its own however deep brackets are.
+pub(super) struct Surroundings<'a> {
+    system: &'a LSystem,
+    word: &'a Word,
+    /// Where the arguments of a module begin.
+    arguments: Vec<u32>,
+    /// The module before it on the way from the root.
+    before: Vec<u32>,
+    /// The next module or bracket behind it.
+    next: Vec<u32>,
+    /// The same over branches.
+    ahead: Vec<u32>,
+    /// Of an opening bracket, the closing one.
+    end: Vec<u32>,
+    /// How many modules contexts were held against.
+    looks: Cell<u64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Module,
+    Ignored,
+    Open,
+    Close,
+}
+
+impl<'a> Surroundings<'a> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "words have fewer modules and arguments than a u32 counts"
+    )]
+    pub(super) fn new(system: &'a LSystem, word: &'a Word) -> Self {
+        let count = word.len();
+        let kinds: Vec<Kind> = { system.symbols.iter() }
+            .map(|symbol| match symbol {
+                symbol if symbol.is_push() => Kind::Open,
+                symbol if symbol.is_pop() => Kind::Close,
+                symbol if symbol.ignored => Kind::Ignored,
+                _ => Kind::Module,
+            })
+            .collect();
+        let kind = |at: u32| kinds[word.symbols[at as usize] as usize];
+        let mut all = Self {
+            system,
+            word,
+            arguments: Vec::with_capacity(count),
+            before: Vec::with_capacity(count),
+            next: vec![NONE; count],
+            ahead: vec![NONE; count],
+            end: vec![NONE; count],
+            looks: Cell::new(0),
+        };
+        let mut argument = 0;
+        let mut last = NONE;
+        let mut open = Vec::new();
+        for (at, &symbol) in (0..).zip(&word.symbols) {
+            all.arguments.push(argument as u32);
+            argument += system.symbols[symbol as usize].arity;
+            all.before.push(last);
+            match kind(at) {
+                Kind::Module => last = at,
+                Kind::Ignored => {}
+                Kind::Open => open.push((at, last)),
+                Kind::Close => {
+                    if let Some((opening, before)) = open.pop() {
+                        all.end[opening as usize] = at;
+                        last = before;
+                    }
+                }
+            }
+        }
+        let mut next = NONE;
+        for at in (0..count as u32).rev() {
+            let here = at as usize;
+            all.next[here] = next;
+            let is_branch = next != NONE && kind(next) == Kind::Open;
+            let over = is_branch.then(|| all.end[next as usize]);
+            all.ahead[here] = over.map_or(next, |end| all.ahead[end as usize]);
+            if kind(at) != Kind::Ignored {
+                next = at;
+            }
+        }
+        all
+    }
+
+    /// The arguments of a module.
+    pub(super) fn arguments(&self, at: u32) -> &'a [f64] {
+        let at = at as usize;
+        let start = self.arguments[at] as usize;
+        let symbol = &self.system.symbols[self.word.symbols[at] as usize];
+        &self.word.arguments[start..start + symbol.arity]
+    }
+
+    /// How many modules contexts have been held against.
+    pub(super) fn looks(&self) -> u64 {
+        self.looks.get()
+    }
+
+    fn is(&self, at: u32, symbol: usize) -> bool {
+        self.looks.set(self.looks.get() + 1);
+        at != NONE && self.word.symbols[at as usize] as usize == symbol
+    }
+
+    /// Whether a left context fits a module; the arguments of the context are added to `slots`.
+    pub(super) fn fits_left(&self, at: u32, left: &[usize], slots: &mut Vec<f64>) -> bool {
+        let mut found = at;
+        for &symbol in left.iter().rev() {
+            found = self.before[found as usize];
+            if !self.is(found, symbol) {
+                return false;
+            }
+        }
+        let mut found = at;
+        let start = slots.len();
+        for _ in left {
+            found = self.before[found as usize];
+            let before = slots.len();
+            slots.extend(self.arguments(found));
+            // The nearest one comes last.
+            let added = slots.len() - before;
+            slots[start..].rotate_right(added);
+        }
+        true
+    }
+
+    /// Whether a right context fits behind a module; the arguments of the context are added to `slots`.
+    pub(super) fn fits_right(&self, at: u32, right: &[Context], slots: &mut Vec<f64>) -> bool {
+        let mut behind = at;
+        let mut rest = right;
+        while let Some((first, others)) = rest.split_first() {
+            match first {
+                Context::Symbol(symbol) => {
+                    behind = self.ahead[behind as usize];
+                    if !self.is(behind, *symbol) {
+                        return false;
+                    }
+                    slots.extend(self.arguments(behind));
+                    rest = others;
+                }
+                Context::Open => {
+                    let inner = inside(others);
+                    let Some(end) = self.branch(behind, inner, slots) else {
+                        return false;
+                    };
+                    behind = end;
+                    rest = &others[inner.len() + 1..];
+                }
+                // Brackets of contexts are balanced, and what is inside was looked at.
+                Context::Close => rest = others,
+            }
+        }
+        true
+    }
+
+    /// The end of the first branch behind a module that a context fits.
+    fn branch(&self, behind: u32, inner: &[Context], slots: &mut Vec<f64>) -> Option<u32> {
+        let mut behind = behind;
+        loop {
+            let opening = self.next[behind as usize];
+            // Only an opening bracket has an end.
+            let end = (opening != NONE).then(|| self.end[opening as usize])?;
+            if end == NONE {
+                return None;
+            }
+            let before = slots.len();
+            self.looks.set(self.looks.get() + 1);
+            if self.fits_right(opening, inner, slots) {
+                return Some(end);
+            }
+            slots.truncate(before);
+            behind = end;
+        }
+    }
+}
+
+/// What stands before the bracket that closes the one before this.
+fn inside(context: &[Context]) -> &[Context] {
+    let mut depth = 0;
+    let end = context.iter().position(|part| {
+        match part {
+            Context::Open => depth += 1,
+            Context::Close => depth -= 1,
+            Context::Symbol(_) => {}
+        }
+        depth < 0
+    });
+    &context[..end.unwrap_or(context.len())]
+}

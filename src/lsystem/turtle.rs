@@ -1,0 +1,268 @@
+//! The turtle: from words to elements that stand in the plane.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{DVec2, Direction, Frame, placement};
+use crate::rule::{BaseElement, Piece};
+
+use super::{Action, Compass, LSystem, Word};
+
+/// What the turtle draws: a line of one step, or a polygon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Where it stands. A line runs from (0, 0) to (1, 0) of it; a polygon has the coordinates that a
+    /// turtle has which begins at (0, 0), looking to the right, where it was opened.
+    pub frame: Frame,
+    /// Whether it starts where the one drawn before it ends, in the same width and colour.
+    pub joined: bool,
+    /// The symbol that drew it: of a polygon, the one that closed it.
+    pub symbol: usize,
+    /// Its width, as a multiple of what the turtle started with.
+    pub width: f64,
+    /// The index of its colour.
+    pub colour: i64,
+    /// Which of the polygons it is, if it is one.
+    pub polygon: Option<usize>,
+}
+
+/// All that a turtle draws.
+#[derive(Clone, Debug, Default)]
+pub struct Drawing {
+    /// The elements, in the order in which they are drawn.
+    pub elements: Vec<Placed>,
+    /// The outlines of polygons that differ.
+    pub polygons: Vec<BaseElement>,
+}
+
+/// Where the turtle is, and how it draws.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    place: DVec2,
+    heading: u64,
+    mirrored: bool,
+    /// The length of a step.
+    step: f64,
+    width: f64,
+    colour: i64,
+}
+
+impl State {
+    fn direction(&self) -> Direction {
+        if self.mirrored {
+            Direction::YReflected
+        } else {
+            Direction::Normal
+        }
+    }
+}
+
+/// A polygon that is open.
+struct Open {
+    state: State,
+    vertices: Vec<DVec2>,
+    /// Where it begins in the word: modules and arguments.
+    from: [usize; 2],
+    /// How many states were saved when it began, and the fewest that were since.
+    depth: usize,
+    least_depth: usize,
+}
+
+struct Turtle {
+    compass: Compass,
+    state: State,
+    saved: Vec<State>,
+    open: Vec<Open>,
+    drawing: Drawing,
+    /// Whether the pen is where the last line ends.
+    is_down: bool,
+    /// The polygons by what they are made of.
+    known: BTreeMap<(Vec<u32>, Vec<u64>), usize>,
+}
+
+impl LSystem {
+    /// What the turtle draws of a word. A line of no length is no element, and neither is a polygon of
+    /// less than three vertices.
+    #[must_use]
+    pub fn draw(&self, word: &Word) -> Drawing {
+        let compass = Compass::of(self);
+        let mut turtle = Turtle {
+            compass,
+            state: State {
+                place: DVec2::ZERO,
+                heading: compass.of_degrees(self.start),
+                mirrored: false,
+                step: self.length,
+                width: 1.0,
+                colour: 0,
+            },
+            saved: Vec::new(),
+            open: Vec::new(),
+            drawing: Drawing::default(),
+            is_down: false,
+            known: BTreeMap::new(),
+        };
+        let mut argument = 0;
+        for (at, (symbol, arguments)) in word.modules(self).enumerate() {
+            for action in &self.symbols[symbol].meaning {
+                turtle.act(action, symbol, arguments, word, [at, argument]);
+            }
+            argument += arguments.len();
+        }
+        turtle.drawing
+    }
+}
+
+impl Turtle {
+    fn act(
+        &mut self,
+        action: &Action,
+        symbol: usize,
+        arguments: &[f64],
+        word: &Word,
+        at: [usize; 2],
+    ) {
+        let state = &mut self.state;
+        match action {
+            Action::Draw(steps) => self.draw(steps.eval(arguments), symbol),
+            Action::Move(steps) => {
+                self.go(steps.eval(arguments));
+                self.vertex();
+                self.is_down = false;
+            }
+            Action::Glide(steps) => {
+                self.go(steps.eval(arguments));
+                self.is_down = false;
+            }
+            Action::Turn(angle) => {
+                let turn = self.compass.of_degrees(angle.eval(arguments));
+                let turn = if state.mirrored {
+                    self.compass.back(turn)
+                } else {
+                    turn
+                };
+                state.heading = self.compass.sum(state.heading, turn);
+            }
+            Action::Push => self.saved.push(*state),
+            Action::Pop => {
+                // Words are balanced.
+                if let Some(saved) = self.saved.pop() {
+                    self.state = saved;
+                }
+                if let Some(open) = self.open.last_mut() {
+                    open.least_depth = open.least_depth.min(self.saved.len());
+                }
+                self.is_down = false;
+            }
+            Action::Reflect => state.mirrored = !state.mirrored,
+            Action::Scale(factor) => state.step *= factor.eval(arguments),
+            Action::Width(factor) => state.width *= factor.eval(arguments).max(0.0),
+            Action::SetWidth(width) => state.width = width.eval(arguments).max(0.0),
+            Action::SetColour(colour) => state.colour = index(colour.eval(arguments)),
+            Action::ShiftColour(by) => {
+                state.colour = state.colour.saturating_add(index(by.eval(arguments)));
+            }
+            Action::Open => self.open.push(Open {
+                state: *state,
+                vertices: Vec::new(),
+                from: at,
+                depth: self.saved.len(),
+                least_depth: self.saved.len(),
+            }),
+            Action::Close => self.close(symbol, word, at),
+            Action::Vertex => self.vertex(),
+        }
+    }
+
+    /// Goes a number of steps ahead.
+    fn go(&mut self, steps: f64) {
+        let along = self.compass.direction(self.state.heading);
+        self.state.place += along * (steps * self.state.step);
+    }
+
+    fn vertex(&mut self) {
+        if let Some(open) = self.open.last_mut() {
+            open.vertices.push(self.state.place);
+        }
+    }
+
+    fn draw(&mut self, steps: f64, symbol: usize) {
+        let from = self.state.place;
+        self.go(steps);
+        if !self.open.is_empty() {
+            return self.vertex();
+        }
+        if steps * self.state.step == 0.0 {
+            return;
+        }
+        let State { width, colour, .. } = self.state;
+        let last = self.drawing.elements.last();
+        let alike = last.is_some_and(|last| last.width == width && last.colour == colour);
+        let direction = self.state.direction();
+        self.drawing.elements.push(Placed {
+            frame: Frame::between(from, self.state.place, direction),
+            joined: self.is_down && alike,
+            symbol,
+            width,
+            colour,
+            polygon: None,
+        });
+        self.is_down = true;
+    }
+
+    /// Ends the polygon that was begun last.
+    fn close(&mut self, symbol: usize, word: &Word, at: [usize; 2]) {
+        let Some(open) = self.open.pop() else {
+            return;
+        };
+        if let Some(outer) = self.open.last_mut() {
+            outer.least_depth = outer.least_depth.min(open.least_depth);
+        }
+        let State { place, step, .. } = open.state;
+        let along = self.compass.direction(open.state.heading) * step;
+        let direction = open.state.direction();
+        let frame = Frame {
+            map: placement(place, place + along, direction),
+            direction,
+        };
+        if open.vertices.len() < 3 || step == 0.0 {
+            return;
+        }
+        let number = self.drawing.polygons.len();
+        let mut made = number;
+        // Where brackets end that it did not begin with, more than its own modules decides.
+        if self.open.is_empty() && open.least_depth == open.depth {
+            let symbols = word.symbols[open.from[0]..at[0]].to_vec();
+            let arguments = &word.arguments[open.from[1]..at[1]];
+            let arguments = arguments.iter().map(|value| value.to_bits()).collect();
+            made = *self.known.entry((symbols, arguments)).or_insert(number);
+        }
+        if made == number {
+            let inverse = frame.map.inverse();
+            let mut vertices = open.vertices.iter().map(|v| inverse.transform_point2(*v));
+            let start = vertices.next().unwrap_or(DVec2::ZERO);
+            let pieces = vertices.map(Piece::Line).collect();
+            let outline = BaseElement::new(start, pieces, true);
+            // One of no extent keeps its number, and is drawn as a line.
+            let outline = outline.unwrap_or_else(BaseElement::line);
+            self.drawing.polygons.push(outline);
+        }
+        self.drawing.elements.push(Placed {
+            frame,
+            joined: false,
+            symbol,
+            width: open.state.width,
+            colour: open.state.colour,
+            polygon: Some(made),
+        });
+        self.is_down = false;
+    }
+}
+
+/// A colour's index: the whole number next to a value.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn index(value: f64) -> i64 {
+    value.round() as i64
+}

@@ -1,0 +1,75 @@
+use crate::rule::draw::Path;
+
+use super::{LSystem, Module};
+
+/// A word: its modules, one after the other, with little memory for each.
+///
+/// Guarantee: there are as many arguments as the symbols take, all finite, and as many paths as modules,
+/// or none where nothing is drawn at random.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Word {
+    /// The symbols, by number.
+    pub(super) symbols: Vec<u32>,
+    /// The arguments of all modules.
+    pub(super) arguments: Vec<f64>,
+    pub(super) paths: Vec<Path>,
+}
+
+impl Word {
+    /// The axiom of a system.
+    #[must_use]
+    pub fn axiom(system: &LSystem, seed: u64) -> Self {
+        let mut word = Self::default();
+        let root = Path::of_seed(seed);
+        for (position, Module { symbol, arguments }) in (0..).zip(&system.axiom) {
+            word.symbols.push(number(*symbol));
+            word.arguments.extend(arguments);
+            if !system.is_deterministic() {
+                word.paths.push(root.child(position));
+            }
+        }
+        word
+    }
+
+    /// The number of its modules.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.symbols.len()
+    }
+
+    /// Whether it has no modules.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.symbols.is_empty()
+    }
+
+    /// The modules: symbols by number, with their arguments.
+    pub fn modules<'a>(&'a self, system: &'a LSystem) -> impl Iterator<Item = (usize, &'a [f64])> {
+        let mut rest = &self.arguments[..];
+        self.symbols.iter().map(move |&symbol| {
+            let symbol = symbol as usize;
+            let (own, behind) = rest.split_at(system.symbols[symbol].arity);
+            rest = behind;
+            (symbol, own)
+        })
+    }
+
+    /// The word as text: `F[+A(1, 0.5)]`.
+    #[must_use]
+    pub fn to_text(&self, system: &LSystem) -> String {
+        let mut text = String::new();
+        for (symbol, arguments) in self.modules(system) {
+            text.push(system.symbols[symbol].character);
+            if !arguments.is_empty() {
+                let values: Vec<_> = arguments.iter().map(ToString::to_string).collect();
+                text.push_str(&format!("({})", values.join(", ")));
+            }
+        }
+        text
+    }
+}
+
+/// A symbol's number as words have it: a file holds fewer than that.
+pub(super) fn number(symbol: usize) -> u32 {
+    u32::try_from(symbol).unwrap_or(u32::MAX)
+}

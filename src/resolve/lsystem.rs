@@ -1,0 +1,269 @@
+//! L-systems.
+
+mod alphabet;
+mod check;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{LSystemDocument, ModuleDocument, Number, ProductionDocument, WordDocument};
+use crate::expression::{Program, Scope, is_reserved};
+use crate::heading::Heading;
+use crate::lsystem::{Action, Context, LSystem, Module, Origin, Production, Symbol, Template};
+use crate::style::ColorBy;
+
+use super::Resolver;
+
+/// Branches of branches of a context: each is looked for by a call of itself.
+const MOST_BRANCHES: i32 = 64;
+
+/// What is known while an L-system is resolved.
+#[derive(Default)]
+pub(super) struct OfLSystem {
+    symbols: Vec<Symbol>,
+    numbers: BTreeMap<(char, usize), usize>,
+    /// The meanings of the file's own.
+    own: BTreeMap<(char, usize), Vec<Action>>,
+    /// The angle of `+`, in degrees.
+    angle: f64,
+    /// What `!` multiplies widths by.
+    thinning: f64,
+    /// The file's parameters.
+    constants: Arc<Scope>,
+}
+
+impl Resolver<OfLSystem> {
+    /// The system; `None` if something is wrong, which is said.
+    pub(super) fn lsystem(
+        &mut self,
+        document: &LSystemDocument,
+        heading: Heading,
+    ) -> Option<LSystem> {
+        self.kind.constants = Arc::new(self.constants.clone());
+        self.kind.angle = self.number_or(document.angle.as_ref(), 90.0);
+        self.kind.thinning = self.number_or(document.thinning.as_ref(), 0.7);
+        let start = self.number_or(document.start.as_ref(), 0.0);
+        let length = self.number_or(document.length.as_ref(), 1.0);
+        if let Some(number) = &document.length
+            && length <= 0.0
+        {
+            self.error(&number.place, "the length of a step is above 0");
+        }
+        if let Some(number) = &document.thinning
+            && self.kind.thinning < 0.0
+        {
+            self.error(&number.place, "a width cannot be negative");
+        }
+        for symbol in &document.symbols {
+            self.define(symbol);
+        }
+        let axiom = document.axiom.as_ref().map(|word| self.axiom(word));
+        let productions: Vec<_> = { &document.productions }
+            .iter()
+            .filter_map(|production| self.production(production))
+            .collect();
+        if productions.len() < document.productions.len() || self.diagnostics.has_errors() {
+            return None;
+        }
+        for &character in &document.ignored {
+            for symbol in &mut self.kind.symbols {
+                symbol.ignored |= symbol.character == character;
+            }
+        }
+        for with_context in [true, false] {
+            for (number, production) in productions.iter().enumerate() {
+                if production.has_context() == with_context {
+                    let of = &mut self.kind.symbols[production.predecessor].productions;
+                    of.push(number);
+                }
+            }
+        }
+        let mut system = LSystem {
+            heading,
+            start,
+            length,
+            symbols: std::mem::take(&mut self.kind.symbols),
+            axiom: axiom?,
+            productions,
+        };
+        if system.has_colours() && !document.tells_colours {
+            system.heading.style.color_by = ColorBy::Tint;
+        }
+        self.check_weights(document, &system);
+        self.warn(document, &system);
+        Some(system)
+    }
+
+    fn number_or(&mut self, number: Option<&Number>, default: f64) -> f64 {
+        number.map_or(default, |number| self.constant(number).unwrap_or(default))
+    }
+
+    fn axiom(&mut self, word: &WordDocument) -> Vec<Module> {
+        if word.complete && word.modules.is_empty() {
+            let hint = "axiom: F";
+            self.error_with_hint(&word.place, "the axiom is empty", hint);
+        }
+        let scope = Arc::clone(&self.kind.constants);
+        let templates = self.word(word, &scope);
+        let modules = templates.into_iter().map(|template| Module {
+            symbol: template.symbol,
+            arguments: { template.arguments.iter() }
+                .map(|program| program.eval(&[]))
+                .collect(),
+        });
+        modules.collect()
+    }
+
+    /// The modules of a word, in which brackets are balanced.
+    fn word(&mut self, word: &WordDocument, scope: &Scope) -> Vec<Template> {
+        let templates: Vec<_> = { word.modules.iter() }
+            .map(|module| Template {
+                symbol: self.symbol(module),
+                arguments: { module.arguments.iter() }
+                    .map(|number| self.program(number, scope))
+                    .collect(),
+            })
+            .collect();
+        if word.complete {
+            let symbols: Vec<_> = templates.iter().map(|template| template.symbol).collect();
+            self.check_balance(&word.modules, &symbols);
+        }
+        templates
+    }
+
+    fn production(&mut self, document: &ProductionDocument) -> Option<Production> {
+        let mistakes = self.mistakes;
+        let mut scope = Scope::inside(&self.kind.constants);
+        let replaced = std::slice::from_ref(&document.predecessor);
+        let sides = [&document.left[..], replaced, &document.right];
+        let mut slots = 0;
+        for module in sides.into_iter().flatten() {
+            self.names(module, &mut scope, &mut slots);
+        }
+        let [left, replaced, right] =
+            sides.map(|side| -> Vec<_> { side.iter().map(|module| self.symbol(module)).collect() });
+        let predecessor = *replaced.first()?;
+        let is_bracket = |action: &Action| {
+            use Action::{Close, Open, Pop, Push};
+            matches!(action, Push | Pop | Open | Close)
+        };
+        if { &self.kind.symbols[predecessor].meaning }
+            .iter()
+            .any(is_bracket)
+        {
+            let message = "a bracket cannot be replaced";
+            self.error(&document.predecessor.place, message);
+        }
+        for (module, &number) in document.left.iter().zip(&left) {
+            let symbol = &self.kind.symbols[number];
+            if symbol.is_push() || symbol.is_pop() {
+                let message = "a left context has no brackets";
+                let hint = "it is what stands on the way from the root, over the brackets";
+                self.error_with_hint(&module.place, message, hint);
+            }
+        }
+        self.check_balance(&document.right, &right);
+        let mut depth = 0;
+        for (module, &number) in document.right.iter().zip(&right) {
+            depth += i32::from(self.kind.symbols[number].is_push());
+            depth -= i32::from(self.kind.symbols[number].is_pop());
+            if depth > MOST_BRANCHES {
+                let message = "this context is nested too deeply";
+                let hint = format!("{MOST_BRANCHES} branches at most");
+                self.error_with_hint(&module.place, message, hint);
+                break;
+            }
+        }
+        let condition = document.condition.as_ref();
+        let condition = condition.map(|number| self.condition(number, &scope));
+        let weight = document.weight.as_ref().map(|number| {
+            let weight = self.program(number, &scope);
+            if weight.as_constant().is_some_and(|value| value < 0.0) {
+                self.error(&number.place, "a weight cannot be negative");
+            }
+            weight
+        });
+        let successor = self.word(&document.successor, &scope);
+        let symbols = &self.kind.symbols;
+        (self.mistakes == mistakes).then(|| Production {
+            origin: Origin(document.successor.place.clone()),
+            predecessor,
+            left,
+            right: { right.into_iter() }
+                .map(|number| match &symbols[number] {
+                    symbol if symbol.is_push() => Context::Open,
+                    symbol if symbol.is_pop() => Context::Close,
+                    _ => Context::Symbol(number),
+                })
+                .collect(),
+            condition,
+            successor,
+            weight,
+        })
+    }
+
+    /// Puts the names of a module's arguments into a scope, from a slot on.
+    fn names(&mut self, module: &ModuleDocument, scope: &mut Scope, slots: &mut usize) {
+        for number in &module.arguments {
+            let slot = *slots;
+            *slots += 1;
+            let Some(name) = number.value.as_name() else {
+                if !number.value.is_unknown() {
+                    let message = "arguments have names here";
+                    let hint =
+                        "A(w); where one value is meant, a condition says so: A(w) : w == 1 -> F";
+                    self.error_with_hint(&number.place, message, hint);
+                }
+                continue;
+            };
+            if is_reserved(name) {
+                let message = format!("'{name}' has a meaning of its own in expressions");
+                self.error_with_hint(&number.place, message, "give the argument another name");
+            } else if self.kind.constants.contains(name) {
+                let message = format!("'{name}' is a parameter of the file already");
+                self.error_with_hint(&number.place, message, "give the argument another name");
+            } else if scope.contains(name) {
+                let message = format!("the name '{name}' is there twice");
+                self.error_with_hint(&number.place, message, "give each argument its own name");
+            }
+            self.used.insert(name.to_owned());
+            scope.variable(name, slot);
+        }
+    }
+
+    /// What none of the diagnostics of a production may be: all of its weights 0.
+    fn check_weights(&mut self, document: &LSystemDocument, system: &LSystem) {
+        for symbol in &system.symbols {
+            let weights = { symbol.productions.iter() }.filter_map(|&number| {
+                let weight = system.productions[number].weight.as_ref()?;
+                Some((number, weight.as_constant()))
+            });
+            let weights: Vec<_> = weights.collect();
+            if let Some((first, _)) = weights.first()
+                && weights.iter().all(|(_, weight)| *weight == Some(0.0))
+                && let Some(number) = &document.productions[*first].weight
+            {
+                let message = format!(
+                    "no production of '{}' has a weight above 0",
+                    symbol.character
+                );
+                self.error(&number.place, message);
+            }
+        }
+    }
+
+    fn warning(&mut self, module: &ModuleDocument, message: String, hint: &str) {
+        let warning = Diagnostic::warning(message).at(&module.place);
+        self.diagnostics.push(warning.hint(hint));
+    }
+}
+
+/// The program of an expression of a module's only argument, x.
+fn of_argument(text: &str) -> Program {
+    let mut scope = Scope::new();
+    scope.variable("x", 0);
+    let expression = crate::expression::Expression::parse(text);
+    let program = expression.and_then(|expression| expression.compile(&scope));
+    program.unwrap_or_else(|_| unreachable!("the texts are those of this file"))
+}

@@ -1,0 +1,136 @@
+//! What symbols mean to the turtle.
+
+use crate::document::{ActionDocument, ModuleDocument, Number, SymbolDocument};
+use crate::expression::{Program, Scope};
+use crate::lsystem::{Action, Symbol};
+use crate::resolve::Resolver;
+
+use super::{OfLSystem, of_argument};
+
+/// The symbols that turn out of the plane.
+const SPACE: [char; 4] = ['&', '^', '\\', '/'];
+
+impl Resolver<OfLSystem> {
+    /// The number of a module's symbol, which is taken in where it is new.
+    pub(super) fn symbol(&mut self, module: &ModuleDocument) -> usize {
+        let (character, arity) = (module.character, module.arguments.len());
+        if let Some(&number) = self.kind.numbers.get(&(character, arity)) {
+            return number;
+        }
+        let own = |arity| self.kind.own.get(&(character, arity)).cloned();
+        let meaning = own(arity).or_else(|| own(0)).unwrap_or_else(|| {
+            let is_space = SPACE.contains(&character);
+            if is_space {
+                let message =
+                    format!("'{character}' needs space, and the turtle lives in the plane");
+                let hint =
+                    format!("symbols: {{'{character}': {{turn: 30}}}} gives it another meaning");
+                self.error_with_hint(&module.place, message, hint);
+            }
+            self.usual(character, arity)
+        });
+        let number = self.kind.symbols.len();
+        self.kind.symbols.push(Symbol {
+            character,
+            arity,
+            meaning,
+            ignored: false,
+            productions: Vec::new(),
+        });
+        self.kind.numbers.insert((character, arity), number);
+        number
+    }
+
+    /// What a symbol means unless the file says otherwise (Prusinkiewicz & Lindenmayer 1990).
+    fn usual(&self, character: char, arity: usize) -> Vec<Action> {
+        let constant = Program::constant;
+        let has_argument = arity > 0;
+        let argument_or = |value| match has_argument {
+            true => of_argument("x"),
+            false => constant(value),
+        };
+        vec![match character {
+            'F' => Action::Draw(argument_or(1.0)),
+            'f' => Action::Move(argument_or(1.0)),
+            '+' => Action::Turn(argument_or(self.kind.angle)),
+            '-' if has_argument => Action::Turn(of_argument("-x")),
+            '-' => Action::Turn(constant(-self.kind.angle)),
+            '|' => Action::Turn(constant(180.0)),
+            '[' => Action::Push,
+            ']' => Action::Pop,
+            '{' => Action::Open,
+            '}' => Action::Close,
+            '.' => Action::Vertex,
+            '!' if has_argument => Action::SetWidth(of_argument("x")),
+            '!' => Action::Width(constant(self.kind.thinning)),
+            '\'' if has_argument => Action::SetColour(of_argument("x")),
+            '\'' => Action::ShiftColour(constant(1.0)),
+            _ => return Vec::new(),
+        }]
+    }
+
+    /// Takes in a meaning of the file's own.
+    pub(super) fn define(&mut self, document: &SymbolDocument) {
+        let module = &document.symbol;
+        let mut scope = Scope::inside(&self.kind.constants);
+        self.names(module, &mut scope, &mut 0);
+        let actions: Vec<_> = { document.actions.iter() }
+            .map(|action| self.action(action, &scope))
+            .collect();
+        let saves = |action: &Action| match action {
+            Action::Push | Action::Open => 1,
+            Action::Pop | Action::Close => -1,
+            _ => 0i32,
+        };
+        let is_bracket = |action: &Action| saves(action) != 0;
+        let brackets: Vec<_> = actions.iter().filter(|action| is_bracket(action)).collect();
+        let mut depth = 0;
+        let depths = brackets.iter().map(|action| {
+            depth += saves(action);
+            depth
+        });
+        let least = depths.min().unwrap_or(0);
+        if depth.abs() > 1 || least < depth.min(0) {
+            let message = "a symbol opens or closes one bracket at most";
+            let hint = "use one symbol for each";
+            self.error_with_hint(&module.place, message, hint);
+        }
+        let key = (module.character, module.arguments.len());
+        if self.kind.own.insert(key, actions).is_some() {
+            let message = format!("'{}' has a meaning already", module.character);
+            self.error(&module.place, message);
+        }
+    }
+
+    fn action(&mut self, document: &ActionDocument, scope: &Scope) -> Action {
+        let mut steps = |number: &Option<Number>| match number {
+            Some(number) => self.program(number, scope),
+            None => Program::constant(1.0),
+        };
+        match document {
+            ActionDocument::Draw(number) => Action::Draw(steps(number)),
+            ActionDocument::Move(number) => Action::Move(steps(number)),
+            ActionDocument::Glide(number) => Action::Glide(steps(number)),
+            ActionDocument::Turn(number) => Action::Turn(self.program(number, scope)),
+            ActionDocument::Push => Action::Push,
+            ActionDocument::Pop => Action::Pop,
+            ActionDocument::Reflect => Action::Reflect,
+            ActionDocument::Scale(number) => Action::Scale(self.program(number, scope)),
+            ActionDocument::Width(number) => Action::Width(self.width(number, scope)),
+            ActionDocument::SetWidth(number) => Action::SetWidth(self.width(number, scope)),
+            ActionDocument::Colour(number) => Action::SetColour(self.program(number, scope)),
+            ActionDocument::ShiftColour(number) => Action::ShiftColour(self.program(number, scope)),
+            ActionDocument::Open => Action::Open,
+            ActionDocument::Close => Action::Close,
+            ActionDocument::Vertex => Action::Vertex,
+        }
+    }
+
+    fn width(&mut self, number: &Number, scope: &Scope) -> Program {
+        let program = self.program(number, scope);
+        if program.as_constant().is_some_and(|value| value < 0.0) {
+            self.error(&number.place, "a width cannot be negative");
+        }
+        program
+    }
+}

@@ -1,0 +1,107 @@
+//! The L-systems of the library.
+
+use std::sync::Arc;
+
+use kfrac::catalogue::Shelf;
+use kfrac::grow::Growth;
+use kfrac::lsystem::LSystem;
+use kfrac::model::Model;
+use kfrac::render::{self, Labels, Options, Size};
+
+use super::common::{document, document_of, grown};
+use super::picture::Picture;
+use super::{check_paths, entries};
+
+/// Every L-system with its name.
+fn systems() -> impl Iterator<Item = (String, Arc<LSystem>)> {
+    let names = entries(Shelf::LSystems).into_iter();
+    names.map(|entry| {
+        let system = system(&document(&entry.name).to_yaml());
+        (entry.name, system)
+    })
+}
+
+fn system(text: &str) -> Arc<LSystem> {
+    let (model, warnings) = document_of(text).resolve(&[]).unwrap();
+    assert!(warnings.is_empty(), "{}{text}", warnings.render(false));
+    match model {
+        Model::LSystem(system) => system,
+        other => panic!("{text} is a {}", other.kind().name()),
+    }
+}
+
+#[test]
+fn the_promised_systems_exist() {
+    let all: Vec<_> = systems().map(|(name, _)| name).collect();
+    for name in [
+        "koch-lsystem",
+        "dragon-lsystem",
+        "gasket-lsystem",
+        "gosper-lsystem",
+        "hilbert-lsystem",
+        "peano-lsystem",
+        "levy-lsystem",
+        "penrose-lsystem",
+        "plant-a",
+        "plant-f",
+        "bush",
+        "plant-with-flowers",
+        "stochastic-plant",
+        "branching-pattern",
+        "ternary-tree-lsystem",
+        "wild-meadow",
+        "honda-tree",
+    ] {
+        assert!(all.iter().any(|known| known == name), "{name}");
+    }
+}
+
+#[test]
+fn every_system_is_drawn_within_its_picture() {
+    for (name, system) in systems() {
+        let steps = system.heading().steps.unwrap();
+        let graph = Model::LSystem(Arc::clone(&system)).compile(steps).unwrap();
+        let elements = grown(&graph, &Growth::steps(steps)).remove(0).elements;
+        assert!(elements.len() > 20, "{name}: there is little to see");
+        assert!(elements.len() < 50_000, "{name}: a library is to be quick");
+        for size in [1024, 24] {
+            let options = Options {
+                size: Size::Long(size),
+                labels: Labels {
+                    provenance: document(&name).to_yaml(),
+                    ..Labels::default()
+                },
+                ..Options::of(system.heading())
+            };
+            let draw = || {
+                let mut bytes = Vec::new();
+                render::write(&graph, &Growth::steps(steps), &options, &mut bytes)
+                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+                String::from_utf8(bytes).unwrap()
+            };
+            let text = draw();
+            assert!(text == draw(), "{name}: twice");
+            let picture = Picture::read(&text);
+            check_paths(&format!("{name}, {size} pixels"), &picture);
+            assert_eq!(self::system(&picture.metadata), system, "{name}");
+        }
+    }
+}
+
+#[test]
+fn printing_and_reading_again_is_the_identity() {
+    for (name, system) in systems() {
+        let printed = document(&name).to_yaml();
+        assert_eq!(self::system(&printed), system, "{name}");
+        assert_eq!(document_of(&printed).to_yaml(), printed, "{name}");
+    }
+}
+
+/// A new individual with every seed, the same one with the same seed.
+#[test]
+fn meadows_grow_wild() {
+    let system = system(&document("wild-meadow").to_yaml());
+    let word = |seed| system.word(8, seed, 100_000).unwrap();
+    assert_eq!(word(1), word(1));
+    assert_ne!(word(1), word(2));
+}
