@@ -81,7 +81,7 @@ impl Structure {
                 _ => Vec::new(),
             });
         }
-        let initiator = graph.initiator().instances.iter();
+        let initiator = graph.initiator(0).instances.iter();
         let structure = Self {
             shapes: graph.base_elements().to_vec(),
             objects,

@@ -250,7 +250,7 @@ impl Graph {
     }
 
     fn support(&self, direction: DVec2, steps: Option<u32>, reach: &Reach) -> Option<f64> {
-        let start = self.initiator.instances.iter();
+        let start = self.initiator(steps.unwrap_or(0)).instances.iter();
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         let mut work = 0;

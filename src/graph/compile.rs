@@ -166,7 +166,7 @@ impl<'r> Compiler<'r> {
             base_elements: rule.base_elements().into(),
             origins: rule.generators().len(),
             objects: self.objects,
-            initiator: whole.body,
+            initiators: vec![whole.body],
             depth: beyond.then_some(self.steps),
             regular: !self.depends.index_is_free,
             counts_index: self.depends.counts_index,

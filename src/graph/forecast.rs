@@ -11,6 +11,10 @@ use crate::rule::{BaseElement, Placement};
 
 use super::{Alternative, Chain, Count, Graph, Instance, Replacement};
 
+mod levels;
+
+use levels::Totals;
+
 /// The size of one approximant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
@@ -40,6 +44,8 @@ pub struct Forecast<'g> {
     new_lengths: [f64; 2],
     /// How many tallies have been added.
     pub(super) work: usize,
+    /// What objects come to, if the graph is levelled.
+    totals: Totals,
     outlines: Outlines,
     /// The signed areas of the base elements, by number.
     areas: Vec<f64>,
@@ -195,7 +201,7 @@ impl Graph {
                     Replacement::Evaluated(_) => false,
                 }
         });
-        if drawn && closed(&self.initiator) {
+        if drawn && self.initiators.iter().all(closed) {
             Outlines::ClosedPaths
         } else {
             Outlines::Other
@@ -227,16 +233,17 @@ impl<'g> Forecast<'g> {
             step: 0,
             new_lengths: [0.0; 2],
             work: 0,
+            totals: Totals::default(),
             outlines: graph.outlines(),
             areas: graph
                 .base_elements()
                 .iter()
                 .map(BaseElement::signed_area)
                 .collect(),
-            path_area: area_under(&graph.initiator).abs(),
+            path_area: area_under(graph.initiator(0)).abs(),
         };
-        let orientation = area_under(&graph.initiator).signum();
-        for (number, instance) in graph.initiator.instances.iter().enumerate() {
+        let orientation = area_under(graph.initiator(0)).signum();
+        for (number, instance) in graph.initiator(0).instances.iter().enumerate() {
             let square = forecast.square(instance);
             forecast.add(
                 instance.object,
@@ -387,6 +394,9 @@ impl<'g> Forecast<'g> {
 
     /// Goes on to the next approximant. `false`, and nothing happens, where the graph ends.
     pub fn advance(&mut self) -> bool {
+        if self.graph.is_levelled() {
+            return self.advance_level();
+        }
         if !self.is_resolved() {
             return false;
         }

@@ -220,10 +220,10 @@ impl<'s> Compiler<'s> {
             base_elements: std::iter::once(provisional).chain(outlines).collect(),
             origins: maps,
             objects,
-            initiator: Chain {
+            initiators: vec![Chain {
                 instances: std::iter::once(root).chain(drawn).collect(),
                 meets_frame: [false; 2],
-            },
+            }],
             depth: None,
             regular: true,
             counts_index: false,

@@ -46,7 +46,7 @@ impl Graph {
             .iter_mut()
             .for_each(|object| object.visible = true);
         let most = self.most_boxes();
-        let initiator = self.initiator.clone();
+        let initiators = self.initiators.clone();
         let mut boxes: Vec<Option<Bounds>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
@@ -56,7 +56,7 @@ impl Graph {
                 boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
         }
-        self.initiator = initiator;
+        self.initiators = initiators;
         let first = self.base_elements.len();
         let boxes = boxes.into_iter().map(filling);
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
@@ -71,7 +71,7 @@ impl Graph {
 
     /// The box of what an object comes to. Where the initiator was is not known from here on.
     fn box_of(&mut self, object: usize) -> Option<Bounds> {
-        self.initiator.instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
+        self.initiators[0].instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
         self.limit_bounds()
     }
 
@@ -94,7 +94,7 @@ impl Graph {
                 .iter_mut()
                 .for_each(|object| object.visible = true);
         }
-        let roots = graph.initiator.instances.clone();
+        let roots = graph.initiator(0).instances.clone();
         let most = graph.most_boxes();
         let numbered = roots.iter().enumerate();
         let boxes = numbered.map(|(number, root)| {
@@ -187,7 +187,7 @@ impl<'s> Compiler<'s> {
             base_elements: self.base_elements.into(),
             origins: 0,
             objects: self.objects,
-            initiator,
+            initiators: vec![initiator],
             depth: None,
             regular: true,
             counts_index: false,

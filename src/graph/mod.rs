@@ -136,7 +136,8 @@ pub struct Graph {
     /// The number of origins that objects may have.
     pub(crate) origins: usize,
     pub(crate) objects: Vec<Object>,
-    pub(crate) initiator: Chain,
+    /// By the number of steps that are grown out of it; the last one for all others. One at least.
+    pub(crate) initiators: Vec<Chain>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,
@@ -173,10 +174,18 @@ impl Graph {
         &self.objects
     }
 
-    /// Approximant 0.
+    /// What a number of steps are grown out of: approximant 0, unless the graph [is levelled](Graph::is_levelled).
     #[must_use]
-    pub fn initiator(&self) -> &Chain {
-        &self.initiator
+    pub fn initiator(&self, steps: u32) -> &Chain {
+        let last = self.initiators.len() - 1;
+        &self.initiators[(steps as usize).min(last)]
+    }
+
+    /// Whether objects know how many steps are still to come, so that every number of steps is grown
+    /// out of an initiator of its own.
+    #[must_use]
+    pub fn is_levelled(&self) -> bool {
+        self.initiators.len() > 1
     }
 
     /// The base elements that objects refer to.
@@ -243,7 +252,8 @@ impl Graph {
     /// Whether any element may join the one before it.
     pub(crate) fn joins(&self) -> bool {
         let all = self.instances().map(|(_, instance)| instance);
-        let all = all.chain(&self.initiator.instances);
+        let starts = self.initiators.iter().flat_map(|start| &start.instances);
+        let all = all.chain(starts);
         !self.is_plain() || { all }.any(|instance| instance.joined)
     }
 

@@ -49,7 +49,7 @@ impl Graph {
             return Err(NoLimit::DoesNotShrink);
         }
         let alive = self.alive(true);
-        let mut initiator = self.initiator().instances.iter();
+        let mut initiator = self.initiator(0).instances.iter();
         if !initiator.any(|instance| alive[instance.object]) {
             return Err(NoLimit::Empty);
         }

@@ -206,7 +206,7 @@ impl Graph {
         if self.resets().contains(&true) {
             return f64::INFINITY;
         }
-        let start = self.initiator.instances.iter();
+        let start = self.initiator(steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
         let edges = self.edges();
         longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
@@ -224,13 +224,16 @@ impl Graph {
     /// length in so many steps then.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
-        if !self.is_plain() || !self.is_similar() || self.resets().contains(&true) {
+        if !self.is_plain() || !self.is_similar() || self.is_levelled() {
+            return None;
+        }
+        if self.resets().contains(&true) {
             return None;
         }
         let fertile = |instance: &&Instance| {
             !matches!(self.objects[instance.object].replacement, Replacement::Kept)
         };
-        let start = self.initiator.instances.iter().filter(fertile);
+        let start = self.initiator(0).instances.iter().filter(fertile);
         let later = self.instances().map(|(_, instance)| instance);
         let start = one_length(start)?;
         Some([start * self.unit, one_length(later.filter(fertile))?])

@@ -207,15 +207,11 @@ impl Blocks {
             most /= 2;
             sizes = Sizes::fixed(graph, most);
         }
-        let none = |steps: usize| {
-            std::iter::repeat_with(OnceLock::new)
-                .take(steps + 1)
-                .collect()
-        };
+        let none = |slots: usize| std::iter::repeat_with(OnceLock::new).take(slots).collect();
         Self {
             made: sizes
-                .steps()
-                .map(|steps| [none(steps), none(steps)])
+                .slots()
+                .map(|slots| [none(slots), none(slots)])
                 .collect(),
             sizes,
         }
@@ -231,7 +227,7 @@ impl Blocks {
         reversed: bool,
     ) -> Option<&Block> {
         self.sizes.get(object, steps)?;
-        let slot = &self.made[object][usize::from(reversed)][steps as usize];
+        let slot = &self.made[object][usize::from(reversed)][self.sizes.slot(steps)];
         // What is not finite is for the walk itself to report.
         slot.get_or_init(|| made(graph, object, steps, reversed).ok())
             .as_ref()
@@ -239,7 +235,7 @@ impl Blocks {
 }
 
 fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Block, CompileError> {
-    let start = super::descent::Start::initiator(0);
+    let start = super::descent::Start::initiator(graph, steps, 0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
     let mut sticks = Some(Vec::new());

@@ -79,24 +79,24 @@ pub(super) struct Start<'g> {
 #[derive(Clone, Debug)]
 pub(super) enum StartChain<'g> {
     /// The initiator: its instances are the roots.
-    Initiator,
+    Initiator(&'g Chain),
     Fixed(&'g Chain),
     Evaluated(Chain),
 }
 
 impl<'g> Start<'g> {
-    pub(super) fn initiator(seed: u64) -> Self {
+    /// What a number of steps are grown out of.
+    pub(super) fn initiator(graph: &'g Graph, steps: u32, seed: u64) -> Self {
         Self {
-            chain: StartChain::Initiator,
+            chain: StartChain::Initiator(graph.initiator(steps)),
             standing: Standing::whole(seed),
             born: 0,
         }
     }
 
-    pub(super) fn chain<'a>(&'a self, graph: &'a Graph) -> &'a Chain {
+    pub(super) fn chain(&self) -> &Chain {
         match &self.chain {
-            StartChain::Initiator => graph.initiator(),
-            StartChain::Fixed(chain) => chain,
+            StartChain::Initiator(chain) | StartChain::Fixed(chain) => chain,
             StartChain::Evaluated(chain) => chain,
         }
     }
@@ -234,7 +234,7 @@ impl Ranks {
 
 impl<'g> Descent<'g> {
     pub(super) fn new(graph: &'g Graph, start: &Start<'g>, target: u32) -> Self {
-        let chain = start.chain(graph);
+        let chain = start.chain();
         let levels = if graph.counts_index() {
             (target - start.born) as usize + 1
         } else {
@@ -267,7 +267,7 @@ impl<'g> Descent<'g> {
     /// A walk over what an object becomes in a number of steps, alone in the unit frame. The pen
     /// stands where the object starts.
     pub(super) fn below(graph: &'g Graph, object: usize, steps: u32, direction: Direction) -> Self {
-        let mut start = Start::initiator(0);
+        let mut start = Start::initiator(graph, steps, 0);
         start.standing.frame.direction = direction;
         let mut descent = Self::new(graph, &start, steps);
         descent.stack.clear();
@@ -282,7 +282,7 @@ impl<'g> Descent<'g> {
     /// A walk over what comes of other walks' subtrees, one after another, with nothing to begin
     /// with.
     pub(super) fn over_subtrees(graph: &'g Graph, target: u32) -> Self {
-        let mut descent = Self::new(graph, &Start::initiator(0), target);
+        let mut descent = Self::new(graph, &Start::initiator(graph, target, 0), target);
         descent.stack.clear();
         descent
     }
@@ -360,7 +360,7 @@ impl<'g> Descent<'g> {
                 return Ok(Next::End);
             };
             let chain = match entry.source {
-                Source::Start => start.chain(self.graph),
+                Source::Start => start.chain(),
                 Source::Fixed(chain) => chain,
                 Source::Pooled(number) => &self.pool[number].body,
             };
@@ -383,7 +383,7 @@ impl<'g> Descent<'g> {
             }
             entry.next += 1;
             let is_root = matches!(entry.source, Source::Start)
-                && matches!(start.chain, StartChain::Initiator);
+                && matches!(start.chain, StartChain::Initiator(_));
             let standing = if is_root {
                 entry.standing.root(self.graph, instance)
             } else {
@@ -574,7 +574,7 @@ pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) 
         return *standing;
     }
     // Positions in the initiator count from 0 in the order of listing.
-    let root = graph.initiator().instances[standing.root as usize].frame;
+    let root = graph.initiator(0).instances[standing.root as usize].frame;
     let [origin, _] = standing.frame.ends();
     Standing {
         frame: Frame {

@@ -96,7 +96,7 @@ pub(crate) fn search(
         search.direction = direction;
         search.heap.clear();
         let whole = Standing::whole(growth.seed);
-        for instance in &graph.initiator().instances {
+        for instance in &graph.initiator(growth.steps).instances {
             search.add(whole.root(graph, instance), instance.object, 0, 0);
         }
         while let Some(node) = search.heap.pop() {

@@ -23,6 +23,8 @@ pub(super) struct Sizes {
     /// By object and length, as many classes above that below which nothing is replaced.
     by_length: Vec<Vec<u64>>,
     shortest: f64,
+    /// Whether objects know their number of steps: there is one number for each.
+    is_levelled: bool,
 }
 
 impl Sizes {
@@ -42,21 +44,35 @@ impl Sizes {
 
     fn of(graph: &Graph, most: u64, evaluated: impl Fn(&[Alternative], &[u64]) -> u64) -> Self {
         let objects = graph.objects();
+        let count = |object: &Object, beyond: u64, now: &[u64]| match &object.replacement {
+            Replacement::Kept => 1,
+            Replacement::Fixed(production) => {
+                let instances = production.body.instances.iter();
+                sum(instances.map(|instance| instance.object), now)
+            }
+            Replacement::Evaluated(alternatives) => evaluated(alternatives, now),
+            Replacement::Beyond => beyond,
+        };
+        if graph.is_levelled() {
+            let mut counts = vec![1; objects.len()];
+            // Objects only lead to those of larger numbers.
+            for object in (0..objects.len()).rev() {
+                counts[object] = count(&objects[object], 1, &counts);
+            }
+            let few = |count: u64| Some(count).filter(|count| *count <= most);
+            let counts = counts.into_iter().map(|count| few(count).into_iter());
+            return Self {
+                is_levelled: true,
+                ..Self::of_steps(counts.map(Iterator::collect).collect())
+            };
+        }
         if objects.len() > MOST_OBJECTS {
             return Self::of_steps(Vec::new());
         }
         let mut counts = vec![vec![1]; objects.len()];
         let mut now = vec![1; objects.len()];
         for steps in 1..=MOST_STEPS {
-            let count = |object: &Object| match &object.replacement {
-                Replacement::Kept => 1,
-                Replacement::Fixed(production) => {
-                    let instances = production.body.instances.iter();
-                    sum(instances.map(|instance| instance.object), &now)
-                }
-                Replacement::Evaluated(alternatives) => evaluated(alternatives, &now),
-                Replacement::Beyond => u64::MAX,
-            };
+            let count = |object: &Object| count(object, u64::MAX, &now);
             let next: Vec<_> = objects.iter().map(count).collect();
             let mut grows = false;
             for (object, &count) in next.iter().enumerate() {
@@ -79,13 +95,14 @@ impl Sizes {
             counts,
             by_length: Vec::new(),
             shortest: 0.0,
+            is_levelled: false,
         }
     }
 
     /// Where no element is replaced that is shorter than a length: also those of what becomes no
     /// more than `most` elements down to it.
     pub(super) fn down_to(self, graph: &Graph, shortest: f64, most: u64) -> Self {
-        if shortest <= 0.0 || self.counts.is_empty() {
+        if shortest <= 0.0 || graph.objects().len() > MOST_OBJECTS {
             return self;
         }
         // Children, and by how many classes they are shorter; those that are kept are one element,
@@ -139,7 +156,7 @@ impl Sizes {
     pub(super) fn get(&self, object: usize, steps: u32) -> Option<u64> {
         self.counts
             .get(object)?
-            .get(steps as usize)
+            .get(self.slot(steps))
             .copied()
             .filter(|_| steps > 0)
     }
@@ -159,14 +176,20 @@ impl Sizes {
         }
     }
 
+    /// Where what is known of an object in a number of steps has its place.
+    #[inline]
+    pub(super) fn slot(&self, steps: u32) -> usize {
+        if self.is_levelled { 0 } else { steps as usize }
+    }
+
     /// All sizes together.
     pub(super) fn sum(&self) -> u64 {
         self.counts.iter().flatten().sum()
     }
 
-    /// By object, the most steps whose size is known.
-    pub(super) fn steps(&self) -> impl Iterator<Item = usize> {
-        self.counts.iter().map(|counts| counts.len() - 1)
+    /// By object, how many sizes are known.
+    pub(super) fn slots(&self) -> impl Iterator<Item = usize> {
+        self.counts.iter().map(Vec::len)
     }
 }
 

@@ -223,7 +223,7 @@ impl<V: Visitor> Job<'_, V> {
     }
 
     fn walk(&mut self) -> Result<Outcome, WalkError<V::Error>> {
-        let start = Start::initiator(0);
+        let start = Start::initiator(self.graph, 0, 0);
         let blocks = self.blocks.as_deref();
         let stop = blocks.map_or(Stop::Nowhere, Stop::AtBlocks);
         let mut outcome = Outcome::default();

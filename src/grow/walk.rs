@@ -125,7 +125,7 @@ pub(super) fn send<S: Sink>(
         sink,
         fractals: 0,
     };
-    walk.run(Start::initiator(growth.seed))
+    walk.run(Start::initiator(graph, growth.steps, growth.seed))
 }
 
 struct Walk<'g, 'v, S> {
@@ -199,7 +199,7 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
         let fractal = Fractal {
             number: self.fractals,
             age: self.steps - start.born,
-            is_ring: start.chain(self.graph).is_ring(),
+            is_ring: start.chain().is_ring(),
         };
         self.fractals += 1;
         self.sink.begin(fractal, start.born)?;

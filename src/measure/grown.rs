@@ -27,7 +27,7 @@ pub fn grown(
     growth: &Growth<'_>,
     most: usize,
 ) -> Result<Grown, WalkError<Infallible>> {
-    let start = graph.initiator().instances.iter();
+    let start = graph.initiator(growth.steps).instances.iter();
     let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
     let at = |detail: f64| {
         let mut tips = Tips {

@@ -122,7 +122,7 @@ impl LimitSet {
         let mut set = Self {
             objects: (0..graph.objects().len()).map(part).collect(),
             start: graph
-                .initiator()
+                .initiator(0)
                 .instances
                 .iter()
                 .filter(kept)

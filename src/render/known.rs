@@ -118,7 +118,7 @@ impl Standing {
     /// `None` where it depends on draws what stands.
     fn at(graph: &Graph, steps: u32) -> Option<Self> {
         let mut stand = BTreeSet::new();
-        let initiator = graph.initiator().instances.iter();
+        let initiator = graph.initiator(steps).instances.iter();
         let mut born: BTreeSet<(usize, Direction)> = initiator
             .map(|instance| (instance.object, instance.frame.direction))
             .collect();

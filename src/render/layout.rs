@@ -31,6 +31,9 @@ pub enum NoDetail {
     /// Elements do not get smaller.
     #[error("its elements do not get smaller than any length")]
     DoesNotShrink,
+    /// Every number of steps is grown out of an initiator of its own.
+    #[error("every step of it starts anew, so that the detail cannot tell how many there are")]
+    StartsAnew,
     /// All that is drawn shrinks with its elements, and fills the picture as before.
     #[error("all that is drawn gets as small as its elements")]
     Vanishes,
@@ -82,6 +85,9 @@ impl<'a> Layout<'a> {
         if let Some(detail) = options.detail {
             if graph.counts_index() {
                 return Err(NoDetail::CountsIndex.into());
+            }
+            if detail.decides_steps && graph.is_levelled() {
+                return Err(NoDetail::StartsAnew.into());
             }
             if detail.decides_steps && !graph.shrinks() {
                 return Err(NoDetail::DoesNotShrink.into());
@@ -153,7 +159,7 @@ impl<'a> Surveyor<'a> {
     fn survey_window(&self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
         let Options { style, view, .. } = self.options;
         let canvas = Canvas::of_window(window, view, self.options.size)?;
-        let start = self.graph.initiator().instances.iter();
+        let start = self.graph.initiator(self.growth.steps).instances.iter();
         let mut bounds = Bounds::EMPTY;
         start
             .flat_map(|instance| instance.frame.ends())
@@ -218,7 +224,7 @@ impl<'a> Surveyor<'a> {
 
     /// Surveys everything down to elements of a number of pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
-        let start = self.graph.initiator().instances.iter();
+        let start = self.graph.initiator(self.growth.steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();
         let mut shortest = longest * FIRST_LOOK;
         let mut survey = self.look_down_to(shortest)?;

@@ -170,7 +170,7 @@ fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
 
 /// Whether a fractal may be a closed chain.
 fn starts_rings(graph: &Graph) -> bool {
-    graph.initiator().is_ring()
+    graph.initiator(0).is_ring()
         || graph
             .objects()
             .iter()

@@ -109,7 +109,7 @@ impl<'a> Subject<'a> {
 fn discs(graph: &Graph) -> Bounds {
     let reaches = reaches(graph);
     let mut bounds = Bounds::EMPTY;
-    for instance in &graph.initiator().instances {
+    for instance in &graph.initiator(0).instances {
         let middle = instance.frame.map.transform_point2(graph.middle());
         let reach = instance.frame.stretch() * reaches[instance.object];
         bounds.add(middle - reach);
@@ -132,7 +132,7 @@ fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
     let middle = graph.middle();
     let reaches = reaches(graph);
     let mut open: Vec<(usize, DAffine2)> = Vec::new();
-    let initiator = graph.initiator().instances.iter().rev();
+    let initiator = graph.initiator(0).instances.iter().rev();
     open.extend(initiator.map(|instance| (instance.object, instance.frame.map)));
     while let Some((number, map)) = open.pop() {
         if !alive[number] {
