@@ -5,7 +5,7 @@
 
 mod coat;
 
-pub use coat::Coat;
+pub use coat::{Coat, Thickness};
 
 use crate::geometry::DAffine2;
 use crate::heading::Heading;

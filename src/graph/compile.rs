@@ -173,6 +173,7 @@ impl<'r> Compiler<'r> {
             draws: rule.is_random(),
             seeds,
             tints: false,
+            widest: None,
             affine: false,
             unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
@@ -226,6 +227,7 @@ impl<'r> Compiler<'r> {
             origin: class.origin,
             last_map: None,
             tint: None,
+            thickness: None,
             behaviour,
             replacement: if class.fertile {
                 Replacement::Beyond

@@ -230,6 +230,7 @@ impl<'s> Compiler<'s> {
             draws: false,
             seeds: false,
             tints: false,
+            widest: None,
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
@@ -243,6 +244,7 @@ impl<'s> Compiler<'s> {
             origin: map,
             last_map,
             tint: None,
+            thickness: None,
             behaviour: 0,
             replacement: Replacement::Kept,
         }

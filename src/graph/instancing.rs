@@ -194,6 +194,7 @@ impl<'s> Compiler<'s> {
             draws: false,
             seeds: false,
             tints,
+            widest: None,
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
@@ -233,6 +234,7 @@ impl<'s> Compiler<'s> {
                 origin: None,
                 last_map: None,
                 tint: instance.tint,
+                thickness: None,
                 behaviour: 0,
                 replacement: Replacement::Kept,
             });

@@ -36,7 +36,7 @@ pub(crate) use ifs::{filling, outline as base_element};
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
-use crate::instancing::{Coat, Tint};
+use crate::instancing::{Coat, Thickness, Tint};
 use crate::rule::{BaseElement, Placement, Rule};
 
 /// An object: a kind of element in a state that decides what it becomes.
@@ -53,6 +53,8 @@ pub struct Object {
     pub last_map: Option<usize>,
     /// What it tints all that stands in its place with.
     pub tint: Option<Tint>,
+    /// What becomes of the widths of all that stands in its place.
+    pub thickness: Option<Thickness>,
     /// What it becomes: objects of one behaviour have the same replacements, however they look.
     pub(crate) behaviour: usize,
     /// What takes its place in the next step.
@@ -145,6 +147,8 @@ pub struct Graph {
     pub(crate) seeds: bool,
     /// Whether any object tints.
     pub(crate) tints: bool,
+    /// The most that strokes are widened, if any object changes widths.
+    pub(crate) widest: Option<f64>,
     /// Whether maps may be any affine ones.
     pub(crate) affine: bool,
     /// The length of an element whose frame is the unit frame.
@@ -219,10 +223,30 @@ impl Graph {
         self.draws
     }
 
-    /// What an object tints all that stands in its place with.
+    /// What an object does to the looks of all that stands in its place.
     #[inline]
     pub(crate) fn coat(&self, object: usize) -> Coat {
-        self.objects[object].tint.map_or(Coat::NONE, Coat::of)
+        let Object {
+            tint, thickness, ..
+        } = self.objects[object];
+        let tint = tint.map_or(Coat::NONE, Coat::of);
+        match thickness {
+            Some(thickness) => tint.over(Coat::of_thickness(thickness)),
+            None => tint,
+        }
+    }
+
+    /// Whether any object changes the looks of what stands in its place.
+    #[inline]
+    pub(crate) fn coats(&self) -> bool {
+        self.tints || self.widest.is_some()
+    }
+
+    /// No stroke is wider than so many times what the style says, if widths differ in the graph; those
+    /// of parts that are not drawn may be.
+    #[must_use]
+    pub fn widest(&self) -> Option<f64> {
+        self.widest
     }
 
     /// Whether any object tints what stands in its place.

@@ -255,8 +255,9 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
         let frame = found.standing.frame;
         let object = &graph.objects()[found.object];
         let base_element = &graph.base_elements()[object.base_element];
-        // Of what is sheared the parts do not keep their share of the width.
-        if object.visible && base_element.is_line() && !graph.is_affine() {
+        // Of what is sheared the parts do not keep their share of the width, and of coats lines know nothing.
+        let plain = !graph.is_affine() && !graph.coats();
+        if object.visible && base_element.is_line() && plain {
             sticks.iter_mut().for_each(|sticks| {
                 sticks.push(Stick {
                     ends: frame.ends(),

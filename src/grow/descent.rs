@@ -58,7 +58,7 @@ impl Standing {
             } else {
                 self.path
             },
-            coat: if graph.tints() {
+            coat: if graph.coats() {
                 self.coat.over(graph.coat(instance.object))
             } else {
                 self.coat

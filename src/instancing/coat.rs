@@ -2,7 +2,17 @@ use crate::style::Colour;
 
 use super::Tint;
 
-/// Tints that lie over each other, the outermost on top (Hart 1992, section 5).
+/// What becomes of the widths of strokes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Thickness {
+    /// They are so many times as wide.
+    Times(f64),
+    /// They are so many times as wide as the style says, whatever they stand in.
+    Set(f64),
+}
+
+/// Tints that lie over each other, the outermost on top (Hart 1992, section 5), and what becomes of the
+/// widths of strokes, of which the innermost is set last.
 ///
 /// Guarantee: putting coats over each other is associative but for rounding, and [`Coat::NONE`] changes
 /// nothing.
@@ -12,6 +22,10 @@ pub struct Coat {
     colour: [f32; 3],
     /// How much it covers, from 0 to 1.
     alpha: f32,
+    /// So many times as wide strokes are.
+    width: f32,
+    /// Whether they are, whatever they stand in.
+    sets_width: bool,
 }
 
 impl Coat {
@@ -19,6 +33,8 @@ impl Coat {
     pub const NONE: Self = Self {
         colour: [0.0; 3],
         alpha: 0.0,
+        width: 1.0,
+        sets_width: false,
     };
 
     /// A single tint.
@@ -33,7 +49,33 @@ impl Coat {
         Self {
             colour: [red, green, blue].map(|value| alpha * f32::from(value) / 255.0),
             alpha,
+            ..Self::NONE
         }
+    }
+
+    /// Nothing is tinted, but strokes have another width.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a single precision is finer than a stroke's width"
+    )]
+    pub fn of_thickness(thickness: Thickness) -> Self {
+        let (width, sets_width) = match thickness {
+            Thickness::Times(width) => (width, false),
+            Thickness::Set(width) => (width, true),
+        };
+        Self {
+            width: width as f32,
+            sets_width,
+            ..Self::NONE
+        }
+    }
+
+    /// So many times as wide as the style says strokes are.
+    #[inline]
+    #[must_use]
+    pub fn width(self) -> f64 {
+        f64::from(self.width)
     }
 
     /// This coat with another one under it: c = c_o + (1 − α_o) α_i c_i and α = α_o + α_i (1 − α_o), the
@@ -49,6 +91,12 @@ impl Coat {
         Self {
             colour,
             alpha: self.alpha + rest * inner.alpha,
+            width: if inner.sets_width {
+                inner.width
+            } else {
+                self.width * inner.width
+            },
+            sets_width: self.sets_width || inner.sets_width,
         }
     }
 
@@ -65,7 +113,7 @@ impl Coat {
             colour,
             alpha: colour.opacity(),
         });
-        let Self { colour, alpha } = self.over(own);
+        let Self { colour, alpha, .. } = self.over(own);
         let rgb = colour.map(|value| if alpha > 0.0 { value / alpha } else { 0.0 });
         let [red, green, blue] = rgb.map(whole);
         Colour::of_rgba([red, green, blue, whole(alpha)])
@@ -74,7 +122,7 @@ impl Coat {
 
 #[cfg(test)]
 mod tests {
-    use super::{Coat, Tint};
+    use super::{Coat, Thickness, Tint};
     use crate::style::Colour;
 
     fn coat(rgb: [u8; 3], alpha: f64) -> Coat {
@@ -111,6 +159,16 @@ mod tests {
         }
         assert_eq!(Coat::NONE.over(a), a);
         assert_eq!(a.over(Coat::NONE), a);
+        let [half, wide] = [Thickness::Times(0.5), Thickness::Set(3.0)].map(Coat::of_thickness);
+        for (outer, inner, width) in [(half, half, 0.25), (wide, half, 1.5), (half, wide, 3.0)] {
+            let both = a.over(outer).over(inner);
+            assert_eq!(both.width(), width);
+            assert_eq!(a.over(outer.over(inner)), both);
+            assert_eq!(
+                half.over(both).width(),
+                if outer == inner { 0.125 } else { width }
+            );
+        }
         let teal = Colour::of_rgba([0, 128, 127, 77]);
         assert_eq!(Coat::NONE.on(teal), teal);
     }

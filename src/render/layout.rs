@@ -170,7 +170,7 @@ impl<'a> Surveyor<'a> {
             None => 0.0,
         };
         let stroke = match style.width {
-            Width::Pixels(width) => width * overhang(style),
+            Width::Pixels(width) => width * self.graph.widest().unwrap_or(1.0) * overhang(style),
             Width::Relative(_) => 0.0,
         };
         // What comes near a pixel tinges it.

@@ -169,7 +169,9 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let own = look.colour.or(self.colour);
         let colour = own.unwrap_or(style.lines());
         let mut pen = pen(style);
-        if let Width::Relative(_) = style.width {
+        let differ =
+            matches!(style.width, Width::Relative(_)) || self.scene.graph.widest().is_some();
+        if differ {
             pen.width = class_width(look.width) / FINE;
         }
         let stroke = |colour| Some(Stroke { colour, pen });

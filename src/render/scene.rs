@@ -45,6 +45,7 @@ impl<'a> Scene<'a> {
         // One path for both, where stroke and colour never change along a fractal.
         let together = graph.draws_closed_paths()
             && matches!(style.width, Width::Pixels(_))
+            && graph.widest().is_none()
             && classes.keep_fractals_whole();
         let areas = (style.fill.is_some() && !together).then_some(Pass::Areas);
         let painted = painted.into_iter().map(Pass::Class);

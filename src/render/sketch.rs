@@ -21,7 +21,7 @@ use super::surface::{FINE, Position, Tuft, position};
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Look {
     pub(super) kind: Kind,
-    /// The width of a relative stroke, in steps of an eighth of an octave.
+    /// The width of a stroke where widths differ, in steps of an eighth of an octave.
     pub(super) width: i32,
     /// Its colour, where what is drawn is tinted.
     pub(super) colour: Option<Colour>,
@@ -364,7 +364,12 @@ impl<'a> Sketcher<'a> {
     }
 
     fn width_class(&self, element: &Element) -> i32 {
-        self.octave(element.frame.stretch()).map_or(0, width_class)
+        let Scene { graph, style, .. } = self.scene;
+        if let (Width::Pixels(width), Some(_)) = (style.width, graph.widest()) {
+            return width_class(libm::log2(width * element.coat.width() * FINE));
+        }
+        self.octave(element.frame.stretch() * element.coat.width())
+            .map_or(0, width_class)
     }
 
     /// The logarithm to base 2 of the width that the stroke of an element of a length has, in

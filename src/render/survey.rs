@@ -114,10 +114,15 @@ impl<'g> Survey<'g> {
     pub(super) fn pad(&self, object: &Object) -> f64 {
         match self.style.width {
             Width::Relative(width) if self.is_stroked(object) => {
-                width * self.graph.unit() * relative_overhang(self.style)
+                width * self.widest() * self.graph.unit() * relative_overhang(self.style)
             }
             _ => 0.0,
         }
+    }
+
+    /// So many times as wide as the style says strokes are at most.
+    fn widest(&self) -> f64 {
+        self.graph.widest().unwrap_or(1.0)
     }
 
     /// Something visible has a value.
@@ -218,7 +223,7 @@ impl<'g> Survey<'g> {
     #[must_use]
     pub fn overhang(&self) -> f64 {
         match self.style.width {
-            Width::Pixels(width) if self.strokes => width * overhang(self.style),
+            Width::Pixels(width) if self.strokes => width * self.widest() * overhang(self.style),
             _ => 0.0,
         }
     }
