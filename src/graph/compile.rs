@@ -227,6 +227,7 @@ impl<'r> Compiler<'r> {
             origin: class.origin,
             last_map: None,
             tint: None,
+            paint: None,
             thickness: None,
             behaviour,
             replacement: if class.fertile {

@@ -244,6 +244,7 @@ impl<'s> Compiler<'s> {
             origin: map,
             last_map,
             tint: None,
+            paint: None,
             thickness: None,
             behaviour: 0,
             replacement: Replacement::Kept,

@@ -234,6 +234,7 @@ impl<'s> Compiler<'s> {
                 origin: None,
                 last_map: None,
                 tint: instance.tint,
+                paint: None,
                 thickness: None,
                 behaviour: 0,
                 replacement: Replacement::Kept,

@@ -1,23 +1,54 @@
 //! From an L-system to its graph.
 
+mod effects;
+mod far;
+mod kinds;
+mod levels;
+mod reader;
+mod similar;
+mod state;
+
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Diagnostic;
 use crate::geometry::{Bounds, DVec2};
-use crate::instancing::Tint;
+use crate::instancing::{Thickness, Tint};
 use crate::lsystem::{Drawing, LSystem, Placed, RewriteError};
 use crate::rule::BaseElement;
 
+use self::effects::Effects;
 use super::{Chain, CompileError, Graph, Instance, Object, Replacement};
 
 impl Graph {
+    /// Compiles an L-system for a number of steps: to objects by module and level where that can be told, or
+    /// else to what the turtle draws of its words.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Graph::of_words`], where nothing else is left.
+    pub fn of_lsystem(
+        system: &LSystem,
+        steps: u32,
+        seed: u64,
+        most_elements: u64,
+    ) -> Result<Self, CompileError> {
+        let levels = |NotCompiled| {
+            let effects = Effects::of_system(system, steps)?;
+            Self::of_levels(&effects, steps)
+        };
+        match Self::of_edges(system).or_else(levels) {
+            Ok(graph) => Ok(graph),
+            Err(NotCompiled) => Self::of_words(system, steps, seed, most_elements),
+        }
+    }
+
     /// Compiles an L-system to a graph whose initiator is what the turtle draws after so many steps: the
     /// coordinates are the turtle's.
     ///
     /// # Errors
     ///
     /// If there are more elements than are allowed, or if numbers are not finite.
-    pub fn of_lsystem(
+    pub fn of_words(
         system: &LSystem,
         steps: u32,
         seed: u64,
@@ -38,7 +69,8 @@ impl Graph {
             origins: 0,
             tints: strings.objects.iter().any(|object| object.tint.is_some()),
             objects: strings.objects,
-            initiator,
+            initiators: vec![initiator],
+            widest: None,
             depth: None,
             regular: true,
             counts_index: false,
@@ -48,6 +80,7 @@ impl Graph {
             unit: 1.0,
             middle: DVec2::ZERO,
         };
+        graph.find_widths();
         if !bounds.is_empty() {
             graph.middle = (bounds.min() + bounds.max()) / 2.0;
         }
@@ -68,12 +101,16 @@ impl LSystem {
     }
 }
 
-/// Makes objects of what turtles draw: one for every base element and colour.
+/// What cannot be compiled, or would be too large, is written as words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct NotCompiled;
+
+/// Makes objects of what turtles draw: one for every base element, colour and width.
 struct Strings<'s> {
     system: &'s LSystem,
     base_elements: Vec<BaseElement>,
     objects: Vec<Object>,
-    numbers: BTreeMap<(usize, Option<i64>), usize>,
+    numbers: BTreeMap<(usize, Option<i64>, u64), usize>,
 }
 
 impl<'s> Strings<'s> {
@@ -113,7 +150,8 @@ impl<'s> Strings<'s> {
     fn object(&mut self, placed: &Placed, base_element: usize) -> usize {
         let colour = self.system.has_colours().then_some(placed.colour);
         let made = self.objects.len();
-        let number = *self.numbers.entry((base_element, colour)).or_insert(made);
+        let key = (base_element, colour, placed.width.to_bits());
+        let number = *self.numbers.entry(key).or_insert(made);
         if number == made {
             let palette = &self.system.heading.style.palette;
             self.objects.push(Object {
@@ -125,6 +163,8 @@ impl<'s> Strings<'s> {
                     colour: palette.entry(index),
                     alpha: 1.0,
                 }),
+                paint: None,
+                thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),
                 behaviour: 0,
                 replacement: Replacement::Kept,
             });
@@ -132,3 +172,6 @@ impl<'s> Strings<'s> {
         number
     }
 }
+
+#[cfg(test)]
+mod tests;

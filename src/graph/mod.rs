@@ -24,6 +24,7 @@ mod lsystem;
 mod no_limit;
 mod reach;
 mod state;
+mod thickness;
 
 pub use count::Count;
 pub use error::CompileError;
@@ -38,6 +39,7 @@ use std::sync::Arc;
 use crate::geometry::{DVec2, Frame};
 use crate::instancing::{Coat, Thickness, Tint};
 use crate::rule::{BaseElement, Placement, Rule};
+use crate::style::Colour;
 
 /// An object: a kind of element in a state that decides what it becomes.
 #[derive(Clone, Debug)]
@@ -53,6 +55,8 @@ pub struct Object {
     pub last_map: Option<usize>,
     /// What it tints all that stands in its place with.
     pub tint: Option<Tint>,
+    /// The colour of what stands in its place and has none of its own.
+    pub paint: Option<Colour>,
     /// What becomes of the widths of all that stands in its place.
     pub thickness: Option<Thickness>,
     /// What it becomes: objects of one behaviour have the same replacements, however they look.
@@ -227,13 +231,16 @@ impl Graph {
     #[inline]
     pub(crate) fn coat(&self, object: usize) -> Coat {
         let Object {
-            tint, thickness, ..
+            tint,
+            paint,
+            thickness,
+            ..
         } = self.objects[object];
         let tint = tint.map_or(Coat::NONE, Coat::of);
-        match thickness {
-            Some(thickness) => tint.over(Coat::of_thickness(thickness)),
-            None => tint,
-        }
+        let paint = paint.map(Coat::of_paint);
+        let thickness = thickness.map(Coat::of_thickness);
+        let all = [paint, thickness].into_iter().flatten();
+        all.fold(tint, Coat::over)
     }
 
     /// Whether any object changes the looks of what stands in its place.

@@ -26,6 +26,8 @@ pub struct Coat {
     width: f32,
     /// Whether they are, whatever they stand in.
     sets_width: bool,
+    /// Whether what is inside has this colour, and not one over its own.
+    paints: bool,
 }
 
 impl Coat {
@@ -35,6 +37,7 @@ impl Coat {
         alpha: 0.0,
         width: 1.0,
         sets_width: false,
+        paints: false,
     };
 
     /// A single tint.
@@ -71,6 +74,15 @@ impl Coat {
         }
     }
 
+    /// Another colour for all that has none of its own inside.
+    #[must_use]
+    pub fn of_paint(colour: Colour) -> Self {
+        Self {
+            paints: true,
+            ..Self::of(Tint { colour, alpha: 1.0 })
+        }
+    }
+
     /// So many times as wide as the style says strokes are.
     #[inline]
     #[must_use]
@@ -83,14 +95,16 @@ impl Coat {
     #[inline]
     #[must_use]
     pub fn over(self, inner: Self) -> Self {
-        let rest = 1.0 - self.alpha;
-        let mut colour = self.colour;
+        let outer = if inner.paints { Self::NONE } else { self };
+        let rest = 1.0 - outer.alpha;
+        let mut colour = outer.colour;
         for (outer, inner) in colour.iter_mut().zip(inner.colour) {
             *outer += rest * inner;
         }
         Self {
             colour,
-            alpha: self.alpha + rest * inner.alpha,
+            alpha: outer.alpha + rest * inner.alpha,
+            paints: self.paints || inner.paints,
             width: if inner.sets_width {
                 inner.width
             } else {

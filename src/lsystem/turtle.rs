@@ -112,6 +112,17 @@ impl LSystem {
     }
 }
 
+impl LSystem {
+    /// A colour's index: the whole number next to a value.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    pub(crate) fn colour(value: f64) -> i64 {
+        value.round() as i64
+    }
+}
+
 impl Turtle {
     fn act(
         &mut self,
@@ -157,9 +168,11 @@ impl Turtle {
             Action::Scale(factor) => state.step *= factor.eval(arguments),
             Action::Width(factor) => state.width *= factor.eval(arguments).max(0.0),
             Action::SetWidth(width) => state.width = width.eval(arguments).max(0.0),
-            Action::SetColour(colour) => state.colour = index(colour.eval(arguments)),
+            Action::SetColour(colour) => state.colour = LSystem::colour(colour.eval(arguments)),
             Action::ShiftColour(by) => {
-                state.colour = state.colour.saturating_add(index(by.eval(arguments)));
+                state.colour = state
+                    .colour
+                    .saturating_add(LSystem::colour(by.eval(arguments)));
             }
             Action::Open => self.open.push(Open {
                 state: *state,
@@ -256,13 +269,4 @@ impl Turtle {
         });
         self.is_down = false;
     }
-}
-
-/// A colour's index: the whole number next to a value.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "casts from floats saturate"
-)]
-fn index(value: f64) -> i64 {
-    value.round() as i64
 }

@@ -135,9 +135,19 @@ impl Palette {
         reason = "palettes have few colours"
     )]
     pub fn entry(&self, number: i64) -> Colour {
-        match self.colours.len() as i64 {
-            0 => self.at(number.rem_euclid(8) as f64 / 7.0),
-            count => self.colours[number.rem_euclid(count) as usize],
+        let place = number.rem_euclid(self.entries() as i64);
+        match self.colours.get(place as usize) {
+            Some(colour) => *colour,
+            None => self.at(place as f64 / 7.0),
+        }
+    }
+
+    /// How many colours have numbers.
+    #[must_use]
+    pub fn entries(&self) -> usize {
+        match self.colours.len() {
+            0 => 8,
+            count => count,
         }
     }
 

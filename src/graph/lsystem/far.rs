@@ -1,0 +1,157 @@
+use crate::geometry::DVec2;
+
+/// A vector of the plane of any length: 3ⁿ steps are beyond a double from n = 647 on.
+///
+/// Guarantee: the larger coordinate of the mantissa is from 0.5 on and below 1, or all is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Far {
+    mantissa: DVec2,
+    exponent: i32,
+}
+
+/// Smaller by so many powers of two, a vector adds nothing.
+const NEGLIGIBLE: i32 = 200;
+
+impl Far {
+    pub(super) const ZERO: Self = Self {
+        mantissa: DVec2::ZERO,
+        exponent: 0,
+    };
+
+    pub(super) fn new(vector: DVec2) -> Self {
+        Self {
+            mantissa: vector,
+            exponent: 0,
+        }
+        .normalised()
+    }
+
+    /// A length.
+    pub(super) fn of_length(length: f64) -> Self {
+        Self::new(DVec2::new(length.abs(), 0.0))
+    }
+
+    fn normalised(self) -> Self {
+        let (_, by) = libm::frexp(self.mantissa.abs().max_element());
+        if self.is_zero() {
+            return Self::ZERO;
+        }
+        Self {
+            mantissa: shifted(self.mantissa, -by),
+            exponent: self.exponent.saturating_add(by),
+        }
+    }
+
+    pub(super) fn is_zero(self) -> bool {
+        self.mantissa == DVec2::ZERO
+    }
+
+    pub(super) fn is_finite(self) -> bool {
+        self.mantissa.is_finite()
+    }
+
+    /// The sum of two.
+    pub(super) fn plus(self, other: Self) -> Self {
+        if other.is_zero() || self.exponent < other.exponent && !self.is_zero() {
+            return if other.is_zero() {
+                self
+            } else {
+                other.plus(self)
+            };
+        }
+        if self.is_zero() {
+            return other;
+        }
+        let by = (other.exponent - self.exponent).max(-NEGLIGIBLE);
+        Self {
+            mantissa: self.mantissa + shifted(other.mantissa, by),
+            ..self
+        }
+        .normalised()
+    }
+
+    /// A multiple.
+    pub(super) fn times(self, factor: f64) -> Self {
+        // Neither may vanish before the exponent is taken out of it.
+        let factor = Self::of_length(factor).signed(factor);
+        Self {
+            mantissa: self.mantissa * factor.mantissa.x,
+            exponent: self.exponent.saturating_add(factor.exponent),
+        }
+        .normalised()
+    }
+
+    fn signed(self, like: f64) -> Self {
+        Self {
+            mantissa: self.mantissa * like.signum(),
+            ..self
+        }
+    }
+
+    /// The image under a map that keeps lengths.
+    pub(super) fn turned(self, turn: impl FnOnce(DVec2) -> DVec2) -> Self {
+        Self {
+            mantissa: turn(self.mantissa),
+            ..self
+        }
+        .normalised()
+    }
+
+    pub(super) fn length(self) -> Self {
+        Self {
+            mantissa: DVec2::new(self.mantissa.length(), 0.0),
+            ..self
+        }
+        .normalised()
+    }
+
+    /// The longer one of two lengths.
+    pub(super) fn longer(self, other: Self) -> Self {
+        let key = |far: Self| (!far.is_zero(), far.exponent, far.mantissa.x);
+        if key(self) < key(other) { other } else { self }
+    }
+
+    /// As a multiple of a length.
+    pub(super) fn over(self, unit: Self) -> DVec2 {
+        let by = self.exponent.saturating_sub(unit.exponent);
+        shifted(self.mantissa / unit.mantissa.x, by)
+    }
+}
+
+/// A vector times a power of two.
+fn shifted(vector: DVec2, by: i32) -> DVec2 {
+    DVec2::new(libm::ldexp(vector.x, by), libm::ldexp(vector.y, by))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Far;
+    use crate::geometry::DVec2;
+
+    #[test]
+    fn what_is_beyond_doubles_keeps_its_ratios() {
+        let step = Far::new(DVec2::new(3.0, -1.0));
+        let mut far = step;
+        for _ in 0..2000 {
+            far = far.times(1e5).plus(step);
+        }
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        assert!(near(far.over(far.length()).length(), 1.0));
+        let turned = far.turned(DVec2::perp);
+        let sum = turned.plus(far).length().over(far.length());
+        assert!(near(sum.x / 2f64.sqrt(), 1.0));
+        assert_eq!(step.over(far.length()), DVec2::ZERO);
+        let rest = far
+            .plus(turned)
+            .plus(far.times(-1.0))
+            .plus(turned.times(-1.0));
+        assert!(rest.length().over(far.length()).x < 1e-15);
+        assert_eq!(far.longer(step), far);
+        assert_eq!(step.times(0.0), Far::ZERO);
+        assert_eq!(Far::ZERO.plus(step), step);
+        assert_eq!(
+            Far::of_length(-6.0).over(Far::of_length(1.5)),
+            DVec2::new(4.0, 0.0)
+        );
+    }
+}

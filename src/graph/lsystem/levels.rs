@@ -1,0 +1,328 @@
+//! Objects by kind and level: each knows how many steps are still to come.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::geometry::{DVec2, Frame};
+use crate::instancing::Thickness;
+use crate::rule::draw::Path;
+use crate::rule::{BaseElement, Piece};
+
+use super::NotCompiled;
+use super::effects::{Drawn, Effects};
+use super::far::Far;
+use super::reader::{Of, Part, Reader};
+use super::state::{Look, State};
+use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+
+/// More objects than this are not made.
+const MOST_OBJECTS: usize = 1 << 17;
+
+/// Coordinates are the turtle's unless they come to more than this; then what is drawn reaches about 1.
+const FARTHEST: f64 = 1e150;
+
+/// What tells objects apart.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Key {
+    of: Master,
+    colour: i64,
+    /// What becomes of widths, and whether they are set.
+    thickness: (u64, bool),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Master {
+    /// A kind, and the number of steps that are left.
+    Subtree(usize, u32),
+    /// A line, and whether it is replaced in the next step.
+    Step(bool),
+    /// A polygon, by base element.
+    Polygon(usize),
+}
+
+/// Makes the objects of a levelled graph, those of the most steps first.
+struct Leveller<'e, 's> {
+    effects: &'e Effects<'s>,
+    has_colours: bool,
+    /// So many colours there are.
+    colours: i64,
+    base_elements: Vec<BaseElement>,
+    outlines: BTreeMap<Vec<[u64; 2]>, usize>,
+    /// Objects that are replaced, in the order of their numbers, and all others.
+    numbers: [BTreeMap<Key, usize>; 2],
+    keys: [Vec<Key>; 2],
+    /// What replaces kinds of a colour with so many steps left.
+    productions: BTreeMap<(usize, u32, i64), Production>,
+}
+
+/// Numbers of objects that are not replaced begin here until all others have theirs.
+const LEAVES: usize = usize::MAX / 2;
+
+impl Graph {
+    /// The graph whose objects are kinds with a number of steps that are left.
+    pub(super) fn of_levels(effects: &Effects<'_>, steps: u32) -> Result<Self, NotCompiled> {
+        let palette = &effects.system.heading().style.palette;
+        let has_colours = effects.system.has_colours();
+        let leveller = Leveller {
+            effects,
+            has_colours,
+            colours: i64::try_from(palette.entries()).unwrap_or(i64::MAX),
+            base_elements: vec![BaseElement::line()],
+            outlines: BTreeMap::new(),
+            numbers: [const { BTreeMap::new() }; 2],
+            keys: [const { Vec::new() }; 2],
+            productions: BTreeMap::new(),
+        };
+        leveller.run(steps)
+    }
+}
+
+impl Leveller<'_, '_> {
+    fn run(mut self, steps: u32) -> Result<Graph, NotCompiled> {
+        let mut initiators = Vec::new();
+        let mut done = 0;
+        for left in (0..=steps).rev() {
+            initiators.push(self.initiator(left)?);
+            while let Some(&key) = self.keys[0].get(done) {
+                let Master::Subtree(kind, level) = key.of else {
+                    break;
+                };
+                if level < left {
+                    break;
+                }
+                done += 1;
+                let replaced = (kind, level, key.colour);
+                if !self.productions.contains_key(&replaced) {
+                    let production = self.production(kind, level, key.colour)?;
+                    self.productions.insert(replaced, production);
+                }
+            }
+        }
+        initiators.reverse();
+        Ok(self.finish(initiators, steps))
+    }
+
+    /// What the axiom comes to in a number of steps.
+    fn initiator(&mut self, left: u32) -> Result<Chain, NotCompiled> {
+        let effects = self.effects;
+        let mut start = State {
+            look: Look::START,
+            ..State::SAME
+        };
+        let compass = effects.compass;
+        start.pose.heading = compass.of_degrees(effects.system.start());
+        start.pose.scale = effects.system.length();
+        let mut reader = Reader::new(effects, start);
+        reader.read(&effects.kinds.axiom, left, Path::of_seed(0))?;
+        let unit = match reader.effect()?.drawn {
+            Some(Drawn { reach, .. }) if reach.longer(Far::of_length(FARTHEST)) == reach => reach,
+            _ => Far::of_length(1.0),
+        };
+        Ok(Chain {
+            instances: self.instances(&reader.parts, left, unit, 0)?,
+            meets_frame: [false; 2],
+        })
+    }
+
+    /// What replaces a kind that has so many steps left, where the turtle has a colour.
+    fn production(
+        &mut self,
+        kind: usize,
+        left: u32,
+        colour: i64,
+    ) -> Result<Production, NotCompiled> {
+        let effects = self.effects;
+        let unit = effects.drawn_by(kind, left)?.size;
+        let mut reader = Reader::new(effects, State::SAME);
+        let of = &effects.kinds.all[kind];
+        reader.read(&of.alternatives[0].word, left - 1, Path::of_seed(0))?;
+        Ok(Production {
+            body: Chain {
+                instances: self.instances(&reader.parts, left - 1, unit, colour)?,
+                meets_frame: reader.meets(),
+            },
+            seeds: Vec::new(),
+        })
+    }
+
+    fn instances(
+        &mut self,
+        parts: &[Part],
+        left: u32,
+        unit: Far,
+        colour: i64,
+    ) -> Result<Vec<Instance>, NotCompiled> {
+        let all = parts
+            .iter()
+            .map(|part| self.instance(part, left, unit, colour));
+        all.collect()
+    }
+
+    fn instance(
+        &mut self,
+        part: &Part,
+        left: u32,
+        unit: Far,
+        colour: i64,
+    ) -> Result<Instance, NotCompiled> {
+        let (steps, of) = match &part.of {
+            Of::Subtree(kind, drawn) => (drawn.size, Master::Subtree(*kind, left)),
+            Of::Step { fertile } => (Far::of_length(1.0), Master::Step(*fertile)),
+            Of::Polygon(vertices) => {
+                let number = self.outline(vertices);
+                (Far::of_length(1.0), Master::Polygon(number))
+            }
+        };
+        let frame: Frame = part.pose.frame(self.effects.compass, steps, unit);
+        let (width, sets) = match part.look.width {
+            Thickness::Times(width) => (width, false),
+            Thickness::Set(width) => (width, true),
+        };
+        let key = Key {
+            of,
+            colour: if self.has_colours {
+                part.look.colour.from(colour).rem_euclid(self.colours)
+            } else {
+                0
+            },
+            thickness: (width.to_bits(), sets),
+        };
+        Ok(Instance {
+            length: frame.length(),
+            frame,
+            joined: part.joined,
+            position: part.position,
+            object: self.object(key)?,
+        })
+    }
+
+    /// The number of an object, which is made if it is new.
+    fn object(&mut self, key: Key) -> Result<usize, NotCompiled> {
+        let (shelf, first) = match key.of {
+            Master::Subtree(..) => (0, 0),
+            Master::Step(_) | Master::Polygon(_) => (1, LEAVES),
+        };
+        let made = self.keys[shelf].len();
+        let number = *self.numbers[shelf].entry(key).or_insert(made);
+        if number == made {
+            self.keys[shelf].push(key);
+        }
+        if made > MOST_OBJECTS {
+            return Err(NotCompiled);
+        }
+        Ok(first + number)
+    }
+
+    /// The base element of a polygon.
+    fn outline(&mut self, vertices: &[DVec2]) -> usize {
+        let bits = vertices
+            .iter()
+            .map(|vertex| vertex.to_array().map(f64::to_bits));
+        let next = self.base_elements.len();
+        let number = *self.outlines.entry(bits.collect()).or_insert(next);
+        if number == next {
+            let pieces = vertices[1..].iter().copied().map(Piece::Line);
+            // What has no extent is drawn as a line.
+            let outline = BaseElement::new(vertices[0], pieces.collect(), true);
+            let outline = outline.unwrap_or_else(BaseElement::line);
+            self.base_elements.push(outline);
+        }
+        number
+    }
+
+    fn finish(mut self, mut initiators: Vec<Chain>, steps: u32) -> Graph {
+        let count = self.keys[0].len();
+        let renumber = |chain: &mut Chain| {
+            for instance in &mut chain.instances {
+                if instance.object >= LEAVES {
+                    instance.object = instance.object - LEAVES + count;
+                }
+            }
+        };
+        initiators.iter_mut().for_each(renumber);
+        let mut productions: BTreeMap<_, _> = std::mem::take(&mut self.productions)
+            .into_iter()
+            .map(|(key, mut production)| {
+                renumber(&mut production.body);
+                (key, Arc::new(production))
+            })
+            .collect();
+        let keys: Vec<Key> = self.keys.concat();
+        let mut behaviours = BTreeMap::new();
+        let mut objects = Vec::with_capacity(keys.len());
+        for key in keys {
+            let (base_element, behaves, replacement) = match key.of {
+                Master::Subtree(kind, left) => {
+                    let replaced = (kind, left, key.colour);
+                    let production = productions.entry(replaced).or_default();
+                    let replacement = Replacement::Fixed(Arc::clone(production));
+                    let behaves = (Master::Subtree(kind, left), key.colour);
+                    (self.way(kind, left), behaves, replacement)
+                }
+                Master::Step(true) => (0, (key.of, 0), Replacement::Beyond),
+                Master::Step(false) => (0, (Master::Step(false), 0), Replacement::Kept),
+                Master::Polygon(number) => (number, (Master::Step(false), 0), Replacement::Kept),
+            };
+            let next = behaviours.len();
+            let (width, sets) = (f64::from_bits(key.thickness.0), key.thickness.1);
+            let thickness = if sets {
+                Some(Thickness::Set(width))
+            } else {
+                Some(Thickness::Times(width)).filter(|_| width != 1.0)
+            };
+            let palette = &self.effects.system.heading().style.palette;
+            objects.push(Object {
+                base_element,
+                visible: true,
+                origin: None,
+                last_map: None,
+                tint: None,
+                paint: self.has_colours.then(|| palette.entry(key.colour)),
+                thickness,
+                behaviour: *behaviours.entry(behaves).or_insert(next),
+                replacement,
+            });
+        }
+        let mut graph = Graph {
+            rule: None,
+            base_elements: self.base_elements.into(),
+            origins: 0,
+            objects,
+            initiators,
+            depth: Some(steps),
+            regular: true,
+            counts_index: false,
+            draws: false,
+            seeds: false,
+            tints: self.has_colours,
+            widest: None,
+            affine: false,
+            unit: 1.0,
+            middle: DVec2::ZERO,
+        };
+        graph.find_widths();
+        graph
+    }
+
+    /// What stands for a kind while it is not replaced: the way from where the turtle meets it to where
+    /// it leaves it, or to where what is farthest stands.
+    fn way(&mut self, kind: usize, left: u32) -> usize {
+        let effects = self.effects;
+        let Ok(drawn) = effects.drawn_by(kind, left) else {
+            return 0;
+        };
+        let place = effects.place_after(kind, left);
+        let ends = [place, drawn.tip].map(|place| place.over(drawn.size));
+        // What is no longer than rounding has no direction.
+        const SHORT: f64 = 1e-9;
+        let end = ends.into_iter().find(|end| end.length() > SHORT);
+        let line = BaseElement::new(
+            DVec2::ZERO,
+            vec![Piece::Line(end.unwrap_or(DVec2::X))],
+            false,
+        );
+        self.base_elements
+            .push(line.unwrap_or_else(BaseElement::line));
+        self.base_elements.len() - 1
+    }
+}

@@ -1,0 +1,312 @@
+//! The turtle over a word of modules whose effects are known.
+
+use crate::geometry::DVec2;
+use crate::instancing::Thickness;
+use crate::lsystem::{Action, LSystem};
+use crate::rule::draw::Path;
+
+use super::NotCompiled;
+use super::effects::{Drawn, Effect, Effects};
+use super::far::Far;
+use super::state::{Look, Pose, Shade, State};
+
+/// Something that is drawn in a word.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    /// The module that draws it, by position.
+    pub(super) position: u32,
+    pub(super) of: Of,
+    /// Where it stands.
+    pub(super) pose: Pose,
+    pub(super) look: Look,
+    /// Whether it starts where the part before ends, as far as its word tells.
+    pub(super) joined: bool,
+}
+
+/// What it is.
+#[derive(Clone, Debug)]
+pub(super) enum Of {
+    /// A line of one step.
+    Step {
+        /// Whether the module is replaced in the next step.
+        fertile: bool,
+    },
+    /// A polygon, by its vertices in steps.
+    Polygon(Vec<DVec2>),
+    /// What a kind comes to.
+    Subtree(usize, Drawn),
+}
+
+impl Part {
+    /// How far it reaches from where it stands.
+    fn reach(&self) -> Far {
+        let steps = match &self.of {
+            Of::Step { .. } => Far::of_length(1.0),
+            Of::Polygon(vertices) => {
+                Far::of_length(vertices.iter().map(|v| v.length()).fold(0.0, f64::max))
+            }
+            Of::Subtree(_, drawn) => drawn.reach,
+        };
+        steps.times(self.pose.scale).length()
+    }
+}
+
+/// A polygon that is open.
+struct Open {
+    state: State,
+    vertices: Vec<Far>,
+}
+
+/// Polygons have no more vertices than this that are not written in one word.
+const MOST_VERTICES: usize = 1 << 16;
+
+/// Nor are words looked into deeper for them.
+const DEEPEST: u32 = 1000;
+
+/// What leads the turtle no farther than this share of how far it may reach is as long as that.
+const SHARE: f64 = 0.25;
+
+/// Reads a word.
+pub(super) struct Reader<'e, 's> {
+    effects: &'e Effects<'s>,
+    /// The state, told from where the word begins.
+    pub(super) state: State,
+    saved: Vec<State>,
+    open: Vec<Open>,
+    vertices: usize,
+    pub(super) parts: Vec<Part>,
+    /// How the last part ends, if the pen has not been lifted since; how the turtle drew before,
+    /// if nothing has been drawn.
+    down: bool,
+    first: Option<Look>,
+    last: Look,
+    /// Whether the first part may join what comes before.
+    starts: bool,
+}
+
+impl<'e, 's> Reader<'e, 's> {
+    pub(super) fn new(effects: &'e Effects<'s>, state: State) -> Self {
+        Self {
+            effects,
+            state,
+            saved: Vec::new(),
+            open: Vec::new(),
+            vertices: 0,
+            parts: Vec::new(),
+            down: true,
+            first: None,
+            last: state.look,
+            starts: true,
+        }
+    }
+
+    /// Reads a word whose modules are still to be replaced so many times.
+    pub(super) fn read(
+        &mut self,
+        word: &[usize],
+        left: u32,
+        path: Path,
+    ) -> Result<(), NotCompiled> {
+        for (position, &kind) in (0..).zip(word) {
+            self.module(kind, left, path.child(position), position)?;
+        }
+        Ok(())
+    }
+
+    fn module(
+        &mut self,
+        kind: usize,
+        left: u32,
+        path: Path,
+        position: u32,
+    ) -> Result<(), NotCompiled> {
+        let effects = self.effects;
+        let of = &effects.kinds.all[kind];
+        if left == 0 || !of.is_fertile() {
+            let meaning = &effects.system.symbols()[of.symbol].meaning;
+            let mut actions = meaning.iter();
+            return actions.try_for_each(|action| {
+                self.act(
+                    action,
+                    &of.arguments,
+                    left == 0 && of.is_fertile(),
+                    position,
+                )
+            });
+        }
+        if self.open.is_empty() {
+            let effect = effects.of(kind, left)?;
+            self.subtree(kind, effect, position);
+            return Ok(());
+        }
+        // What is in a polygon is part of it.
+        if left > DEEPEST {
+            return Err(NotCompiled);
+        }
+        let word = &of.alternatives[of.drawn(path)].word;
+        for (inner, &kind) in (0..).zip(word) {
+            self.module(kind, left - 1, path.child(inner), position)?;
+        }
+        Ok(())
+    }
+
+    fn subtree(&mut self, kind: usize, effect: &Effect, position: u32) {
+        let state = self.state;
+        if let Some(drawn) = &effect.drawn {
+            self.part(Of::Subtree(kind, *drawn), state, drawn.first, position);
+            self.last = state.look.then(drawn.last);
+        } else if effect.lifts {
+            self.down = false;
+        }
+        self.state = state.then(self.effects.compass, &effect.state);
+    }
+
+    /// Draws something whose first line has a look, from a state.
+    fn part(&mut self, of: Of, state: State, first: Look, position: u32) {
+        let look = state.look.then(first);
+        let alike = self.parts.is_empty() || self.last == look;
+        if self.parts.is_empty() {
+            self.starts = self.down;
+            self.first = Some(look);
+        }
+        self.parts.push(Part {
+            position,
+            of,
+            pose: state.pose,
+            look: state.look,
+            joined: self.down && alike && !self.parts.is_empty(),
+        });
+        self.down = true;
+        self.last = look;
+    }
+
+    fn vertex(&mut self) -> Result<(), NotCompiled> {
+        if let Some(open) = self.open.last_mut() {
+            open.vertices.push(self.state.pose.place);
+            self.vertices += 1;
+        }
+        if self.vertices > MOST_VERTICES {
+            return Err(NotCompiled);
+        }
+        Ok(())
+    }
+
+    fn act(
+        &mut self,
+        action: &Action,
+        arguments: &[f64],
+        fertile: bool,
+        position: u32,
+    ) -> Result<(), NotCompiled> {
+        let compass = self.effects.compass;
+        let State { pose, look } = &mut self.state;
+        let changed = |width, colour| Look { width, colour };
+        let Look { width, colour } = Look::SAME;
+        match action {
+            Action::Draw(steps) => {
+                let steps = steps.eval(arguments);
+                let mut state = self.state;
+                self.state.pose.go(compass, steps);
+                if !self.open.is_empty() {
+                    return self.vertex();
+                }
+                state.pose.scale *= steps;
+                if state.pose.scale != 0.0 {
+                    self.part(Of::Step { fertile }, state, Look::SAME, position);
+                }
+            }
+            Action::Move(steps) => {
+                pose.go(compass, steps.eval(arguments));
+                self.vertex()?;
+                self.down = false;
+            }
+            Action::Glide(steps) => {
+                pose.go(compass, steps.eval(arguments));
+                self.down = false;
+            }
+            Action::Turn(angle) => pose.turn(compass, compass.of_degrees(angle.eval(arguments))),
+            Action::Push => self.saved.push(self.state),
+            Action::Pop => {
+                self.state = self.saved.pop().ok_or(NotCompiled)?;
+                self.down = false;
+            }
+            Action::Reflect => pose.mirrored ^= true,
+            Action::Scale(factor) => pose.scale *= factor.eval(arguments),
+            Action::Width(factor) => {
+                let factor = factor.eval(arguments).max(0.0);
+                *look = look.then(changed(Thickness::Times(factor), colour));
+            }
+            Action::SetWidth(set) => {
+                let set = set.eval(arguments).max(0.0);
+                *look = look.then(changed(Thickness::Set(set), colour));
+            }
+            Action::SetColour(set) => {
+                let set = LSystem::colour(set.eval(arguments));
+                *look = look.then(changed(width, Shade::Set(set)));
+            }
+            Action::ShiftColour(by) => {
+                let by = LSystem::colour(by.eval(arguments));
+                *look = look.then(changed(width, Shade::Shifted(by)));
+            }
+            Action::Open => self.open.push(Open {
+                state: self.state,
+                vertices: Vec::new(),
+            }),
+            Action::Close => {
+                let open = self.open.pop().ok_or(NotCompiled)?;
+                self.close(&open, position);
+            }
+            Action::Vertex => self.vertex()?,
+        }
+        Ok(())
+    }
+
+    fn close(&mut self, open: &Open, position: u32) {
+        let Open { state, vertices } = open;
+        if vertices.len() < 3 || state.pose.scale == 0.0 {
+            return;
+        }
+        let compass = self.effects.compass;
+        let seen = vertices
+            .iter()
+            .map(|place| state.pose.seen(compass, *place));
+        self.part(Of::Polygon(seen.collect()), *state, Look::SAME, position);
+        self.down = false;
+    }
+
+    /// What has been read does.
+    pub(super) fn effect(&self) -> Result<Effect, NotCompiled> {
+        let reached = self.parts.iter().map(|part| {
+            let reach = part.reach();
+            (part.pose.place.length().plus(reach), part)
+        });
+        let farthest = reached.reduce(|a, b| if a.0.longer(b.0) == a.0 { a } else { b });
+        let drawn = farthest
+            .zip(self.first)
+            .map(|((reach, part), first)| Drawn {
+                reach,
+                size: reach.times(SHARE).longer(self.state.pose.place.length()),
+                tip: part.pose.place,
+                first,
+                last: self.last,
+            });
+        let pose = &self.state.pose;
+        let finite = |reach: Far| reach.is_finite() && !reach.is_zero();
+        let is_known = pose.place.is_finite()
+            && pose.scale.is_finite()
+            && drawn.as_ref().is_none_or(|drawn| finite(drawn.reach));
+        if !is_known || !self.saved.is_empty() || !self.open.is_empty() {
+            return Err(NotCompiled);
+        }
+        Ok(Effect {
+            state: self.state,
+            lifts: !self.down,
+            drawn,
+        })
+    }
+
+    /// Whether the first part starts where the word does, and the last one ends where it ends.
+    pub(super) fn meets(&self) -> [bool; 2] {
+        [self.starts, self.down]
+    }
+}

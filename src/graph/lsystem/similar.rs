@@ -1,0 +1,354 @@
+//! Edge rewriting: where what replaces a module is the same at every step but for its size and where it
+//! points, one object stands for a kind, whatever the number of steps, and frames are made by chords.
+
+use std::sync::Arc;
+
+use crate::geometry::{DVec2, Direction, Frame};
+use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+use crate::lsystem::LSystem;
+use crate::rule::BaseElement;
+use crate::rule::draw::Path;
+
+use super::NotCompiled;
+use super::effects::Effects;
+use super::far::Far;
+use super::reader::{Of, Reader};
+use super::state::{Look, State};
+
+/// So many steps are looked at, at most, until the state of all kinds comes back.
+const MOST_STEPS: u32 = 32;
+
+/// What differs by less is the same but for rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What a word draws, by the chords of its parts, as multiples of a chord.
+#[derive(Debug)]
+struct Shape {
+    links: Vec<Link>,
+    meets: [bool; 2],
+}
+
+#[derive(Debug)]
+struct Link {
+    kind: usize,
+    ends: [DVec2; 2],
+    mirrored: bool,
+    joined: bool,
+    position: u32,
+}
+
+impl Shape {
+    fn is_like(&self, other: &Self) -> bool {
+        let alike = |(a, b): (&Link, &Link)| {
+            let near = a.ends.iter().zip(b.ends);
+            a.kind == b.kind && (a.mirrored, a.joined) == (b.mirrored, b.joined) && { near }
+                .all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
+        };
+        self.meets == other.meets
+            && self.links.len() == other.links.len()
+            && self.links.iter().zip(&other.links).all(alike)
+    }
+
+    fn chain(&self, objects: &[Option<usize>]) -> Result<Chain, NotCompiled> {
+        let instance = |link: &Link| {
+            let direction = if link.mirrored {
+                Direction::YReflected
+            } else {
+                Direction::Normal
+            };
+            let [from, to] = link.ends;
+            Some(Instance {
+                frame: Frame::between(from, to, direction),
+                length: from.distance(to),
+                joined: link.joined,
+                position: link.position,
+                object: objects[link.kind]?,
+            })
+        };
+        let instances: Option<Vec<_>> = self.links.iter().map(instance).collect();
+        Ok(Chain {
+            instances: instances.ok_or(NotCompiled)?,
+            meets_frame: self.meets,
+        })
+    }
+}
+
+/// The states of all kinds after some steps, in which those of equal ratios are equal.
+#[derive(Debug)]
+struct Stage {
+    /// Displacement, heading, whether it is mirrored, scale.
+    states: Vec<(DVec2, u64, bool, f64)>,
+}
+
+impl Stage {
+    fn is_like(&self, other: &Self) -> bool {
+        let alike = |(a, b): (&(DVec2, u64, bool, f64), &(DVec2, u64, bool, f64))| {
+            let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * (1.0 + a.abs());
+            a.0.distance(b.0) <= ROUNDING * (1.0 + a.0.length())
+                && (a.1, a.2) == (b.1, b.2)
+                && near(a.3, b.3)
+        };
+        self.states.iter().zip(&other.states).all(alike)
+    }
+}
+
+impl Graph {
+    /// The graph of a system that rewrites edges. Approximants are aligned: each runs from where approximant
+    /// 0 begins to where it ends.
+    ///
+    /// That all steps are alike follows from a state of all kinds that comes back, but for its size: what
+    /// comes next depends on nothing else.
+    pub(super) fn of_edges(system: &LSystem) -> Result<Self, NotCompiled> {
+        let edges = Edges {
+            effects: Effects::closed(system, MOST_STEPS)?,
+        };
+        edges.run()
+    }
+}
+
+struct Edges<'s> {
+    effects: Effects<'s>,
+}
+
+impl Edges<'_> {
+    fn run(&self) -> Result<Graph, NotCompiled> {
+        let kinds = &self.effects.kinds;
+        let draws = self.draws()?;
+        let first =
+            |kind: usize| self.shape(&kinds.all[kind].alternatives[0].word, 0, Some((kind, 1)));
+        let mut shapes = Vec::new();
+        for (kind, draws) in draws.iter().enumerate() {
+            shapes.push(if *draws { Some(first(kind)?) } else { None });
+        }
+        let start = self.shape(&kinds.axiom, 0, None)?;
+        let mut stages: Vec<Stage> = Vec::new();
+        for left in 0..MOST_STEPS {
+            // What is made of this stage looks as what is made of the first.
+            for (kind, shape) in shapes.iter().enumerate() {
+                let Some(shape) = shape else { continue };
+                let word = &kinds.all[kind].alternatives[0].word;
+                if !self
+                    .shape(word, left, Some((kind, left + 1)))?
+                    .is_like(shape)
+                {
+                    return Err(NotCompiled);
+                }
+            }
+            if !self.shape(&kinds.axiom, left, None)?.is_like(&start) {
+                return Err(NotCompiled);
+            }
+            let stage = self.stage(left)?;
+            if stages.iter().any(|before| before.is_like(&stage)) {
+                return self.graph(&shapes);
+            }
+            stages.push(stage);
+        }
+        Err(NotCompiled)
+    }
+
+    /// Which kinds draw: each a line from where it begins to where it ends, and nothing else, before it is
+    /// replaced.
+    fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
+        let all = &self.effects.kinds.all;
+        let mut draws = Vec::new();
+        for kind in 0..all.len() {
+            if !all[kind].is_fertile() {
+                if self.effects.system.symbols()[all[kind].symbol].draws() > 0 {
+                    return Err(NotCompiled);
+                }
+                draws.push(false);
+                continue;
+            }
+            let mut reader = Reader::new(&self.effects, State::SAME);
+            reader.read(&[kind], 0, Path::of_seed(0))?;
+            let place = reader.state.pose.place;
+            draws.push(match reader.parts.as_slice() {
+                [] => false,
+                [part] if part.pose.place.is_zero() => {
+                    let end = self.end(&part.of, &reader.parts[0].pose, kind, 0)?;
+                    let off = end.plus(place.times(-1.0)).length();
+                    if !off.is_zero() && off.over(place.length()).x > ROUNDING {
+                        return Err(NotCompiled);
+                    }
+                    true
+                }
+                _ => return Err(NotCompiled),
+            });
+        }
+        Ok(draws)
+    }
+
+    /// Where a part of a word ends.
+    fn end(
+        &self,
+        of: &Of,
+        pose: &super::state::Pose,
+        kind: usize,
+        left: u32,
+    ) -> Result<Far, NotCompiled> {
+        let compass = self.effects.compass;
+        let mut pose = *pose;
+        match of {
+            Of::Step { .. } => pose.go(compass, 1.0),
+            Of::Subtree(..) => {
+                let effect = self.effects.of(kind, left)?;
+                pose = pose.then(compass, &effect.state.pose);
+            }
+            Of::Polygon(_) => return Err(NotCompiled),
+        }
+        Ok(pose.place)
+    }
+
+    /// What a word draws whose modules are still to be replaced so many times, as multiples of the chord
+    /// of a kind, or of its own first one.
+    fn shape(
+        &self,
+        word: &[usize],
+        left: u32,
+        whole: Option<(usize, u32)>,
+    ) -> Result<Shape, NotCompiled> {
+        let mut reader = Reader::new(&self.effects, State::SAME);
+        reader.read(word, left, Path::of_seed(0))?;
+        let mut ends = Vec::new();
+        for part in &reader.parts {
+            let kind = word[part.position as usize];
+            if part.look != Look::SAME {
+                return Err(NotCompiled);
+            }
+            ends.push([part.pose.place, self.end(&part.of, &part.pose, kind, left)?]);
+        }
+        let [from, to] = match whole {
+            Some((kind, left)) => [Far::ZERO, self.effects.place_after(kind, left)],
+            None => *ends.first().ok_or(NotCompiled)?,
+        };
+        let chord = to.plus(from.times(-1.0));
+        let length = chord.length();
+        if length.is_zero() {
+            return Err(NotCompiled);
+        }
+        let along = chord.over(length);
+        let back = DVec2::new(along.x, -along.y);
+        let seen = |place: Far| back.rotate(place.plus(from.times(-1.0)).over(length));
+        let links = reader.parts.iter().zip(ends).map(|(part, ends)| Link {
+            kind: word[part.position as usize],
+            ends: ends.map(seen),
+            mirrored: part.pose.mirrored,
+            joined: part.joined,
+            position: part.position,
+        });
+        Ok(Shape {
+            links: links.collect(),
+            meets: reader.meets(),
+        })
+    }
+
+    /// The states of all kinds that are replaced so many times.
+    fn stage(&self, left: u32) -> Result<Stage, NotCompiled> {
+        let mut poses = Vec::new();
+        let all = self.effects.kinds.all.iter().enumerate();
+        for (kind, _) in all.filter(|(_, kind)| kind.is_fertile()) {
+            let mut reader = Reader::new(&self.effects, State::SAME);
+            reader.read(&[kind], left, Path::of_seed(0))?;
+            if reader.state.look != Look::SAME {
+                return Err(NotCompiled);
+            }
+            poses.push(reader.state.pose);
+        }
+        let longest = poses.iter().map(|pose| pose.place.length());
+        let longest = longest.reduce(Far::longer).ok_or(NotCompiled)?;
+        // Without reflections it does not matter where all points together.
+        let turns = !self.reflects();
+        let first = poses.iter().map(|pose| pose.place.over(longest));
+        let first = first.clone().find(|place| place.length() > ROUNDING);
+        let back = match first.filter(|_| turns) {
+            Some(along) => DVec2::new(along.x, -along.y) / along.length(),
+            None => DVec2::X,
+        };
+        let states = poses.iter().map(|pose| {
+            let place = back.rotate(pose.place.over(longest));
+            (place, pose.heading, pose.mirrored, pose.scale)
+        });
+        Ok(Stage {
+            states: states.collect(),
+        })
+    }
+
+    fn reflects(&self) -> bool {
+        let symbols = self.effects.system.symbols();
+        let used = self
+            .effects
+            .kinds
+            .all
+            .iter()
+            .map(|kind| &symbols[kind.symbol]);
+        let mut actions = used.flat_map(|symbol| &symbol.meaning);
+        actions.any(|action| matches!(action, crate::lsystem::Action::Reflect))
+    }
+
+    fn graph(&self, shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
+        let mut next = 0..;
+        let objects: Vec<Option<usize>> = { shapes.iter() }
+            .map(|shape| shape.as_ref().and_then(|_| next.next()))
+            .collect();
+        let system = self.effects.system;
+        let compass = self.effects.compass;
+        let mut state = State::SAME;
+        state.pose.heading = compass.of_degrees(system.start());
+        state.pose.scale = system.length();
+        let axiom = &self.effects.kinds.axiom;
+        let mut reader = Reader::new(&self.effects, state);
+        reader.read(axiom, 0, Path::of_seed(0))?;
+        let unit = Far::of_length(1.0);
+        let mut links = Vec::new();
+        for part in &reader.parts {
+            let kind = axiom[part.position as usize];
+            let to = self.end(&part.of, &part.pose, kind, 0)?;
+            links.push(Link {
+                kind,
+                ends: [part.pose.place, to].map(|place| place.over(unit)),
+                mirrored: part.pose.mirrored,
+                joined: part.joined,
+                position: part.position,
+            });
+        }
+        let start = Shape {
+            links,
+            meets: [false; 2],
+        };
+        let mut made = Vec::new();
+        for shape in shapes.iter().flatten() {
+            let body = shape.chain(&objects)?;
+            made.push(Object {
+                base_element: 0,
+                visible: true,
+                origin: None,
+                last_map: None,
+                tint: None,
+                paint: None,
+                thickness: None,
+                behaviour: made.len(),
+                replacement: Replacement::Fixed(Arc::new(Production {
+                    body,
+                    seeds: Vec::new(),
+                })),
+            });
+        }
+        Ok(Graph {
+            rule: None,
+            base_elements: [BaseElement::line()].into(),
+            origins: 0,
+            objects: made,
+            initiators: vec![start.chain(&objects)?],
+            depth: None,
+            regular: true,
+            counts_index: false,
+            draws: false,
+            seeds: false,
+            tints: false,
+            widest: None,
+            affine: false,
+            unit: 1.0,
+            middle: DVec2::new(0.5, 0.0),
+        })
+    }
+}

@@ -1,0 +1,177 @@
+//! The engines agree.
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use crate::catalogue::Catalogue;
+use crate::diagnostic::Source;
+use crate::document::Document;
+use crate::geometry::DVec2;
+use crate::graph::Graph;
+use crate::grow::{Element, Fractal, Growth, Visitor, walk};
+use crate::lsystem::LSystem;
+use crate::model::Model;
+use crate::style::Colour;
+
+use super::effects::Effects;
+
+/// What is drawn of an element.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub(super) points: Vec<DVec2>,
+    pub(super) joined: bool,
+    pub(super) fertile: bool,
+    pub(super) direction: u8,
+    pub(super) width: f64,
+    pub(super) colour: Colour,
+}
+
+struct Collector<'g> {
+    graph: &'g Graph,
+    drawn: Vec<Drawn>,
+}
+
+impl Visitor for Collector<'_> {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        let object = &self.graph.objects()[element.object];
+        let map = element.frame.map;
+        let (start, pieces) = self.graph.base_elements()[object.base_element].outline(false);
+        let mut points = vec![
+            map.transform_point2(DVec2::ZERO),
+            map.transform_point2(DVec2::X),
+        ];
+        points.push(map.transform_point2(start));
+        points.extend(pieces.iter().map(|piece| piece.transformed(&map).end()));
+        self.drawn.push(Drawn {
+            points,
+            joined: element.joined,
+            fertile: element.fertile,
+            direction: element.frame.direction.number(),
+            width: element.coat.width(),
+            colour: element.coat.on(Colour::BLACK),
+        });
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+pub(super) fn system(text: &str) -> Arc<LSystem> {
+    let source = Source::new("test.yaml", format!("kind: lsystem\n{text}"));
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    match document.resolve(&[]).unwrap().0 {
+        Model::LSystem(system) => system,
+        _ => unreachable!(),
+    }
+}
+
+pub(super) fn drawn(graph: &Graph, steps: u32, seed: u64) -> Vec<Drawn> {
+    let mut collector = Collector {
+        graph,
+        drawn: Vec::new(),
+    };
+    let growth = Growth {
+        seed,
+        ..Growth::steps(steps)
+    };
+    walk(graph, &growth, &mut collector).unwrap();
+    collector.drawn
+}
+
+/// Whether both engines draw the same at a step, element by element.
+pub(super) fn assert_same(compiled: &Graph, system: &LSystem, steps: u32, seed: u64) {
+    let words = Graph::of_words(system, steps, seed, 1_000_000).unwrap();
+    let (ours, theirs) = (drawn(compiled, steps, seed), drawn(&words, steps, seed));
+    assert_eq!(ours.len(), theirs.len(), "at step {steps}");
+    let size = theirs.iter().flat_map(|element| &element.points);
+    let size = size.map(|point| point.length()).fold(1.0, f64::max);
+    for (number, (a, b)) in ours.iter().zip(&theirs).enumerate() {
+        let what = format!("element {number} of step {steps}: {a:?} {b:?}");
+        assert_eq!(a.points.len(), b.points.len(), "{what}");
+        for (a, b) in a.points.iter().zip(&b.points) {
+            assert!((*a - *b).length() < 1e-9 * size, "{what}");
+        }
+        assert_eq!(a.joined, b.joined, "{what}");
+        assert_eq!(a.direction, b.direction, "{what}");
+        assert_eq!(a.colour, b.colour, "{what}");
+        assert!((a.width - b.width).abs() <= 1e-5 * b.width, "{what}");
+    }
+}
+
+fn compiled(system: &LSystem, steps: u32) -> Graph {
+    let effects = Effects::of_system(system, steps).unwrap();
+    Graph::of_levels(&effects, steps).unwrap()
+}
+
+/// Systems that rewrite edges draw what words draw, up to a similarity a step.
+#[test]
+fn edges_draw_what_words_draw() {
+    for text in [
+        "angle: 60\naxiom: F--F--F\nproductions: {F: F+F--F+F}\n",
+        "angle: 90\naxiom: F\nsymbols: {G: draw}\nproductions: {F: F+G, G: F-G}\n",
+        "angle: 60\naxiom: A\nsymbols: {A: draw, B: draw}\nproductions: {A: A-B--B+A++AA+B-, B: +A-BB--B-A++A+B}\n",
+        "angle: 120\nheading: 30\nlength: 2\naxiom: F\nproductions: {F: F+F-F}\n",
+        "angle: 25\naxiom: F\nproductions: {F: 'F[+F]F'}\n",
+        "angle: 60\naxiom: F\nproductions: {F: FfF, f: fff}\n",
+        "angle: 45\naxiom: F\nsymbols: {R: reflect}\nproductions: {F: '+RFR-[-F]-RFR+'}\n",
+    ] {
+        let system = system(text);
+        let graph = Graph::of_edges(&system).unwrap();
+        for steps in 0..=4 {
+            let words = Graph::of_words(&system, steps, 0, 1_000_000).unwrap();
+            let (ours, theirs) = (drawn(&graph, steps, 0), drawn(&words, steps, 0));
+            assert_eq!(ours.len(), theirs.len(), "{text} at {steps}");
+            // The similarity that moves the first line and one that lies apart from it.
+            let ratio = |all: &[Drawn], point: DVec2| {
+                let [from, to] = [all[0].points[0], all[0].points[1]];
+                let along = to - from;
+                DVec2::new(along.x, -along.y).rotate(point - from) / along.length_squared()
+            };
+            for (a, b) in ours.iter().zip(&theirs) {
+                for (x, y) in a.points.iter().zip(&b.points) {
+                    let off = ratio(&ours, *x) - ratio(&theirs, *y);
+                    assert!(off.length() < 1e-6, "{text} at {steps}: {off}");
+                }
+                assert_eq!((a.joined, a.direction), (b.joined, b.direction));
+            }
+        }
+    }
+}
+
+#[test]
+fn levels_draw_what_words_draw() {
+    for text in [
+        "angle: 60\naxiom: F--F--F\nproductions: {F: F+F--F+F}\n",
+        "angle: 90\naxiom: FX\nproductions: {X: X+YF+, Y: -FX-Y}\n",
+        "angle: 25.7\naxiom: X\nproductions: {X: 'F[+X][-X]FX', F: FF}\n",
+        "angle: 22.5\nheading: 90\nlength: 0.3\naxiom: X\nproductions: {X: 'F-[[X]+X]+F[+FX]-X', F: FF}\n",
+        "angle: 30\naxiom: A\nsymbols: {R: reflect, S: {scale: 2/3}}\nproductions: {A: 'F[RS+A]S-A'}\n",
+        "angle: 20\naxiom: A\nproductions: {A: \"!F['+A][-A]fA\"}\n",
+        "angle: 45\naxiom: A\nproductions: {A: '[+A{.-FFF-F+f}.]FA'}\n",
+        "axiom: '[A]f[B]'\nangle: 17.3\nproductions: {A: 'FBA', B: '+fF-[A]'}\n",
+        "axiom: A(1)\nangle: 40\nproductions:\n- 'A(l) : l > 1/8 -> !(l)F(l)[+(40)A(l/2)][-(20)A(3/4*l)]'\n",
+    ] {
+        let system = system(text);
+        for steps in 0..=5 {
+            let graph = compiled(&system, steps.max(4));
+            assert_same(&graph, &system, steps, 0);
+            let mut forecast = graph.forecast().unwrap();
+            for _ in 0..steps {
+                assert!(forecast.advance());
+            }
+            let found = drawn(&graph, steps, 0);
+            let level = forecast.level();
+            assert_eq!(level.elements.to_u64(), Some(found.len() as u64));
+            let fertile = found.iter().filter(|element| element.fertile).count();
+            assert_eq!(level.fertile.to_u64(), Some(fertile as u64));
+        }
+    }
+}
