@@ -9,7 +9,7 @@ use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, Chain, CompileError, Graph, Object, Production, Replacement};
+use super::{Alternative, Evaluated, Chain, CompileError, Graph, Object, Production, Replacement};
 
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;
@@ -162,7 +162,7 @@ impl<'r> Compiler<'r> {
             .flat_map(|generator| generator.parts())
             .any(|part| part.placement.seeds());
         Ok(Graph {
-            rule: Some(Arc::clone(rule)),
+            evaluated: Some(Evaluated::Rule(Arc::clone(rule))),
             base_elements: rule.base_elements().into(),
             origins: rule.generators().len(),
             objects: self.objects,

@@ -148,7 +148,7 @@ impl Graph {
             let mut seeds = Vec::new();
             let behaviour = |object: &usize| self.objects[*object].behaviour;
             let mut behaviours = alternative.objects.iter().map(behaviour);
-            for part in self.evaluated().generators()[alternative.generator].parts() {
+            for part in self.parts(alternative) {
                 let behaviours = behaviours.by_ref().take(part.elements.len());
                 if part.placement.seeds() {
                     let mut seed: Vec<usize> = behaviours.collect();
@@ -158,6 +158,7 @@ impl Graph {
                     body.extend(behaviours);
                 }
             }
+            body.extend(behaviours);
             body.sort_unstable();
             seeds.sort_unstable();
             (body, seeds)
@@ -432,7 +433,7 @@ impl<'g> Forecast<'g> {
                 }
                 Replacement::Evaluated(alternatives) => {
                     let alternative = &alternatives[0];
-                    let parts = graph.evaluated().generators()[alternative.generator].parts();
+                    let parts = graph.parts(alternative);
                     for _ in parts.iter().filter(|part| part.placement.seeds()) {
                         self.fractals += &tally.count;
                     }

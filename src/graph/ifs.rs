@@ -216,7 +216,7 @@ impl<'s> Compiler<'s> {
             drawn.map(|outline| instance(self.drawn(None, outline), &DAffine2::IDENTITY, 0));
         let root = instance(0, &DAffine2::IDENTITY, 0);
         Graph {
-            rule: None,
+            evaluated: None,
             base_elements: std::iter::once(provisional).chain(outlines).collect(),
             origins: maps,
             objects,

@@ -183,7 +183,7 @@ impl<'s> Compiler<'s> {
         }
         let tints = self.objects.iter().any(|object| object.tint.is_some());
         Graph {
-            rule: None,
+            evaluated: None,
             base_elements: self.base_elements.into(),
             origins: 0,
             objects: self.objects,

@@ -7,6 +7,9 @@ mod levels;
 mod reader;
 mod similar;
 mod state;
+mod words;
+
+pub(crate) use words::Words;
 
 use std::collections::BTreeMap;
 
@@ -34,7 +37,7 @@ impl Graph {
     ) -> Result<Self, CompileError> {
         let levels = |NotCompiled| {
             let effects = Effects::of_system(system, steps)?;
-            Self::of_levels(&effects, steps)
+            Self::of_levels(effects, steps)
         };
         match Self::of_edges(system).or_else(levels) {
             Ok(graph) => Ok(graph),
@@ -64,7 +67,7 @@ impl Graph {
             strings.base_elements[base_element].add_to(&mut bounds, &instance.frame.map, 0.0);
         }
         let mut graph = Self {
-            rule: None,
+            evaluated: None,
             base_elements: strings.base_elements.into(),
             origins: 0,
             tints: strings.objects.iter().any(|object| object.tint.is_some()),

@@ -32,13 +32,14 @@ pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
 pub use no_limit::NoLimit;
 
+pub(crate) use lsystem::Words;
 pub(crate) use ifs::{filling, outline as base_element};
 
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
 use crate::instancing::{Coat, Thickness, Tint};
-use crate::rule::{BaseElement, Placement, Rule};
+use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
 
 /// An object: a kind of element in a state that decides what it becomes.
@@ -78,10 +79,19 @@ pub enum Replacement {
     Beyond,
 }
 
+/// What works out instances where elements stand.
+#[derive(Clone, Debug)]
+pub(crate) enum Evaluated {
+    /// A rule whose generators depend on draws or on an index.
+    Rule(Arc<Rule>),
+    /// An L-system whose productions are drawn.
+    Words(Arc<Words>),
+}
+
 /// A generator that may replace an object, and what its elements are.
 #[derive(Clone, Debug)]
 pub struct Alternative {
-    /// The generator, by number.
+    /// The generator, by number; of an L-system, the word.
     pub generator: usize,
     /// The objects of its elements, by position.
     pub objects: Vec<usize>,
@@ -136,8 +146,8 @@ pub struct Production {
 /// within the depth that the graph was compiled for has its replacement.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// The rule whose generators are evaluated where elements stand; `None` if none is.
-    pub(crate) rule: Option<Arc<Rule>>,
+    /// What works out instances where elements stand; `None` if nothing does.
+    pub(crate) evaluated: Option<Evaluated>,
     pub(crate) base_elements: Arc<[BaseElement]>,
     /// The number of origins that objects may have.
     pub(crate) origins: usize,
@@ -162,12 +172,20 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The rule whose generators are evaluated where elements stand.
-    pub(crate) fn evaluated(&self) -> &Rule {
-        let Some(rule) = &self.rule else {
-            unreachable!("only rules are evaluated while a walk goes on");
+    /// What works out instances where elements stand.
+    pub(crate) fn evaluated(&self) -> &Evaluated {
+        let Some(evaluated) = &self.evaluated else {
+            unreachable!("nothing else is evaluated while a walk goes on");
         };
-        rule
+        evaluated
+    }
+
+    /// The parts of an alternative: none where all of it takes the place of what is replaced.
+    pub(crate) fn parts(&self, alternative: &Alternative) -> &[Part] {
+        match self.evaluated() {
+            Evaluated::Rule(rule) => rule.generators()[alternative.generator].parts(),
+            Evaluated::Words(_) => &[],
+        }
     }
 
     /// The number of origins that objects may have: of generators of a rule.
@@ -332,7 +350,7 @@ impl Production {
     ///
     /// `objects` are the objects of the generator's elements by position; `self` is overwritten,
     /// its memory used again.
-    pub(crate) fn set(&mut self, parts: &[crate::rule::Part], points: &[DVec2], objects: &[usize]) {
+    pub(crate) fn set(&mut self, parts: &[Part], points: &[DVec2], objects: &[usize]) {
         let mut seeds = std::mem::take(&mut self.seeds).into_iter();
         self.body.instances.clear();
         self.body.meets_frame = [false; 2];

@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::DVec2;
 use crate::rule::Placement;
 
-use super::{Graph, Instance, Object, Replacement};
+use super::{Evaluated, Graph, Instance, Object, Replacement};
 
 /// Radii that still change by less than this multiple are good enough.
 const TOLERANCE: f64 = 1e-3;
@@ -135,7 +135,12 @@ impl Graph {
             for alternative in alternatives.iter() {
                 let generator = alternative.generator;
                 let extents = extents.entry(generator).or_insert_with(|| {
-                    self.evaluated().generators()[generator].extents(&self.moments())
+                    match self.evaluated() {
+                        Evaluated::Rule(rule) => {
+                            rule.generators()[generator].extents(&self.moments())
+                        }
+                        Evaluated::Words(words) => words.extents(generator).to_vec(),
+                    }
                 });
                 let drawn = alternative.objects.iter().zip(extents);
                 edges.extend(drawn.map(|(&object, extent)| Edge {
@@ -175,7 +180,7 @@ impl Graph {
         self.leading_to(|object| match &self.objects[object].replacement {
             Replacement::Fixed(production) => !production.seeds.is_empty(),
             Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                let parts = self.evaluated().generators()[alternative.generator].parts();
+                let parts = self.parts(alternative);
                 parts.iter().any(|part| part.placement.seeds())
             }),
             Replacement::Kept => false,
@@ -307,8 +312,7 @@ impl Graph {
                 .iter()
                 .any(|seed| seed.placement == Placement::SeedsAsInitiator),
             Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                let parts = self.evaluated().generators()[alternative.generator].parts();
-                let mut parts = parts.iter();
+                let mut parts = self.parts(alternative).iter();
                 parts.any(|part| part.placement == Placement::SeedsAsInitiator)
             }),
             Replacement::Kept | Replacement::Beyond => false,

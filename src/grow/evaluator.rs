@@ -1,5 +1,5 @@
 use crate::geometry::DVec2;
-use crate::graph::{CompileError, Graph, Production, Replacement};
+use crate::graph::{CompileError, Evaluated, Graph, Production, Replacement};
 use crate::rule;
 
 use super::descent::Standing;
@@ -35,7 +35,13 @@ impl Evaluator {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");
         };
-        let rule = graph.evaluated();
+        let rule = match graph.evaluated() {
+            Evaluated::Rule(rule) => rule,
+            Evaluated::Words(words) => {
+                words.evaluate(alternatives, standing.path, production);
+                return Ok(());
+            }
+        };
         #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
         let moment = rule::Moment {
             index: moment.rank.max(1) as f64,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::geometry::{Bounds, Direction};
-use crate::graph::{Graph, Object, Replacement};
+use crate::graph::{Evaluated, Graph, Object, Replacement};
 use crate::grow::Growth;
 use crate::style::{ColorBy, Style};
 
@@ -144,10 +144,11 @@ impl Standing {
                             .map(|(_, child)| (child.object, direction * child.frame.direction)),
                     ),
                     Replacement::Evaluated(alternatives) => {
-                        let [only] = &alternatives[..] else {
+                        let ([only], Evaluated::Rule(rule)) = (&alternatives[..], graph.evaluated())
+                        else {
                             return None;
                         };
-                        let elements = graph.evaluated().generators()[only.generator].elements();
+                        let elements = rule.generators()[only.generator].elements();
                         let directions = elements.map(|element| direction * element.direction);
                         next.extend(only.objects.iter().copied().zip(directions));
                     }

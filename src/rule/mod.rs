@@ -11,6 +11,7 @@ mod extent;
 mod generator;
 mod selection;
 
+pub(crate) use extent::Extent;
 pub use base_element::{BaseElement, Piece, arc};
 pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};

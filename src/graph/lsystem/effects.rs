@@ -1,4 +1,7 @@
-use crate::lsystem::{Compass, LSystem};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::lsystem::{Action, Compass, LSystem};
 use crate::rule::draw::Path;
 
 use super::NotCompiled;
@@ -8,7 +11,7 @@ use super::reader::Reader;
 use super::state::{Look, State};
 
 /// What a module comes to in some steps, told from where the turtle meets it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Effect {
     /// How it leaves the turtle.
     pub(super) state: State,
@@ -16,6 +19,12 @@ pub(super) struct Effect {
     pub(super) lifts: bool,
     /// What it draws, if it does.
     pub(super) drawn: Option<Drawn>,
+    /// Whether it is the same whatever is drawn. Otherwise this stands for all that may come.
+    pub(super) is_exact: bool,
+    /// Whether it surely draws something, if it may.
+    pub(super) is_sure: bool,
+    /// How many modules are read to tell it.
+    pub(super) work: u64,
 }
 
 /// What a module draws.
@@ -33,30 +42,31 @@ pub(super) struct Drawn {
 }
 
 /// The effects of all kinds, from the bottom up.
-pub(super) struct Effects<'s> {
-    pub(super) system: &'s LSystem,
+#[derive(Debug)]
+pub(super) struct Effects {
+    pub(super) system: Arc<LSystem>,
     pub(super) compass: Compass,
     pub(super) kinds: Kinds,
     /// By the number of steps that are left, less 1, and by kind.
     levels: Vec<Vec<Option<Effect>>>,
 }
 
-impl<'s> Effects<'s> {
+impl Effects {
     /// Those in all numbers of steps up to one, of all kinds that are met within it.
-    pub(super) fn of_system(system: &'s LSystem, steps: u32) -> Result<Self, NotCompiled> {
+    pub(super) fn of_system(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
         Self::of_kinds(system, Kinds::of(system, steps)?, steps)
     }
 
     /// Those of all kinds that are ever met.
-    pub(super) fn closed(system: &'s LSystem, steps: u32) -> Result<Self, NotCompiled> {
+    pub(super) fn closed(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
         let mut kinds = Kinds::of(system, u32::MAX)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
         Self::of_kinds(system, kinds, steps)
     }
 
-    fn of_kinds(system: &'s LSystem, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
+    fn of_kinds(system: &LSystem, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
         let mut effects = Self {
-            system,
+            system: Arc::new(system.clone()),
             compass: Compass::of(system),
             kinds,
             levels: Vec::new(),
@@ -76,12 +86,40 @@ impl<'s> Effects<'s> {
         if !of.is_fertile() || of.born > steps - left {
             return Ok(None);
         }
-        let mut reader = Reader::new(self, State::SAME);
-        let [only] = of.alternatives.as_slice() else {
-            return Err(NotCompiled);
-        };
-        reader.read(&only.word, left - 1, Path::of_seed(0))?;
-        reader.effect().map(Some)
+        let effects = of.alternatives.iter().map(|alternative| {
+            let mut reader = Reader::new(self, State::SAME, false);
+            reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
+            reader.effect()
+        });
+        let effects: Vec<Effect> = effects.collect::<Result<_, _>>()?;
+        match effects.as_slice() {
+            [only] => Ok(Some(only.clone())),
+            _ => Effect::of_any(&effects).map(Some),
+        }
+    }
+
+    /// What a kind at a path comes to.
+    pub(super) fn of_path(
+        &self,
+        kind: usize,
+        left: u32,
+        path: Path,
+    ) -> Result<Cow<'_, Effect>, NotCompiled> {
+        let known = self.of(kind, left)?;
+        if known.is_exact {
+            return Ok(Cow::Borrowed(known));
+        }
+        let of = &self.kinds.all[kind];
+        let mut reader = Reader::new(self, State::SAME, true);
+        reader.read(&of.alternatives[of.drawn(path)].word, left - 1, path)?;
+        let mut effect = reader.effect()?;
+        // What it counts as long must be the same wherever it stands.
+        effect.drawn = effect.drawn.map(|drawn| Drawn {
+            reach: known.drawn.map_or(drawn.reach, |drawn| drawn.reach),
+            size: known.drawn.map_or(drawn.size, |drawn| drawn.size),
+            ..drawn
+        });
+        Ok(Cow::Owned(effect))
     }
 
     /// What a kind comes to in a number of steps.
@@ -89,6 +127,12 @@ impl<'s> Effects<'s> {
         self.levels[left as usize - 1][kind]
             .as_ref()
             .ok_or(NotCompiled)
+    }
+
+    /// Whether a kind is a closing bracket.
+    pub(super) fn pops(&self, kind: usize) -> bool {
+        let meaning = &self.system.symbols()[self.kinds.all[kind].symbol].meaning;
+        matches!(meaning.first(), Some(Action::Pop))
     }
 
     /// What a kind draws in a number of steps.
@@ -100,5 +144,39 @@ impl<'s> Effects<'s> {
     pub(super) fn place_after(&self, kind: usize, left: u32) -> Far {
         let effect = self.of(kind, left);
         effect.map_or(Far::ZERO, |effect| effect.state.pose.place)
+    }
+}
+
+impl Effect {
+    /// What stands for one of several: as far as any of them reaches, and nothing that they do not have in
+    /// common.
+    fn of_any(all: &[Self]) -> Result<Self, NotCompiled> {
+        let [first, others @ ..] = all else {
+            return Err(NotCompiled);
+        };
+        let mut any = first.clone();
+        any.is_exact = false;
+        for other in others {
+            let (a, b) = (&mut any.state, &other.state);
+            // The objects of what comes later must be known.
+            if a.look != b.look || a.pose.scale != b.pose.scale {
+                return Err(NotCompiled);
+            }
+            let way = a.pose.away().longer(b.pose.away());
+            a.pose.is_rough |= !a.pose.is_like(&b.pose);
+            a.pose.way = way;
+            any.lifts |= other.lifts;
+            any.is_sure &= other.is_sure && any.drawn.is_some() == other.drawn.is_some();
+            any.work = any.work.max(other.work);
+            any.drawn = match (any.drawn, other.drawn) {
+                (Some(a), Some(b)) => Some(Drawn {
+                    reach: a.reach.longer(b.reach),
+                    size: a.size.longer(b.size),
+                    ..a
+                }),
+                (a, b) => a.or(b),
+            };
+        }
+        Ok(any)
     }
 }

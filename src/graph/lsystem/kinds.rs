@@ -12,6 +12,7 @@ const MOST_KINDS: usize = 1 << 14;
 const MOST_MODULES: usize = 1 << 18;
 
 /// A module with its arguments.
+#[derive(Debug)]
 pub(super) struct Kind {
     pub(super) symbol: usize,
     pub(super) arguments: Vec<f64>,
@@ -22,6 +23,7 @@ pub(super) struct Kind {
 }
 
 /// What may replace a module.
+#[derive(Debug)]
 pub(super) struct Alternative {
     weight: f64,
     /// The modules, by kind.
@@ -30,6 +32,7 @@ pub(super) struct Alternative {
 
 /// All kinds of modules that are met within some steps: the predecessors of productions without contexts
 /// need no more than their arguments to be replaced.
+#[derive(Debug)]
 pub(super) struct Kinds {
     pub(super) all: Vec<Kind>,
     pub(super) axiom: Vec<usize>,

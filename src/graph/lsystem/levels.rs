@@ -13,10 +13,17 @@ use super::effects::{Drawn, Effects};
 use super::far::Far;
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, State};
-use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+use super::words::{Words, Written};
+use crate::graph::{
+    Alternative, Chain, Evaluated, Graph, Instance, Object, Production, Replacement,
+};
+use crate::rule::Extent;
 
 /// More objects than this are not made.
 const MOST_OBJECTS: usize = 1 << 17;
+
+/// Nor are so many modules read to find where things stand.
+const MOST_WORK: u64 = 1 << 22;
 
 /// Coordinates are the turtle's unless they come to more than this; then what is drawn reaches about 1.
 const FARTHEST: f64 = 1e150;
@@ -41,8 +48,8 @@ enum Master {
 }
 
 /// Makes the objects of a levelled graph, those of the most steps first.
-struct Leveller<'e, 's> {
-    effects: &'e Effects<'s>,
+struct Leveller<'e> {
+    effects: &'e Effects,
     has_colours: bool,
     /// So many colours there are.
     colours: i64,
@@ -52,7 +59,15 @@ struct Leveller<'e, 's> {
     numbers: [BTreeMap<Key, usize>; 2],
     keys: [Vec<Key>; 2],
     /// What replaces kinds of a colour with so many steps left.
-    productions: BTreeMap<(usize, u32, i64), Production>,
+    productions: BTreeMap<(usize, u32, i64), Made>,
+    written: Vec<Written>,
+}
+
+/// What replaces a kind.
+enum Made {
+    Fixed(Production),
+    /// Words of which one is drawn, or in which something is.
+    Drawn(Vec<Alternative>),
 }
 
 /// Numbers of objects that are not replaced begin here until all others have theirs.
@@ -60,11 +75,11 @@ const LEAVES: usize = usize::MAX / 2;
 
 impl Graph {
     /// The graph whose objects are kinds with a number of steps that are left.
-    pub(super) fn of_levels(effects: &Effects<'_>, steps: u32) -> Result<Self, NotCompiled> {
+    pub(super) fn of_levels(effects: Effects, steps: u32) -> Result<Self, NotCompiled> {
         let palette = &effects.system.heading().style.palette;
         let has_colours = effects.system.has_colours();
         let leveller = Leveller {
-            effects,
+            effects: &effects,
             has_colours,
             colours: i64::try_from(palette.entries()).unwrap_or(i64::MAX),
             base_elements: vec![BaseElement::line()],
@@ -72,13 +87,19 @@ impl Graph {
             numbers: [const { BTreeMap::new() }; 2],
             keys: [const { Vec::new() }; 2],
             productions: BTreeMap::new(),
+            written: Vec::new(),
         };
-        leveller.run(steps)
+        let (mut graph, written) = leveller.run(steps)?;
+        if !written.is_empty() {
+            graph.draws = true;
+            graph.evaluated = Some(Evaluated::Words(Arc::new(Words { effects, written })));
+        }
+        Ok(graph)
     }
 }
 
-impl Leveller<'_, '_> {
-    fn run(mut self, steps: u32) -> Result<Graph, NotCompiled> {
+impl Leveller<'_> {
+    fn run(mut self, steps: u32) -> Result<(Graph, Vec<Written>), NotCompiled> {
         let mut initiators = Vec::new();
         let mut done = 0;
         for left in (0..=steps).rev() {
@@ -112,9 +133,15 @@ impl Leveller<'_, '_> {
         let compass = effects.compass;
         start.pose.heading = compass.of_degrees(effects.system.start());
         start.pose.scale = effects.system.length();
-        let mut reader = Reader::new(effects, start);
+        let mut reader = Reader::new(effects, start, false);
         reader.read(&effects.kinds.axiom, left, Path::of_seed(0))?;
-        let unit = match reader.effect()?.drawn {
+        let effect = reader.effect()?;
+        // The places of what is there from the start must be known.
+        let is_rough = reader.parts.iter().any(|part| part.pose.is_rough);
+        if is_rough || !effect.is_exact && effect.work > MOST_WORK {
+            return Err(NotCompiled);
+        }
+        let unit = match effect.drawn {
             Some(Drawn { reach, .. }) if reach.longer(Far::of_length(FARTHEST)) == reach => reach,
             _ => Far::of_length(1.0),
         };
@@ -125,24 +152,42 @@ impl Leveller<'_, '_> {
     }
 
     /// What replaces a kind that has so many steps left, where the turtle has a colour.
-    fn production(
-        &mut self,
-        kind: usize,
-        left: u32,
-        colour: i64,
-    ) -> Result<Production, NotCompiled> {
+    fn production(&mut self, kind: usize, left: u32, colour: i64) -> Result<Made, NotCompiled> {
         let effects = self.effects;
         let unit = effects.drawn_by(kind, left)?.size;
-        let mut reader = Reader::new(effects, State::SAME);
-        let of = &effects.kinds.all[kind];
-        reader.read(&of.alternatives[0].word, left - 1, Path::of_seed(0))?;
-        Ok(Production {
-            body: Chain {
-                instances: self.instances(&reader.parts, left - 1, unit, colour)?,
-                meets_frame: reader.meets(),
-            },
-            seeds: Vec::new(),
-        })
+        let is_exact = effects.of(kind, left)?.is_exact;
+        let mut words = Vec::new();
+        for alternative in &effects.kinds.all[kind].alternatives {
+            let mut reader = Reader::new(effects, State::SAME, false);
+            reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
+            let instances = self.instances(&reader.parts, left - 1, unit, colour)?;
+            if is_exact {
+                return Ok(Made::Fixed(Production {
+                    body: Chain {
+                        instances,
+                        meets_frame: reader.meets(),
+                    },
+                    seeds: Vec::new(),
+                }));
+            }
+            let placed = reader.parts.iter().zip(&instances);
+            let extent = |(part, instance): (&Part, &Instance)| Extent {
+                away: part.pose.away().over(unit).x,
+                length: instance.length,
+            };
+            words.push(Alternative {
+                generator: self.written.len(),
+                objects: instances.iter().map(|instance| instance.object).collect(),
+            });
+            self.written.push(Written {
+                kind,
+                left,
+                unit,
+                positions: instances.iter().map(|instance| instance.position).collect(),
+                extents: placed.map(extent).collect(),
+            });
+        }
+        Ok(Made::Drawn(words))
     }
 
     fn instances(
@@ -230,23 +275,31 @@ impl Leveller<'_, '_> {
         number
     }
 
-    fn finish(mut self, mut initiators: Vec<Chain>, steps: u32) -> Graph {
+    fn finish(mut self, mut initiators: Vec<Chain>, steps: u32) -> (Graph, Vec<Written>) {
         let count = self.keys[0].len();
-        let renumber = |chain: &mut Chain| {
-            for instance in &mut chain.instances {
-                if instance.object >= LEAVES {
-                    instance.object = instance.object - LEAVES + count;
-                }
+        let number = |object: &mut usize| {
+            if *object >= LEAVES {
+                *object = *object - LEAVES + count;
             }
         };
+        let renumber = |chain: &mut Chain| {
+            let instances = chain.instances.iter_mut();
+            instances.for_each(|instance| number(&mut instance.object));
+        };
         initiators.iter_mut().for_each(renumber);
-        let mut productions: BTreeMap<_, _> = std::mem::take(&mut self.productions)
-            .into_iter()
-            .map(|(key, mut production)| {
+        let made = std::mem::take(&mut self.productions).into_iter();
+        let replacement = |made| match made {
+            Made::Fixed(mut production) => {
                 renumber(&mut production.body);
-                (key, Arc::new(production))
-            })
-            .collect();
+                Replacement::Fixed(Arc::new(production))
+            }
+            Made::Drawn(mut words) => {
+                let objects = words.iter_mut().flat_map(|word| &mut word.objects);
+                objects.for_each(number);
+                Replacement::Evaluated(words.into())
+            }
+        };
+        let replacements: BTreeMap<_, _> = made.map(|(key, made)| (key, replacement(made))).collect();
         let keys: Vec<Key> = self.keys.concat();
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());
@@ -254,8 +307,7 @@ impl Leveller<'_, '_> {
             let (base_element, behaves, replacement) = match key.of {
                 Master::Subtree(kind, left) => {
                     let replaced = (kind, left, key.colour);
-                    let production = productions.entry(replaced).or_default();
-                    let replacement = Replacement::Fixed(Arc::clone(production));
+                    let replacement = replacements[&replaced].clone();
                     let behaves = (Master::Subtree(kind, left), key.colour);
                     (self.way(kind, left), behaves, replacement)
                 }
@@ -284,7 +336,7 @@ impl Leveller<'_, '_> {
             });
         }
         let mut graph = Graph {
-            rule: None,
+            evaluated: None,
             base_elements: self.base_elements.into(),
             origins: 0,
             objects,
@@ -301,7 +353,7 @@ impl Leveller<'_, '_> {
             middle: DVec2::ZERO,
         };
         graph.find_widths();
-        graph
+        (graph, self.written)
     }
 
     /// What stands for a kind while it is not replaced: the way from where the turtle meets it to where

@@ -1,5 +1,7 @@
 //! The turtle over a word of modules whose effects are known.
 
+use std::borrow::Cow;
+
 use crate::geometry::DVec2;
 use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
@@ -67,8 +69,10 @@ const DEEPEST: u32 = 1000;
 const SHARE: f64 = 0.25;
 
 /// Reads a word.
-pub(super) struct Reader<'e, 's> {
-    effects: &'e Effects<'s>,
+pub(super) struct Reader<'e> {
+    effects: &'e Effects,
+    /// Whether paths decide what is drawn, or all that may be stands for it.
+    draws: bool,
     /// The state, told from where the word begins.
     pub(super) state: State,
     saved: Vec<State>,
@@ -82,12 +86,24 @@ pub(super) struct Reader<'e, 's> {
     last: Look,
     /// Whether the first part may join what comes before.
     starts: bool,
+    /// Whether something is surely drawn.
+    is_sure: bool,
+    /// Whether it matters where what is read leads.
+    leads: bool,
+    /// Whether nothing depends on draws, and how many modules have been read.
+    is_exact: bool,
+    work: u64,
 }
 
-impl<'e, 's> Reader<'e, 's> {
-    pub(super) fn new(effects: &'e Effects<'s>, state: State) -> Self {
+impl<'e> Reader<'e> {
+    pub(super) fn new(effects: &'e Effects, state: State, draws: bool) -> Self {
         Self {
             effects,
+            draws,
+            is_sure: false,
+            leads: true,
+            is_exact: true,
+            work: 0,
             state,
             saved: Vec::new(),
             open: Vec::new(),
@@ -107,8 +123,13 @@ impl<'e, 's> Reader<'e, 's> {
         left: u32,
         path: Path,
     ) -> Result<(), NotCompiled> {
-        for (position, &kind) in (0..).zip(word) {
+        let mut rest = word.iter();
+        let mut position = 0;
+        while let Some(&kind) = rest.next() {
+            // Where a bracket ends it does not matter where what stands before it leads.
+            self.leads = !rest.clone().next().is_some_and(|&next| self.effects.pops(next));
             self.module(kind, left, path.child(position), position)?;
+            position += 1;
         }
         Ok(())
     }
@@ -122,6 +143,7 @@ impl<'e, 's> Reader<'e, 's> {
     ) -> Result<(), NotCompiled> {
         let effects = self.effects;
         let of = &effects.kinds.all[kind];
+        self.work = self.work.saturating_add(1);
         if left == 0 || !of.is_fertile() {
             let meaning = &effects.system.symbols()[of.symbol].meaning;
             let mut actions = meaning.iter();
@@ -135,12 +157,17 @@ impl<'e, 's> Reader<'e, 's> {
             });
         }
         if self.open.is_empty() {
-            let effect = effects.of(kind, left)?;
-            self.subtree(kind, effect, position);
+            let known = effects.of(kind, left)?;
+            let effect = if self.draws && (self.leads || !known.is_sure) {
+                effects.of_path(kind, left, path)?
+            } else {
+                Cow::Borrowed(known)
+            };
+            self.subtree(kind, &effect, position);
             return Ok(());
         }
         // What is in a polygon is part of it.
-        if left > DEEPEST {
+        if left > DEEPEST || of.alternatives.len() > 1 {
             return Err(NotCompiled);
         }
         let word = &of.alternatives[of.drawn(path)].word;
@@ -152,6 +179,11 @@ impl<'e, 's> Reader<'e, 's> {
 
     fn subtree(&mut self, kind: usize, effect: &Effect, position: u32) {
         let state = self.state;
+        self.is_exact &= effect.is_exact;
+        if !effect.is_exact {
+            self.work = self.work.saturating_add(effect.work);
+        }
+        self.is_sure |= effect.is_sure && effect.drawn.is_some();
         if let Some(drawn) = &effect.drawn {
             self.part(Of::Subtree(kind, *drawn), state, drawn.first, position);
             self.last = state.look.then(drawn.last);
@@ -212,6 +244,7 @@ impl<'e, 's> Reader<'e, 's> {
                 }
                 state.pose.scale *= steps;
                 if state.pose.scale != 0.0 {
+                    self.is_sure = true;
                     self.part(Of::Step { fertile }, state, Look::SAME, position);
                 }
             }
@@ -270,6 +303,7 @@ impl<'e, 's> Reader<'e, 's> {
         let seen = vertices
             .iter()
             .map(|place| state.pose.seen(compass, *place));
+        self.is_sure = true;
         self.part(Of::Polygon(seen.collect()), *state, Look::SAME, position);
         self.down = false;
     }
@@ -278,14 +312,14 @@ impl<'e, 's> Reader<'e, 's> {
     pub(super) fn effect(&self) -> Result<Effect, NotCompiled> {
         let reached = self.parts.iter().map(|part| {
             let reach = part.reach();
-            (part.pose.place.length().plus(reach), part)
+            (part.pose.away().plus(reach), part)
         });
         let farthest = reached.reduce(|a, b| if a.0.longer(b.0) == a.0 { a } else { b });
         let drawn = farthest
             .zip(self.first)
             .map(|((reach, part), first)| Drawn {
                 reach,
-                size: reach.times(SHARE).longer(self.state.pose.place.length()),
+                size: reach.times(SHARE).longer(self.state.pose.away()),
                 tip: part.pose.place,
                 first,
                 last: self.last,
@@ -302,6 +336,9 @@ impl<'e, 's> Reader<'e, 's> {
             state: self.state,
             lifts: !self.down,
             drawn,
+            is_exact: self.is_exact,
+            is_sure: self.is_sure || self.parts.is_empty(),
+            work: self.work,
         })
     }
 

@@ -102,15 +102,19 @@ impl Graph {
         let edges = Edges {
             effects: Effects::closed(system, MOST_STEPS)?,
         };
+        let kinds = &edges.effects.kinds.all;
+        if { kinds }.iter().any(|kind| kind.alternatives.len() > 1) {
+            return Err(NotCompiled);
+        }
         edges.run()
     }
 }
 
-struct Edges<'s> {
-    effects: Effects<'s>,
+struct Edges {
+    effects: Effects,
 }
 
-impl Edges<'_> {
+impl Edges {
     fn run(&self) -> Result<Graph, NotCompiled> {
         let kinds = &self.effects.kinds;
         let draws = self.draws()?;
@@ -159,7 +163,7 @@ impl Edges<'_> {
                 draws.push(false);
                 continue;
             }
-            let mut reader = Reader::new(&self.effects, State::SAME);
+            let mut reader = Reader::new(&self.effects, State::SAME, false);
             reader.read(&[kind], 0, Path::of_seed(0))?;
             let place = reader.state.pose.place;
             draws.push(match reader.parts.as_slice() {
@@ -207,7 +211,7 @@ impl Edges<'_> {
         left: u32,
         whole: Option<(usize, u32)>,
     ) -> Result<Shape, NotCompiled> {
-        let mut reader = Reader::new(&self.effects, State::SAME);
+        let mut reader = Reader::new(&self.effects, State::SAME, false);
         reader.read(word, left, Path::of_seed(0))?;
         let mut ends = Vec::new();
         for part in &reader.parts {
@@ -247,7 +251,7 @@ impl Edges<'_> {
         let mut poses = Vec::new();
         let all = self.effects.kinds.all.iter().enumerate();
         for (kind, _) in all.filter(|(_, kind)| kind.is_fertile()) {
-            let mut reader = Reader::new(&self.effects, State::SAME);
+            let mut reader = Reader::new(&self.effects, State::SAME, false);
             reader.read(&[kind], left, Path::of_seed(0))?;
             if reader.state.look != Look::SAME {
                 return Err(NotCompiled);
@@ -290,13 +294,13 @@ impl Edges<'_> {
         let objects: Vec<Option<usize>> = { shapes.iter() }
             .map(|shape| shape.as_ref().and_then(|_| next.next()))
             .collect();
-        let system = self.effects.system;
+        let system = &self.effects.system;
         let compass = self.effects.compass;
         let mut state = State::SAME;
         state.pose.heading = compass.of_degrees(system.start());
         state.pose.scale = system.length();
         let axiom = &self.effects.kinds.axiom;
-        let mut reader = Reader::new(&self.effects, state);
+        let mut reader = Reader::new(&self.effects, state, false);
         reader.read(axiom, 0, Path::of_seed(0))?;
         let unit = Far::of_length(1.0);
         let mut links = Vec::new();
@@ -334,7 +338,7 @@ impl Edges<'_> {
             });
         }
         Ok(Graph {
-            rule: None,
+            evaluated: None,
             base_elements: [BaseElement::line()].into(),
             origins: 0,
             objects: made,

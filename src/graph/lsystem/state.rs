@@ -13,6 +13,9 @@ pub(super) struct Pose {
     pub(super) mirrored: bool,
     /// The length of its steps, as a multiple of what it was; negative if they go backwards.
     pub(super) scale: f64,
+    /// How far it has gone at most, and whether place and heading are not known any better.
+    pub(super) way: Far,
+    pub(super) is_rough: bool,
 }
 
 /// How the turtle draws, from how it drew.
@@ -44,7 +47,15 @@ impl Pose {
         heading: 0,
         mirrored: false,
         scale: 1.0,
+        way: Far::ZERO,
+        is_rough: false,
     };
+
+    /// Whether another pose is the same, however the turtle came there.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let [a, b] = [self, other];
+        (a.place, a.heading, a.mirrored) == (b.place, b.heading, b.mirrored) && !b.is_rough
+    }
 
     /// A vector that is told by where the turtle looks.
     fn turned(&self, compass: Compass, vector: Far) -> Far {
@@ -57,6 +68,16 @@ impl Pose {
     pub(super) fn go(&mut self, compass: Compass, steps: f64) {
         let ahead = Far::new(DVec2::X).times(steps).times(self.scale);
         self.place = self.place.plus(self.turned(compass, ahead));
+        self.way = self.way.plus(ahead.length());
+    }
+
+    /// How far from where it started it is at most.
+    pub(super) fn away(&self) -> Far {
+        if self.is_rough {
+            self.way
+        } else {
+            self.place.length()
+        }
     }
 
     /// Turns by parts of the compass, counter-clockwise where it is not mirrored.
@@ -75,6 +96,8 @@ impl Pose {
         self.place = self.place.plus(way);
         self.turn(compass, next.heading);
         self.mirrored ^= next.mirrored;
+        self.way = self.way.plus(next.away().times(self.scale).length());
+        self.is_rough |= next.is_rough;
         self.scale *= next.scale;
         self
     }

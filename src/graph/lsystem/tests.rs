@@ -108,7 +108,7 @@ pub(super) fn assert_same(compiled: &Graph, system: &LSystem, steps: u32, seed: 
 
 fn compiled(system: &LSystem, steps: u32) -> Graph {
     let effects = Effects::of_system(system, steps).unwrap();
-    Graph::of_levels(&effects, steps).unwrap()
+    Graph::of_levels(effects, steps).unwrap()
 }
 
 /// Systems that rewrite edges draw what words draw, up to a similarity a step.
@@ -172,6 +172,26 @@ fn levels_draw_what_words_draw() {
             assert_eq!(level.elements.to_u64(), Some(found.len() as u64));
             let fertile = found.iter().filter(|element| element.fertile).count();
             assert_eq!(level.fertile.to_u64(), Some(fertile as u64));
+        }
+    }
+}
+
+/// What is drawn by paths makes the same individuals.
+#[test]
+fn drawn_productions_draw_what_words_draw() {
+    for text in [
+        "angle: 25.7\naxiom: F\nproductions: {F: ['F[+F]F[-F]F', 'F[+F]F', {to: 'F[-F]F', weight: 2}]}\n",
+        "angle: 30\naxiom: '[X]f[X]f(2)[+X]'\nproductions: {X: ['F[+X]-X', 'FX', '[!X]', 'F{.+f-f-f.}X', ''], F: FF}\n",
+        "angle: 20\naxiom: A\nsymbols: {R: reflect}\nproductions:\n- 'A -> F[RB]-A'\n- {production: 'B -> F+B', weight: 1/3}\n- {production: 'B -> fA', weight: 2/3}\n",
+        "angle: 45\naxiom: A(1)\nproductions:\n- {production: \"A(l) : l > 1/9 -> F(l)['+A(l/2)]-A(l/2)F\", weight: 1}\n- {production: 'A(l) : l > 1/5 -> F(l)-A(l/2)', weight: 2}\n",
+    ] {
+        let system = system(text);
+        for steps in 0..=5 {
+            let graph = compiled(&system, steps.max(4));
+            assert!(graph.draws());
+            for seed in 0..4 {
+                assert_same(&graph, &system, steps, seed);
+            }
         }
     }
 }

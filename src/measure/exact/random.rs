@@ -2,7 +2,7 @@
 //! radius 1 of the matrix of these expectations.
 
 use crate::expression::{Dependence, Program};
-use crate::graph::{Alternative, Graph, Replacement};
+use crate::graph::{Alternative, Evaluated, Graph, Replacement};
 use crate::rule::draw::Distribution;
 use crate::rule::{Generator, Moment, Placement, Rule, Selection};
 
@@ -37,9 +37,12 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
                 }
             }
             Replacement::Evaluated(alternatives) => {
-                for (alternative, weight) in weighted(graph.evaluated(), alternatives)? {
+                let Evaluated::Rule(rule) = graph.evaluated() else {
+                    return Err("productions are drawn whose effects are not alike");
+                };
+                for (alternative, weight) in weighted(rule, alternatives)? {
                     let from = object.behaviour;
-                    push_draws(&mut ratios, graph, from, alternative, weight)?;
+                    push_draws(&mut ratios, graph, rule, from, (alternative, weight))?;
                 }
             }
         }
@@ -113,11 +116,11 @@ fn weighted<'a>(
 fn push_draws(
     ratios: &mut Vec<Ratio>,
     graph: &Graph,
+    rule: &Rule,
     from: usize,
-    alternative: &Alternative,
-    weight: f64,
+    (alternative, weight): (&Alternative, f64),
 ) -> Result<(), &'static str> {
-    let generator = &graph.evaluated().generators()[alternative.generator];
+    let generator = &rule.generators()[alternative.generator];
     let moments = [Moment::INDEX, Moment::AGE, Moment::STEP, Moment::LENGTH];
     let depends = |program: &Program| {
         let mut slots = moments.iter();
