@@ -190,6 +190,9 @@ pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
 
 /// Whether all that is replaced becomes smaller, so that elements fall below any size.
 fn shrinks(graph: &Graph) -> bool {
+    if graph.is_levelled() {
+        return true;
+    }
     let smaller = |chain: &Chain| {
         chain.instances.iter().all(|instance| {
             let next = &graph.objects()[instance.object].replacement;

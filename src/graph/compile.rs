@@ -9,7 +9,7 @@ use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, Evaluated, Chain, CompileError, Graph, Object, Production, Replacement};
+use super::{Alternative, Chain, CompileError, Evaluated, Graph, Object, Production, Replacement};
 
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;

@@ -32,8 +32,8 @@ pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
 pub use no_limit::NoLimit;
 
-pub(crate) use lsystem::Words;
 pub(crate) use ifs::{filling, outline as base_element};
+pub(crate) use lsystem::Words;
 
 use std::sync::Arc;
 

@@ -134,14 +134,14 @@ impl Graph {
             let mut edges = Vec::new();
             for alternative in alternatives.iter() {
                 let generator = alternative.generator;
-                let extents = extents.entry(generator).or_insert_with(|| {
-                    match self.evaluated() {
+                let extents = extents
+                    .entry(generator)
+                    .or_insert_with(|| match self.evaluated() {
                         Evaluated::Rule(rule) => {
                             rule.generators()[generator].extents(&self.moments())
                         }
                         Evaluated::Words(words) => words.extents(generator).to_vec(),
-                    }
-                });
+                    });
                 let drawn = alternative.objects.iter().zip(extents);
                 edges.extend(drawn.map(|(&object, extent)| Edge {
                     object,

@@ -144,7 +144,8 @@ impl Standing {
                             .map(|(_, child)| (child.object, direction * child.frame.direction)),
                     ),
                     Replacement::Evaluated(alternatives) => {
-                        let ([only], Evaluated::Rule(rule)) = (&alternatives[..], graph.evaluated())
+                        let ([only], Evaluated::Rule(rule)) =
+                            (&alternatives[..], graph.evaluated())
                         else {
                             return None;
                         };

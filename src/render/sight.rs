@@ -181,7 +181,10 @@ fn starts_rings(graph: &Graph) -> bool {
                     production.seeds.iter().any(|seed| seed.chain.is_ring())
                 }
                 Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                    let mut seeds = graph.parts(alternative).iter().filter(|part| part.placement.seeds());
+                    let mut seeds = graph
+                        .parts(alternative)
+                        .iter()
+                        .filter(|part| part.placement.seeds());
                     let is_ring = |part: &Part| part.elements.first().is_some_and(|e| e.joined);
                     seeds.any(is_ring)
                 }),

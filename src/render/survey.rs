@@ -159,9 +159,16 @@ impl<'g> Survey<'g> {
             all: reaches,
             pads: &objects().map(|object| self.pad(object)).collect::<Vec<_>>(),
         };
-        self.bounds = search(self.graph, growth, &reaches, |subtree| {
-            self.sight.enter(subtree)
-        })?;
+        // What objects know how to come to in the end tells the box of all that stands for it.
+        let levelled = self.graph.is_levelled();
+        let pad = |object: &Object| self.pad(object);
+        let whole = levelled.then(|| self.graph.padded_bounds(growth.steps, pad));
+        self.bounds = match whole.flatten() {
+            Some(bounds) => bounds,
+            None => search(self.graph, growth, &reaches, |subtree| {
+                self.sight.enter(subtree)
+            })?,
+        };
         self.is_bounded = true;
         Some(self)
     }

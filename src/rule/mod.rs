@@ -11,8 +11,8 @@ mod extent;
 mod generator;
 mod selection;
 
-pub(crate) use extent::Extent;
 pub use base_element::{BaseElement, Piece, arc};
+pub(crate) use extent::Extent;
 pub(crate) use generator::Origin;
 pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
 pub use selection::Selection;

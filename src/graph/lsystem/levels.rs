@@ -299,7 +299,8 @@ impl Leveller<'_> {
                 Replacement::Evaluated(words.into())
             }
         };
-        let replacements: BTreeMap<_, _> = made.map(|(key, made)| (key, replacement(made))).collect();
+        let replacements: BTreeMap<_, _> =
+            made.map(|(key, made)| (key, replacement(made))).collect();
         let keys: Vec<Key> = self.keys.concat();
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());

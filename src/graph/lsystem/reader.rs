@@ -45,7 +45,9 @@ impl Part {
         let steps = match &self.of {
             Of::Step { .. } => Far::of_length(1.0),
             Of::Polygon(vertices) => {
-                Far::of_length(vertices.iter().map(|v| v.length()).fold(0.0, f64::max))
+                let farthest = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+                // One of no extent is drawn as a line.
+                Far::of_length(if farthest > 0.0 { farthest } else { 1.0 })
             }
             Of::Subtree(_, drawn) => drawn.reach,
         };
@@ -127,7 +129,10 @@ impl<'e> Reader<'e> {
         let mut position = 0;
         while let Some(&kind) = rest.next() {
             // Where a bracket ends it does not matter where what stands before it leads.
-            self.leads = !rest.clone().next().is_some_and(|&next| self.effects.pops(next));
+            self.leads = !rest
+                .clone()
+                .next()
+                .is_some_and(|&next| self.effects.pops(next));
             self.module(kind, left, path.child(position), position)?;
             position += 1;
         }

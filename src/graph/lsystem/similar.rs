@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::geometry::{DVec2, Direction, Frame};
 use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
-use crate::lsystem::LSystem;
+use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
 use crate::rule::draw::Path;
 
@@ -13,7 +13,7 @@ use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
 use super::reader::{Of, Reader};
-use super::state::{Look, State};
+use super::state::{Look, Pose, State};
 
 /// So many steps are looked at, at most, until the state of all kinds comes back.
 const MOST_STEPS: u32 = 32;
@@ -73,22 +73,18 @@ impl Shape {
     }
 }
 
-/// The states of all kinds after some steps, in which those of equal ratios are equal.
+/// How all kinds leave the turtle after some steps: where, as multiples of the longest way, and how.
 #[derive(Debug)]
-struct Stage {
-    /// Displacement, heading, whether it is mirrored, scale.
-    states: Vec<(DVec2, u64, bool, f64)>,
-}
+struct Stage(Vec<(DVec2, Pose)>);
 
 impl Stage {
+    /// Whether it is the same but for its size.
     fn is_like(&self, other: &Self) -> bool {
-        let alike = |(a, b): (&(DVec2, u64, bool, f64), &(DVec2, u64, bool, f64))| {
-            let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * (1.0 + a.abs());
-            a.0.distance(b.0) <= ROUNDING * (1.0 + a.0.length())
-                && (a.1, a.2) == (b.1, b.2)
-                && near(a.3, b.3)
-        };
-        self.states.iter().zip(&other.states).all(alike)
+        self.0.iter().zip(&other.0).all(|((a, pose), (b, other))| {
+            a.distance(*b) <= ROUNDING
+                && (pose.heading, pose.mirrored) == (other.heading, other.mirrored)
+                && (pose.scale / other.scale - 1.0).abs() <= ROUNDING
+        })
     }
 }
 
@@ -153,11 +149,10 @@ impl Edges {
     /// Which kinds draw: each a line from where it begins to where it ends, and nothing else, before it is
     /// replaced.
     fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
-        let all = &self.effects.kinds.all;
         let mut draws = Vec::new();
-        for kind in 0..all.len() {
-            if !all[kind].is_fertile() {
-                if self.effects.system.symbols()[all[kind].symbol].draws() > 0 {
+        for (kind, of) in self.effects.kinds.all.iter().enumerate() {
+            if !of.is_fertile() {
+                if self.effects.system.symbols()[of.symbol].draws() > 0 {
                     return Err(NotCompiled);
                 }
                 draws.push(false);
@@ -183,13 +178,7 @@ impl Edges {
     }
 
     /// Where a part of a word ends.
-    fn end(
-        &self,
-        of: &Of,
-        pose: &super::state::Pose,
-        kind: usize,
-        left: u32,
-    ) -> Result<Far, NotCompiled> {
+    fn end(&self, of: &Of, pose: &Pose, kind: usize, left: u32) -> Result<Far, NotCompiled> {
         let compass = self.effects.compass;
         let mut pose = *pose;
         match of {
@@ -268,13 +257,10 @@ impl Edges {
             Some(along) => DVec2::new(along.x, -along.y) / along.length(),
             None => DVec2::X,
         };
-        let states = poses.iter().map(|pose| {
-            let place = back.rotate(pose.place.over(longest));
-            (place, pose.heading, pose.mirrored, pose.scale)
-        });
-        Ok(Stage {
-            states: states.collect(),
-        })
+        let states = poses
+            .iter()
+            .map(|pose| (back.rotate(pose.place.over(longest)), *pose));
+        Ok(Stage(states.collect()))
     }
 
     fn reflects(&self) -> bool {
@@ -286,7 +272,7 @@ impl Edges {
             .iter()
             .map(|kind| &symbols[kind.symbol]);
         let mut actions = used.flat_map(|symbol| &symbol.meaning);
-        actions.any(|action| matches!(action, crate::lsystem::Action::Reflect))
+        actions.any(|action| matches!(action, Action::Reflect))
     }
 
     fn graph(&self, shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {

@@ -3,17 +3,19 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
-use crate::geometry::DVec2;
-use crate::graph::Graph;
-use crate::grow::{Element, Fractal, Growth, Visitor, walk};
+use crate::geometry::{Bounds, DVec2};
+use crate::graph::{Count, Graph};
+use crate::grow::{Element, Fractal, Growth, Visitor, extent, walk};
 use crate::lsystem::LSystem;
 use crate::model::Model;
 use crate::style::Colour;
 
 use super::effects::Effects;
+
+mod random;
 
 /// What is drawn of an element.
 #[derive(Debug)]
@@ -41,7 +43,8 @@ impl Visitor for Collector<'_> {
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         let object = &self.graph.objects()[element.object];
         let map = element.frame.map;
-        let (start, pieces) = self.graph.base_elements()[object.base_element].outline(false);
+        let base_element = &self.graph.base_elements()[object.base_element];
+        let (start, pieces) = base_element.outline(false);
         let mut points = vec![
             map.transform_point2(DVec2::ZERO),
             map.transform_point2(DVec2::X),
@@ -87,17 +90,19 @@ pub(super) fn drawn(graph: &Graph, steps: u32, seed: u64) -> Vec<Drawn> {
 }
 
 /// Whether both engines draw the same at a step, element by element.
-pub(super) fn assert_same(compiled: &Graph, system: &LSystem, steps: u32, seed: u64) {
+pub(super) fn assert_same(name: &str, compiled: &Graph, system: &LSystem, steps: u32, seed: u64) {
     let words = Graph::of_words(system, steps, seed, 1_000_000).unwrap();
     let (ours, theirs) = (drawn(compiled, steps, seed), drawn(&words, steps, seed));
-    assert_eq!(ours.len(), theirs.len(), "at step {steps}");
+    assert_eq!(ours.len(), theirs.len(), "{name} at step {steps}");
     let size = theirs.iter().flat_map(|element| &element.points);
     let size = size.map(|point| point.length()).fold(1.0, f64::max);
     for (number, (a, b)) in ours.iter().zip(&theirs).enumerate() {
-        let what = format!("element {number} of step {steps}: {a:?} {b:?}");
-        assert_eq!(a.points.len(), b.points.len(), "{what}");
-        for (a, b) in a.points.iter().zip(&b.points) {
-            assert!((*a - *b).length() < 1e-9 * size, "{what}");
+        let what = format!("{name}: element {number} of step {steps}: {a:?} {b:?}");
+        // Rounding decides whether a side is added to close an outline.
+        let point = |all: &[DVec2], number: usize| all.get(number).copied().unwrap_or(all[2]);
+        for number in 0..a.points.len().max(b.points.len()) {
+            let off = point(&a.points, number) - point(&b.points, number);
+            assert!(off.length() < 1e-9 * size, "{what}");
         }
         assert_eq!(a.joined, b.joined, "{what}");
         assert_eq!(a.direction, b.direction, "{what}");
@@ -162,7 +167,7 @@ fn levels_draw_what_words_draw() {
         let system = system(text);
         for steps in 0..=5 {
             let graph = compiled(&system, steps.max(4));
-            assert_same(&graph, &system, steps, 0);
+            assert_same(text, &graph, &system, steps, 0);
             let mut forecast = graph.forecast().unwrap();
             for _ in 0..steps {
                 assert!(forecast.advance());
@@ -190,8 +195,111 @@ fn drawn_productions_draw_what_words_draw() {
             let graph = compiled(&system, steps.max(4));
             assert!(graph.draws());
             for seed in 0..4 {
-                assert_same(&graph, &system, steps, seed);
+                assert_same(text, &graph, &system, steps, seed);
             }
         }
+    }
+}
+
+/// What graphs tell of their approximants is what walks find, for all L-systems of the library; and those
+/// that can be are compiled.
+#[test]
+fn library() {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries();
+    let mut counts = [0; 2];
+    let mut words = Vec::new();
+    for entry in entries
+        .iter()
+        .filter(|entry| entry.shelf == Shelf::LSystems)
+    {
+        let document = Document::read(&catalogue.open(entry).unwrap(), &catalogue).unwrap();
+        let Model::LSystem(system) = document.resolve(&[]).unwrap().0 else {
+            unreachable!("an L-system");
+        };
+        let name = &entry.name;
+        counts[0] += usize::from(Graph::of_edges(&system).is_ok());
+        let levels = |steps| {
+            let effects = Effects::of_system(&system, steps)?;
+            Graph::of_levels(effects, steps)
+        };
+        let most = system.deepest(6, 1_000);
+        let Ok(graph) = levels(most) else {
+            words.push(name.as_str());
+            continue;
+        };
+        counts[1] += 1;
+        for steps in 0..=most {
+            assert_same(name, &graph, &system, steps, 1);
+        }
+        assert_told(&graph, most);
+        if let Ok(edges) = Graph::of_edges(&system) {
+            assert_told(&edges, most);
+        }
+    }
+    assert!(
+        counts[0] >= 7 && counts[1] >= 25 && counts[2] <= 6,
+        "{counts:?}"
+    );
+}
+
+/// Forecast and bounds are those of what a walk comes to.
+fn assert_told(graph: &Graph, steps: u32) {
+    let found = drawn(graph, steps, 1);
+    if let Some(mut forecast) = graph.forecast() {
+        for _ in 0..steps {
+            assert!(forecast.advance());
+        }
+        let level = forecast.level();
+        assert_eq!(level.elements.to_u64(), Some(found.len() as u64));
+        let fertile = found.iter().filter(|element| element.fertile).count();
+        assert_eq!(level.fertile.to_u64(), Some(fertile as u64));
+    } else {
+        assert!(graph.draws());
+    }
+    let mut all = Bounds::EMPTY;
+    let points = found.iter().flat_map(|element| &element.points[2..]);
+    points.for_each(|point| all.add(*point));
+    if all.is_empty() {
+        return;
+    }
+    let growth = Growth {
+        seed: 1,
+        ..Growth::steps(steps)
+    };
+    let told = [graph.bounds(steps), extent(graph, &growth).ok()];
+    assert!(told[0].is_some() || graph.draws());
+    for told in told.into_iter().flatten() {
+        let off = (told.min() - all.min()).length() + (told.max() - all.max()).length();
+        assert!(off <= 1e-9 * all.size().length(), "{told:?} {all:?}");
+    }
+}
+
+/// Numbers and headings are exact wherever they lead: Koch's curve turns by r -> 4r.
+#[test]
+fn a_thousand_steps_are_exact() {
+    let dragon = system("axiom: FX\nproductions: {X: X+YF+, Y: -FX-Y}\n");
+    let graph = compiled(&dragon, 1000);
+    let mut forecast = graph.forecast().unwrap();
+    let mut power = Count::from(1u64);
+    for _ in 0..1000 {
+        assert!(forecast.advance());
+        let same = power.clone();
+        power += &same;
+    }
+    assert_eq!(forecast.elements(), power);
+    // The picture comes back after eight steps, twice as wide for every two.
+    let [last, before] = [990, 982].map(|steps| graph.bounds(steps).unwrap());
+    let ratio = last.size() / before.size();
+    assert!((ratio - 16.0).abs().max_element() < 1e-9, "{ratio}");
+
+    let koch = system("angle: 360/7\naxiom: F\nproductions: {F: F+F--F+F+}\n");
+    let effects = Effects::of_system(&koch, 1000).unwrap();
+    let mut heading = 0;
+    for left in 1..=1000 {
+        heading = (4 * heading + 1) % 7;
+        let parts = effects.compass.parts();
+        let pose = effects.of(0, left).unwrap().state.pose;
+        assert_eq!(pose.heading, heading * (parts / 7));
     }
 }

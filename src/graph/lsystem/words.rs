@@ -36,12 +36,7 @@ impl Words {
     }
 
     /// Overwrites a production with what the draws of a path make of words, one of which replaces an object.
-    pub(crate) fn evaluate(
-        &self,
-        words: &[Alternative],
-        path: Path,
-        production: &mut Production,
-    ) {
+    pub(crate) fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Production) {
         production.seeds.clear();
         production.body.instances.clear();
         production.body.meets_frame = [false; 2];
