@@ -98,6 +98,7 @@ fn all_of_the_library_keeps_its_limit_set() {
     assert!(count(Kind::Rule, Kind::Ifs) >= 25, "{converted:?}");
     assert!(count(Kind::Rule, Kind::Instancing) >= 30, "{converted:?}");
     assert!(count(Kind::Instancing, Kind::Ifs) >= 2, "{converted:?}");
+    assert!(count(Kind::Rule, Kind::LSystem) >= 20, "{converted:?}");
 }
 
 #[test]
@@ -357,4 +358,43 @@ generator:
         ),
         "{error}"
     );
+}
+
+/// What rewrites edges has a limit set; of what starts anew at every step, a step is written.
+#[test]
+fn l_systems_become_what_they_draw() {
+    let model_of = |name: &str| {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.component(Shelf::LSystems, name).unwrap();
+        model(&Document::read(&source, &catalogue).unwrap())
+    };
+    for name in [
+        "hilbert-lsystem",
+        "plant-d",
+        "penrose-lsystem",
+        "honda-tree",
+    ] {
+        let own = model_of(name);
+        let steps = own.heading().steps.unwrap();
+        let graph = own.compile(steps).unwrap();
+        assert!(graph.is_levelled(), "{name}");
+        let document = convert(&own, Kind::Instancing, Keeps::Limit).unwrap();
+        let other = model(&document).compile(steps).unwrap();
+        let set = Set::Approximant(Growth::steps(steps));
+        assert_same(name, [&graph, &other], set);
+        let refused = convert(&own, Kind::Rule, Keeps::Limit);
+        let endless = Refusal::NoLimit(NoLimit::Endless);
+        assert!(matches!(refused, Err(ConvertError::Refused(why)) if why == endless));
+    }
+    for name in ["koch-lsystem", "gosper-lsystem", "levy-lsystem"] {
+        let own = model_of(name);
+        for to in [Kind::Rule, Kind::Ifs, Kind::Instancing] {
+            let document = convert(&own, to, Keeps::Limit).unwrap();
+            let graphs = [
+                own.compile(1).unwrap(),
+                model(&document).compile(1).unwrap(),
+            ];
+            assert_same(name, [&graphs[0], &graphs[1]], Set::Limit);
+        }
+    }
 }

@@ -13,7 +13,7 @@ use crate::model::Kind;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output};
 
-/// Writes a fractal in another way: as a system of maps, objects or a rule
+/// Writes a fractal in another way: as a system of maps, objects, a rule or an L-system
 ///
 /// The file that is written has the same limit set: where steps without end lead to, with all that
 /// stays as it is on the way. Fertile elements become maps, visible infertile ones condensation
@@ -45,20 +45,17 @@ Examples:
       Writes a system of which kfrac grow draws the same at every step
 ";
 
-/// The kinds that others are written as.
-const KINDS: [Kind; 3] = [Kind::Rule, Kind::Ifs, Kind::Instancing];
-
 fn kind() -> impl TypedValueParser<Value = Kind> {
-    let kinds = KINDS.map(|kind| {
+    let kinds = Kind::ALL.map(|kind| {
         PossibleValue::new(kind.name()).help(match kind {
             Kind::Rule => "A production rule; all maps must be similarities",
             Kind::Ifs => "An iterated function system, recurrent where it has to be",
             Kind::Instancing => "Objects that instance each other",
-            Kind::LSystem => "An L-system",
+            Kind::LSystem => "An L-system, whose symbols draw lines",
         })
     });
     PossibleValuesParser::new(kinds).try_map(|name| {
-        let mut kinds = KINDS.into_iter();
+        let mut kinds = Kind::ALL.into_iter();
         kinds.find(|kind| kind.name() == name).ok_or("unknown")
     })
 }

@@ -12,6 +12,7 @@
 mod copies;
 mod ifs;
 mod instancing;
+mod lsystem;
 mod number;
 mod refusal;
 mod rule;
@@ -64,6 +65,11 @@ fn first_message(diagnostics: &Diagnostics) -> String {
 /// Steps that graphs are compiled for: those of rules whose objects are soon all known need no more.
 const STEPS: u32 = 64;
 
+/// L-systems whose steps differ in kind are converted as they are after some steps: so many unless they say,
+/// if there are no more elements than this.
+const DEEPEST: u32 = 12;
+const MOST_ELEMENTS: u64 = 20_000;
+
 /// Writes a model as a file of another kind.
 ///
 /// Numbers are exact: those of the file read as the same doubles.
@@ -75,8 +81,19 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
     }
-    let graph = model.compile(STEPS)?;
-    graph.check_limit_set().map_err(Refusal::from)?;
+    let steps = match model {
+        Model::LSystem(system) => {
+            let own = model.heading().steps;
+            own.unwrap_or_else(|| system.deepest(DEEPEST, MOST_ELEMENTS))
+        }
+        _ => STEPS,
+    };
+    let graph = model.compile(steps)?;
+    // What knows how many steps are to come has no limit set, but is as it is after them.
+    let ends = graph.is_levelled() && graph.is_plain() && to == Kind::Instancing;
+    if !ends {
+        graph.check_limit_set().map_err(Refusal::from)?;
+    }
     if let (Model::Ifs(system), Keeps::Approximants) = (model, keeps)
         && system.ifs().initial().is_some_and(|set| set.count() > 1)
     {
@@ -88,13 +105,13 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
             let shapes = graph.base_elements().to_vec();
             Structure::of_ifs(system.ifs(), shapes)
         }
-        _ => Structure::of_graph(&graph, keeps)?,
+        _ => Structure::of_graph(&graph, steps, keeps)?,
     };
     let own = match to {
         Kind::Ifs => ifs::write(&structure, keeps)?,
         Kind::Instancing => instancing::write(&structure, keeps)?,
         Kind::Rule => rule::write(&structure)?,
-        Kind::LSystem => return Err(Refusal::NoStrings.into()),
+        Kind::LSystem => lsystem::write(&structure, keeps)?,
     };
     let text = Node::from(headed(model.heading(), to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());

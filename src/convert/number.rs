@@ -13,18 +13,28 @@ const SHORT: usize = 6;
 
 /// A number: as a fraction, if that is the same double and shorter to read, or in the fewest digits.
 pub(super) fn value(number: f64) -> Value {
-    // Minus zero is zero.
-    let number = number + 0.0;
-    if number.to_string().len() <= SHORT {
-        return Number::from(number).0;
+    match fraction(number) {
+        Some(fraction) => Value::Text(fraction),
+        None => Number::from(number + 0.0).0,
     }
-    let fraction = (2..=LARGEST_DENOMINATOR).find_map(|denominator| {
+}
+
+/// The same in a formula.
+pub(super) fn text(number: f64) -> String {
+    fraction(number).unwrap_or_else(|| (number + 0.0).to_string())
+}
+
+fn fraction(number: f64) -> Option<String> {
+    // Minus zero is zero.
+    if (number + 0.0).to_string().len() <= SHORT {
+        return None;
+    }
+    (2..=LARGEST_DENOMINATOR).find_map(|denominator| {
         let denominator = f64::from(denominator);
         let numerator = (number * denominator).round();
         let is_same = numerator.abs() < 1000.0 && numerator / denominator == number;
-        is_same.then(|| Value::Text(format!("{numerator}/{denominator}")))
-    });
-    fraction.unwrap_or_else(|| Number::from(number).0)
+        is_same.then(|| format!("{numerator}/{denominator}"))
+    })
 }
 
 pub(super) fn point(point: DVec2) -> Value {

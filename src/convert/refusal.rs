@@ -7,9 +7,12 @@ pub enum Refusal {
     /// It is of that kind already.
     #[error("it is of the kind '{}' already: `kfrac cat --inline` shows all of it", .0.name())]
     SameKind(Kind),
-    /// L-systems are not written.
-    #[error("nothing is written as strings of symbols")]
-    NoStrings,
+    /// It has tints.
+    #[error("its instances have tints, and a turtle draws in colours of a palette")]
+    Tint,
+    /// There are not as many letters.
+    #[error("it has more than {0} kinds of elements, and each needs a letter")]
+    TooManySymbols(usize),
     /// There is no limit set.
     #[error(transparent)]
     NoLimit(#[from] NoLimit),
@@ -21,7 +24,7 @@ pub enum Refusal {
     Flat(String),
     /// A map that changes shapes.
     #[error(
-        "{what} is no similarity: it stretches by {longest:.6} one way and by {shortest:.6} another, and an element of a rule keeps its shape"
+        "{what} is no similarity: it stretches by {longest:.6} one way and by {shortest:.6} another, and what stands in a rule or an L-system keeps its shape"
     )]
     Shear {
         /// The map.

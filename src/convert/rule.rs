@@ -106,7 +106,7 @@ impl Writer<'_> {
 }
 
 /// Refuses a map that is no similarity, or that leaves a point.
-fn similarity(map: &DAffine2, called: &dyn Fn() -> String) -> Result<(), Refusal> {
+pub(super) fn similarity(map: &DAffine2, called: &dyn Fn() -> String) -> Result<(), Refusal> {
     let frame = Frame {
         map: *map,
         ..Frame::UNIT

@@ -41,22 +41,24 @@ pub(super) enum Words {
 }
 
 impl Structure {
-    /// The objects of a graph, one for each behaviour. For the limit, what comes to nothing is left
-    /// out.
-    pub(super) fn of_graph(graph: &Graph, keeps: Keeps) -> Result<Self, Refusal> {
+    /// The objects of a graph, one for each behaviour; where they know how many steps are to come, those of
+    /// a number of steps. For the limit, what comes to nothing is left out.
+    pub(super) fn of_graph(graph: &Graph, steps: u32, keeps: Keeps) -> Result<Self, Refusal> {
         let alive = match keeps {
             Keeps::Limit => graph.alive(true),
             Keeps::Approximants => vec![true; graph.objects().len()],
         };
         let placed = |instance: &Instance| {
             let object = &graph.objects()[instance.object];
-            let is_kept = matches!(object.replacement, Replacement::Kept);
+            let ends = matches!(object.replacement, Replacement::Kept | Replacement::Beyond);
+            let paint = object.paint.filter(|_| ends);
+            let paint = paint.map(|colour| Tint { colour, alpha: 1.0 });
             Placed {
                 map: instance.frame.map,
                 shape: object.base_element,
                 visible: object.visible,
-                tint: object.tint,
-                object: (!is_kept).then_some(object.behaviour),
+                tint: object.tint.or(paint),
+                object: (!ends).then_some(object.behaviour),
             }
         };
         let mut live = vec![false; graph.behaviours().count()];
@@ -81,7 +83,7 @@ impl Structure {
                 _ => Vec::new(),
             });
         }
-        let initiator = graph.initiator(0).instances.iter();
+        let initiator = graph.initiator(steps).instances.iter();
         let structure = Self {
             shapes: graph.base_elements().to_vec(),
             objects,

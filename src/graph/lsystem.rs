@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::Diagnostic;
 use crate::geometry::{Bounds, DVec2};
-use crate::instancing::{Thickness, Tint};
+use crate::instancing::Thickness;
 use crate::lsystem::{Drawing, LSystem, Placed, RewriteError};
 use crate::rule::BaseElement;
 
@@ -70,7 +70,7 @@ impl Graph {
             evaluated: None,
             base_elements: strings.base_elements.into(),
             origins: 0,
-            tints: strings.objects.iter().any(|object| object.tint.is_some()),
+            tints: system.has_colours(),
             objects: strings.objects,
             initiators: vec![initiator],
             widest: None,
@@ -162,11 +162,8 @@ impl<'s> Strings<'s> {
                 visible: true,
                 origin: None,
                 last_map: None,
-                tint: colour.map(|index| Tint {
-                    colour: palette.entry(index),
-                    alpha: 1.0,
-                }),
-                paint: None,
+                tint: None,
+                paint: colour.map(|index| palette.entry(index)),
                 thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),
                 behaviour: 0,
                 replacement: Replacement::Kept,

@@ -174,10 +174,10 @@ fn colours_are_those_of_the_palette() {
         let model = Model::LSystem(system(&text));
         let graph = model.compile(0).unwrap();
         assert_eq!(model.heading().style.color_by, ColorBy::Tint);
-        let instances = graph.initiator().instances.iter();
-        let tint = |object: usize| graph.objects()[object].tint.unwrap().colour.to_string();
+        let instances = graph.initiator(0).instances.iter();
+        let colour = |object: usize| graph.objects()[object].paint.unwrap().to_string();
         instances
-            .map(|instance| tint(instance.object))
+            .map(|instance| colour(instance.object))
             .collect::<Vec<_>>()
     };
     let [red, lime, blue] = ["#ff0000", "#00ff00", "#0000ff"];

@@ -75,16 +75,28 @@ impl Shape {
 
 /// How all kinds leave the turtle after some steps: where, as multiples of the longest way, and how.
 #[derive(Debug)]
-struct Stage(Vec<(DVec2, Pose)>);
+struct Stage {
+    kinds: Vec<(DVec2, Pose)>,
+    /// The longest way, where what is kept does not grow with it.
+    size: Option<Far>,
+}
 
 impl Stage {
-    /// Whether it is the same but for its size.
+    /// Whether it is the same, but for its size if that does not matter.
     fn is_like(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).all(|((a, pose), (b, other))| {
-            a.distance(*b) <= ROUNDING
-                && (pose.heading, pose.mirrored) == (other.heading, other.mirrored)
-                && (pose.scale / other.scale - 1.0).abs() <= ROUNDING
-        })
+        let sizes = self.size.zip(other.size);
+        let grows = |(a, b): (Far, Far)| (a.over(b).x - 1.0).abs() > ROUNDING;
+        if sizes.is_some_and(grows) {
+            return false;
+        }
+        self.kinds
+            .iter()
+            .zip(&other.kinds)
+            .all(|((a, pose), (b, other))| {
+                a.distance(*b) <= ROUNDING
+                    && (pose.heading, pose.mirrored) == (other.heading, other.mirrored)
+                    && (pose.scale / other.scale - 1.0).abs() <= ROUNDING
+            })
     }
 }
 
@@ -118,7 +130,8 @@ impl Edges {
             |kind: usize| self.shape(&kinds.all[kind].alternatives[0].word, 0, Some((kind, 1)));
         let mut shapes = Vec::new();
         for (kind, draws) in draws.iter().enumerate() {
-            shapes.push(if *draws { Some(first(kind)?) } else { None });
+            let replaced = *draws && kinds.all[kind].is_fertile();
+            shapes.push(if replaced { Some(first(kind)?) } else { None });
         }
         let start = self.shape(&kinds.axiom, 0, None)?;
         let mut stages: Vec<Stage> = Vec::new();
@@ -139,7 +152,7 @@ impl Edges {
             }
             let stage = self.stage(left)?;
             if stages.iter().any(|before| before.is_like(&stage)) {
-                return self.graph(&shapes);
+                return self.graph(&draws, &shapes);
             }
             stages.push(stage);
         }
@@ -151,10 +164,7 @@ impl Edges {
     fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
         let mut draws = Vec::new();
         for (kind, of) in self.effects.kinds.all.iter().enumerate() {
-            if !of.is_fertile() {
-                if self.effects.system.symbols()[of.symbol].draws() > 0 {
-                    return Err(NotCompiled);
-                }
+            if !of.is_fertile() && self.effects.system.symbols()[of.symbol].draws() == 0 {
                 draws.push(false);
                 continue;
             }
@@ -260,7 +270,20 @@ impl Edges {
         let states = poses
             .iter()
             .map(|pose| (back.rotate(pose.place.over(longest)), *pose));
-        Ok(Stage(states.collect()))
+        Ok(Stage {
+            kinds: states.collect(),
+            size: self.keeps_lengths().then_some(longest),
+        })
+    }
+
+    /// Whether something goes or draws that is not replaced.
+    fn keeps_lengths(&self) -> bool {
+        let symbols = self.effects.system.symbols();
+        let mut kept = { self.effects.kinds.all.iter() }.filter(|kind| !kind.is_fertile());
+        let goes = |action: &Action| {
+            matches!(action, Action::Draw(_) | Action::Move(_) | Action::Glide(_))
+        };
+        kept.any(|kind| symbols[kind.symbol].meaning.iter().any(goes))
     }
 
     fn reflects(&self) -> bool {
@@ -275,11 +298,12 @@ impl Edges {
         actions.any(|action| matches!(action, Action::Reflect))
     }
 
-    fn graph(&self, shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
+    fn graph(&self, draws: &[bool], shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
         let mut next = 0..;
-        let objects: Vec<Option<usize>> = { shapes.iter() }
-            .map(|shape| shape.as_ref().and_then(|_| next.next()))
-            .collect();
+        let objects = draws
+            .iter()
+            .map(|draws| draws.then(|| next.next()).flatten());
+        let objects: Vec<Option<usize>> = objects.collect();
         let system = &self.effects.system;
         let compass = self.effects.compass;
         let mut state = State::SAME;
@@ -306,8 +330,14 @@ impl Edges {
             meets: [false; 2],
         };
         let mut made = Vec::new();
-        for shape in shapes.iter().flatten() {
-            let body = shape.chain(&objects)?;
+        for (shape, _) in shapes.iter().zip(draws).filter(|(_, draws)| **draws) {
+            let replacement = match shape {
+                Some(shape) => Replacement::Fixed(Arc::new(Production {
+                    body: shape.chain(&objects)?,
+                    seeds: Vec::new(),
+                })),
+                None => Replacement::Kept,
+            };
             made.push(Object {
                 base_element: 0,
                 visible: true,
@@ -317,10 +347,7 @@ impl Edges {
                 paint: None,
                 thickness: None,
                 behaviour: made.len(),
-                replacement: Replacement::Fixed(Arc::new(Production {
-                    body,
-                    seeds: Vec::new(),
-                })),
+                replacement,
             });
         }
         Ok(Graph {

@@ -98,9 +98,14 @@ pub(super) fn assert_same(name: &str, compiled: &Graph, system: &LSystem, steps:
     let size = size.map(|point| point.length()).fold(1.0, f64::max);
     for (number, (a, b)) in ours.iter().zip(&theirs).enumerate() {
         let what = format!("{name}: element {number} of step {steps}: {a:?} {b:?}");
-        // Rounding decides whether a side is added to close an outline.
+        // Rounding decides whether a side is added to close an outline, and whether it has an extent.
         let point = |all: &[DVec2], number: usize| all.get(number).copied().unwrap_or(all[2]);
-        for number in 0..a.points.len().max(b.points.len()) {
+        let is_speck = |all: &[DVec2]| all[2..].iter().all(|p| p.distance(all[2]) < 1e-9 * size);
+        let points = match [a, b].iter().any(|drawn| is_speck(&drawn.points)) {
+            true => 2,
+            false => a.points.len().max(b.points.len()),
+        };
+        for number in 0..points {
             let off = point(&a.points, number) - point(&b.points, number);
             assert!(off.length() < 1e-9 * size, "{what}");
         }
@@ -237,10 +242,9 @@ fn library() {
             assert_told(&edges, most);
         }
     }
-    assert!(
-        counts[0] >= 7 && counts[1] >= 25 && counts[2] <= 6,
-        "{counts:?}"
-    );
+    // What depends on contexts is not compiled.
+    assert_eq!(words, ["signals-a", "signals-e"]);
+    assert!(counts[0] >= 7 && counts[1] >= 25, "{counts:?}");
 }
 
 /// Forecast and bounds are those of what a walk comes to.
