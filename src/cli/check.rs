@@ -32,8 +32,9 @@ Examples:
       The same of many, for an editor
 ";
 
+/// A mistake as programs read it.
 #[derive(Serialize)]
-struct Row<'a> {
+pub(super) struct Row<'a> {
     file: &'a str,
     line: Option<usize>,
     column: Option<usize>,
@@ -90,7 +91,7 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     Ok(diagnostics)
 }
 
-fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> Row<'a> {
+pub(super) fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> Row<'a> {
     let place = diagnostic.place();
     Row {
         file: place.map_or(file, |place| place.source().name()),

@@ -14,6 +14,7 @@ mod goal;
 mod grow;
 mod growth;
 mod help;
+mod import;
 mod info;
 mod labels;
 mod list;
@@ -70,6 +71,7 @@ enum Command {
     List(list::Arguments),
     Check(check::Arguments),
     Convert(convert::Arguments),
+    Import(import::Arguments),
     Compare(compare::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
@@ -193,6 +195,7 @@ pub fn run() -> ExitCode {
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
         Command::Convert(arguments) => convert::run(arguments, &catalogue),
+        Command::Import(arguments) => import::run(arguments),
         Command::Compare(arguments) => compare::run(arguments, &catalogue),
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),

@@ -1,7 +1,9 @@
-//! Pictures and tables of points, as they come from elsewhere.
+//! What comes from elsewhere: pictures, tables of points, and files of other programs.
 
+mod fractint;
 mod picture;
 mod table;
 
+pub use fractint::{Fractint, Imported, read as read_fractint};
 pub use picture::{Channel, Picture, PictureError};
 pub use table::{TableError, read_points};

@@ -1,0 +1,220 @@
+//! `kfrac import`: files of other programs, written as files to grow.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use clap::ValueHint;
+use serde::Serialize;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::import::{Fractint, Imported, read_fractint};
+
+use super::check::{Row, row};
+use super::{Failure, help, output, text};
+
+/// Reads files of Fractint and writes each entry as a file to grow
+///
+/// An L-system file (.l) or a file of systems of maps in the plane (.ifs) has many entries: each
+/// becomes a YAML file that is called after it. What is not understood is said, entry by entry, and
+/// nothing is written of an entry that would not be the same. The exit status is 1 if there is one.
+#[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
+pub(super) struct Arguments {
+    /// Files of Fractint, whose names end in .l or .ifs
+    #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
+    files: Vec<PathBuf>,
+    /// The folder to write to; it is made if it is not there
+    #[arg(long, short, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
+    output: PathBuf,
+    /// Replaces files that are there
+    #[arg(long)]
+    force: bool,
+    /// Says as JSON what became of every entry
+    #[arg(long)]
+    json: bool,
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac import fractint.l -o curves
+      Writes every L-system of a file into a folder, and says what could not be read
+  kfrac import *.ifs
+      Writes the systems of maps of some files into the current folder
+";
+
+/// What became of an entry, or of what stands between entries.
+#[derive(Serialize)]
+struct Told<'a> {
+    entry: Option<&'a str>,
+    file: Option<String>,
+    found: Vec<Row<'a>>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut written = Written {
+        folder: &arguments.output,
+        force: arguments.force,
+        names: BTreeSet::new(),
+    };
+    let mut all_told = true;
+    let mut rows = Vec::new();
+    for path in &arguments.files {
+        let (source, kind) = open(path)?;
+        let (entries, stray) = read_fractint(&source, kind);
+        if entries.is_empty() {
+            let message = format!("'{}' has no entries", path.display());
+            return Err(Diagnostic::error(message)
+                .hint("an entry is Name { ... }")
+                .into());
+        }
+        let mut told = vec![(None, None, stray)];
+        for Imported {
+            name,
+            document,
+            mut found,
+        } in entries
+        {
+            let file = match document {
+                Some(document) => written.write(&name, &document.to_yaml(), &mut found)?,
+                None => None,
+            };
+            all_told &= file.is_some();
+            told.push((Some(name), file, found));
+        }
+        if arguments.json {
+            rows.extend(told);
+        } else {
+            say(path, &told, &arguments.output);
+        }
+    }
+    if arguments.json {
+        let told = rows.iter().map(|(entry, file, found)| Told {
+            entry: entry.as_deref(),
+            file: file
+                .as_ref()
+                .map(|file: &PathBuf| file.display().to_string()),
+            found: found.iter().map(|found| row("", found)).collect(),
+        });
+        let told = told.filter(|told| told.entry.is_some() || !told.found.is_empty());
+        output::print_json(&told.collect::<Vec<_>>())?;
+    }
+    if all_told { Ok(()) } else { Err(Failure::Said) }
+}
+
+type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
+
+/// Says what was found in a file, and how many of its entries were written.
+fn say(path: &Path, told: &[Entry], folder: &Path) {
+    // Of one list only the first mistakes are shown.
+    for (_, _, found) in told.iter().filter(|(_, _, found)| !found.is_empty()) {
+        text::complain(found);
+    }
+    let entries = told.iter().filter(|(name, ..)| name.is_some());
+    let (written, left): (Vec<&Entry>, Vec<&Entry>) =
+        entries.partition(|(_, file, _)| file.is_some());
+    let of = match left.len() {
+        0 => String::new(),
+        _ => format!(" of {}", written.len() + left.len()),
+    };
+    let (path, folder) = (path.display(), folder.display());
+    text::say(&format!(
+        "{path}: {}{of} written to {folder}",
+        written.len()
+    ));
+    if !left.is_empty() {
+        let names: Vec<_> = left
+            .iter()
+            .filter_map(|(name, ..)| name.as_deref())
+            .collect();
+        text::say(&format!("not written: {}", names.join(", ")));
+    }
+}
+
+/// A file's text, and what its name says it holds.
+fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let kind = match extension.to_str() {
+        Some("l") => Fractint::LSystems,
+        Some("ifs") => Fractint::Ifs,
+        _ => {
+            let message = format!("'{}' is neither a .l nor a .ifs file", path.display());
+            return Err(Failure::Usage(message));
+        }
+    };
+    let mut bytes = Vec::new();
+    let file = File::open(path);
+    file.and_then(|file| {
+        file.take(Source::MOST_BYTES as u64 + 1)
+            .read_to_end(&mut bytes)
+    })
+    .with_context(|| format!("'{}' cannot be read", path.display()))?;
+    // Such files are older than UTF-8; what is not is taken byte by byte.
+    if std::str::from_utf8(&bytes).is_err()
+        && !bytes.contains(&0)
+        && bytes.len() <= Source::MOST_BYTES
+    {
+        bytes = bytes
+            .iter()
+            .map(|&byte| char::from(byte))
+            .collect::<String>()
+            .into_bytes();
+    }
+    Ok((Source::read_file(path, bytes)?, kind))
+}
+
+/// The files that are written.
+struct Written<'a> {
+    folder: &'a Path,
+    force: bool,
+    names: BTreeSet<String>,
+}
+
+impl Written<'_> {
+    /// Writes an entry's file, unless one is there that is not to be replaced.
+    fn write(
+        &mut self,
+        entry: &str,
+        yaml: &str,
+        found: &mut Diagnostics,
+    ) -> Result<Option<PathBuf>, Failure> {
+        let path = self.folder.join(self.name(entry));
+        if path.exists() && !self.force {
+            let message = format!(
+                "'{}' is there already: {entry} is not written",
+                path.display()
+            );
+            found.push(Diagnostic::error(message).hint("--force replaces it"));
+            return Ok(None);
+        }
+        std::fs::create_dir_all(self.folder)
+            .with_context(|| format!("the folder '{}' cannot be made", self.folder.display()))?;
+        output::write(&path, true, |out, _| {
+            out.write_all(yaml.as_bytes())
+                .map_err(|error| output::failed(error, &path))
+        })?;
+        Ok(Some(path))
+    }
+
+    /// A name for an entry's file that no other has: small letters, digits and dashes.
+    fn name(&mut self, entry: &str) -> String {
+        let letters = entry
+            .chars()
+            .map(|c| if c.is_alphanumeric() { c } else { ' ' });
+        let words: String = letters.flat_map(char::to_lowercase).collect();
+        let mut stem = words.split_whitespace().collect::<Vec<_>>().join("-");
+        if stem.is_empty() {
+            stem.push_str("unnamed");
+        }
+        let mut name = format!("{stem}.yaml");
+        let mut number = 2;
+        while !self.names.insert(name.clone()) {
+            name = format!("{stem}-{number}.yaml");
+            number += 1;
+        }
+        name
+    }
+}
