@@ -16,6 +16,7 @@ mod growth;
 mod help;
 mod info;
 mod labels;
+mod length;
 mod list;
 mod man;
 mod output;
