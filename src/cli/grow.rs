@@ -9,13 +9,13 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::Graph;
 use crate::grow::Walked;
-use crate::render::{self, Plotted, RenderError, Unit};
+use crate::render::{self, Canvas, Plotted, RenderError, Size, Unit};
 use crate::style::Named;
 use crate::wording;
 
 use super::chaos::ChaosArguments;
 use super::goal::Goal;
-use super::growth::GrowthArguments;
+use super::growth::{self, GrowthArguments};
 use super::labels::labels;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
@@ -55,6 +55,7 @@ pub(super) struct Arguments {
     /// The picture's long side in pixels or millimetres, or WIDTHxHEIGHT
     ///
     /// The other side follows from the shape; where both are given, the shape is fitted into them.
+    /// A PNG of more than 67 million pixels is drawn in bands, with less than 300 MB of memory.
     /// 200mm and 210mmx297mm are sizes in millimetres, which a PNG does not have; a pixel is then,
     /// and in PDF and DXF always, 1/96 inch.
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
@@ -89,6 +90,8 @@ Examples:
       Draws what lies in a window of the plane
   kfrac grow koch-snowflake --detail 0.5 -o koch.png
       Goes on until nothing more can be seen
+  kfrac grow koch-snowflake --detail 1 --size 60000 -o wall.png
+      Draws a picture that is larger than memory
   kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
       Does so in a small window; what lies outside is not grown
   kfrac grow random-tree --seed 7
@@ -102,6 +105,10 @@ Examples:
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
       Draws a system of maps by random iteration, into barnsley-fern.png
 ";
+
+/// What drawing a pixel in a band takes one processor of 2026, in seconds, within a factor of
+/// some 3.
+const SECONDS_A_PIXEL: f64 = 1.3e-8;
 
 /// What may come of a rule.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -143,6 +150,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     arguments.check(goal, format, &graph, &loaded)?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
+    arguments.tell_of_bands(&loaded, goal, format, &graph);
     let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
         match format {
             Format::Picture(format) => {
@@ -213,6 +221,37 @@ impl Arguments {
         }
     }
 
+    /// Says how long a picture takes that is larger than memory.
+    fn tell_of_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
+        let Format::Picture(render::Format::Png) = format else {
+            return;
+        };
+        let options = self.options(loaded, goal, render::Format::Png);
+        let most = match options.size {
+            Size::Long(side) => u64::from(side).pow(2),
+            Size::Exactly(width, height) => u64::from(width) * u64::from(height),
+        };
+        if self.growth.quiet || self.plot || most <= options.in_one_piece {
+            return;
+        }
+        let view = &options.view;
+        let canvas = match view.window {
+            Some(window) => Canvas::of_window(window, view, options.size).ok(),
+            None => growth::rough_bounds(graph, goal.steps())
+                .and_then(|bounds| Canvas::fit(&bounds, options.size, view.margin).ok()),
+        };
+        let Some([width, height]) = canvas.map(|canvas| canvas.size()) else {
+            return;
+        };
+        let pixels = f64::from(width) * f64::from(height);
+        if u64::from(width) * u64::from(height) > options.in_one_piece {
+            text::say(&format!(
+                "note: {width} x {height} pixels are drawn in bands, in about {}",
+                wording::duration(pixels * SECONDS_A_PIXEL)
+            ));
+        }
+    }
+
     /// How the picture is drawn, and what its file says of itself.
     fn options(&self, loaded: &Loaded, goal: Goal, format: render::Format) -> render::Options {
         let mut options = goal.options();
@@ -235,6 +274,7 @@ impl Arguments {
             threads: self.growth.threads(),
             detail: goal.detail(unit),
             labels: labels(loaded, &goal.described(), "grow", options),
+            ..render::Options::default()
         }
     }
 }

@@ -8,7 +8,7 @@ use clap::ValueHint;
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 use crate::figure::sheet;
-use crate::render::{self, Size, Unit};
+use crate::render::{self, Size};
 use crate::style::{Named, Style, Width};
 use crate::wording;
 
@@ -201,11 +201,9 @@ impl Arguments {
             style: self.style(loaded),
             view: self.picture.view(loaded.model.heading()),
             size: self.size,
-            unit: Unit::Pixel,
-            plot: false,
             threads: self.growth.threads(),
-            detail: None,
             labels: labels(loaded, shown, "sheet", options),
+            ..render::Options::default()
         }
     }
 }

@@ -4,10 +4,12 @@
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
 //! that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
 //! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
-//! A plot takes these as strokes, and draws them again in another order.
+//! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
+//! bands.
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail;
 //! and where colours tell steps, what is born later than they tell.
 
+mod bands;
 mod canvas;
 mod classes;
 mod comb;
@@ -52,6 +54,7 @@ use crate::heading::Heading;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 
+use self::bands::Bands;
 use self::layout::Layout;
 use self::pdf::Pdf;
 use self::plot::Plot;
@@ -67,7 +70,8 @@ pub enum Format {
     /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
     Svg,
     /// Portable network graphics, antialiased, of four to sixteen bytes a pixel in memory, and twelve
-    /// more for every thread beside the first, as far as that makes no more than 200 MB.
+    /// more for every thread beside the first, as far as that makes no more than 200 MB; approximants
+    /// that are larger than [`Options::in_one_piece`] in bands, one after another.
     Png,
     /// Portable document format, streamed: memory grows by a few bytes for 256 kB of content.
     ///
@@ -123,6 +127,14 @@ pub struct Options {
     /// for plotters and cutters. Nothing is filled, not even the background. This is done in memory,
     /// of some hundred bytes an edge.
     pub plot: bool,
+    /// The most pixels of a PNG that is drawn in one piece, 2^26 unless said otherwise. A larger one
+    /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
+    /// without growing it; and twice, unless its colours are soon known to be many.
+    pub in_one_piece: u64,
+    /// The pixels of a band, 2^21 unless said otherwise, with which drawing takes less than 300 MB.
+    /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is no
+    /// thin line of a round pen.
+    pub band: u64,
     /// Down to what size elements are replaced; to any unless said otherwise.
     pub detail: Option<Detail>,
     /// What the file says of itself.
@@ -141,6 +153,8 @@ impl Default for Options {
             size: Size::Long(1024),
             unit: Unit::Pixel,
             plot: false,
+            in_one_piece: 1 << 26,
+            band: 1 << 21,
             detail: None,
             labels: Labels::default(),
             threads: all_cores(),
@@ -246,16 +260,27 @@ pub fn write(
         canvas,
         growth,
     } = Layout::find(graph, growth, options)?;
+    let [width, height] = canvas.size().map(u64::from);
+    let in_bands = options.format == Format::Png && width * height > options.in_one_piece;
+    if in_bands && !options.plot {
+        Bands::new(&survey, &growth, canvas, options).write(out)?;
+        return Ok(picture(&survey, canvas, growth.steps, None));
+    }
     let scene = Scene::new(&survey, &growth, canvas);
     let plotted = write_in(&scene, options, growth.cancel, out)?;
-    Ok(Picture {
+    Ok(picture(&survey, canvas, growth.steps, plotted))
+}
+
+/// What has been written.
+fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
+    Picture {
         size: canvas.size(),
-        steps: growth.steps,
+        steps,
         elements: survey.elements,
         fractals: survey.fractals,
         is_part: survey.sight().is_bounded(),
         plotted,
-    })
+    }
 }
 
 /// Writes a drawing as a file.
