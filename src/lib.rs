@@ -22,7 +22,7 @@
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG, PNG; estimate: how large they will be
+//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; estimate: how large they will be
 //!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables: CSV, JSON
 //! ```

@@ -275,11 +275,12 @@ fn a_png_says_what_it_is() {
 }
 
 #[test]
-fn pictures_that_are_too_large_are_refused_with_the_memory_they_would_take() {
+fn pieces_that_are_too_large_are_refused_with_the_memory_they_would_take() {
     let rule = resolved(&document("koch"), &[]);
     let options = Options {
         format: Format::Png,
         size: Size::Exactly(200_000, 100_000),
+        in_one_piece: u64::MAX,
         ..Options::of(rule.heading())
     };
     let mut bytes = Vec::new();

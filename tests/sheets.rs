@@ -197,7 +197,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
         (&["koch", "--columns", "0"], "0 is not in 1.."),
         (
             &["koch", "-o", "koch.csv"],
-            "the format '.csv' is not known here: .svg and .png are",
+            "the format '.csv' is not known here: .svg, .png, .pdf and .dxf are",
         ),
     ] {
         let failed = run(folder.path(), arguments).code(2);

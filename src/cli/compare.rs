@@ -23,7 +23,7 @@ use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
 use super::labels::labels_of_two;
 use super::rule::{self, Loaded, RuleArguments};
-use super::{Failure, format, help, output, picture, steps, stop, text};
+use super::{Failure, format, help, length, output, picture, steps, stop, text};
 
 /// Says whether two fractals are the same: how far apart their limit sets are
 ///
@@ -58,7 +58,7 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
     /// The long side of the picture in pixels, or WIDTHxHEIGHT
-    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = picture::size)]
+    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::size)]
     size: Size,
     /// The colour behind the picture
     #[arg(long, value_name = "COLOR", value_parser = picture::colour)]

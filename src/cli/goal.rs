@@ -4,9 +4,10 @@ use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::ifs::Verdict;
 use crate::model::Model;
-use crate::render::{Detail, NoDetail, RenderError};
+use crate::render::{Detail, NoDetail, RenderError, Unit};
 use crate::wording;
 
+use super::length::Length;
 use super::rule::Loaded;
 use super::{Failure, steps};
 
@@ -70,15 +71,16 @@ impl Goal {
         }
     }
 
-    /// Down to what size elements are replaced.
-    pub(super) fn detail(self) -> Option<Detail> {
+    /// Down to what size elements are replaced, in the units of a picture.
+    pub(super) fn detail(self, unit: Unit) -> Option<Detail> {
+        let count = |pixels| Length::Pixels(pixels).count(unit);
         match self {
             Self::Steps(_, pixels) => pixels.map(|pixels| Detail {
-                pixels,
+                pixels: count(pixels),
                 decides_steps: false,
             }),
             Self::Detail(pixels) => Some(Detail {
-                pixels,
+                pixels: count(pixels),
                 decides_steps: true,
             }),
         }

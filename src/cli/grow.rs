@@ -9,14 +9,15 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::Graph;
 use crate::grow::Walked;
-use crate::render::{self, RenderError, Size};
+use crate::render::{self, Canvas, Plotted, RenderError, Size, Unit};
 use crate::style::Named;
 use crate::wording;
 
 use super::chaos::ChaosArguments;
 use super::goal::Goal;
-use super::growth::GrowthArguments;
+use super::growth::{self, GrowthArguments};
 use super::labels::labels;
+use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, chaos, format, help, output, steps, text};
@@ -51,12 +52,22 @@ pub(super) struct Arguments {
     format: Option<Format>,
     #[command(flatten)]
     growth: GrowthArguments,
-    /// The picture's long side in pixels, or WIDTHxHEIGHT
+    /// The picture's long side in pixels or millimetres, or WIDTHxHEIGHT
     ///
     /// The other side follows from the shape; where both are given, the shape is fitted into them.
-    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = picture::size)]
+    /// A PNG of more than 67 million pixels is drawn in bands, with less than 300 MB of memory.
+    /// 200mm and 210mmx297mm are sizes in millimetres, which a PNG does not have; a pixel is then,
+    /// and in PDF and DXF always, 1/96 inch.
+    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
     #[arg(help_heading = "Picture")]
-    size: Size,
+    size: Paper,
+    /// Draws single strokes, for a plotter or a cutter; a DXF always is
+    ///
+    /// Nothing is drawn twice, strokes whose ends meet become one, and the pen is carried over short
+    /// ways. Outlines of what is filled are strokes, and each colour is a layer. This takes memory:
+    /// up to some 200 bytes an element, so that --max-elements bounds it.
+    #[arg(long, help_heading = "Picture")]
+    plot: bool,
     #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
@@ -79,15 +90,25 @@ Examples:
       Draws what lies in a window of the plane
   kfrac grow koch-snowflake --detail 0.5 -o koch.png
       Goes on until nothing more can be seen
+  kfrac grow koch-snowflake --detail 1 --size 60000 -o wall.png
+      Draws a picture that is larger than memory
   kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
       Does so in a small window; what lies outside is not grown
   kfrac grow random-tree --seed 7
       Draws another tree of the same kind
+  kfrac grow levy --steps 10 --plot --size 200mm --stroke-width 0.3mm
+      Draws it for a pen plotter, 200 mm wide and no line twice
+  kfrac grow koch-snowflake --size 100mm -o flake.dxf
+      Writes outlines that a cutter reads; .pdf is for paper
   kfrac grow koch --steps 4 --format csv -o - | head
       Lists the elements
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
       Draws a system of maps by random iteration, into barnsley-fern.png
 ";
+
+/// What drawing a pixel in a band takes one processor of 2026, in seconds, within a factor of
+/// some 3.
+const SECONDS_A_PIXEL: f64 = 1.3e-8;
 
 /// What may come of a rule.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -100,6 +121,8 @@ impl Named for Format {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("svg", Self::Picture(render::Format::Svg)),
         ("png", Self::Picture(render::Format::Png)),
+        ("pdf", Self::Picture(render::Format::Pdf)),
+        ("dxf", Self::Picture(render::Format::Dxf)),
         ("csv", Self::Table(export::Format::Csv)),
         ("json", Self::Table(export::Format::JsonLines)),
         ("jsonl", Self::Table(export::Format::JsonLines)),
@@ -119,6 +142,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let message = "--detail is a size in pixels, and only pictures have pixels";
         return Err(Failure::Usage(message.into()));
     }
+    arguments.refuse_paper(format)?;
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
     let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
@@ -127,6 +151,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     arguments.check(goal, format, &graph, &loaded)?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
+    arguments.tell_of_bands(&loaded, goal, format, &graph);
     let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
         match format {
             Format::Picture(format) => {
@@ -151,7 +176,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             "{}: {}, {}, {}, {:.2} s",
             output::called(path),
             goal.reached(&loaded.name, wrote.steps),
-            wrote.summary(),
+            wrote.summary(arguments.size.unit),
             wording::bytes(bytes),
             start.elapsed().as_secs_f64(),
         ));
@@ -160,6 +185,19 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    /// Refuses what a format has nothing for.
+    fn refuse_paper(&self, format: Format) -> Result<(), Failure> {
+        let message = match format {
+            Format::Table(_) if self.plot => "--plot is of pictures, and a table is none",
+            Format::Picture(picture) if self.size.unit != Unit::Pixel && !picture.has_lengths() => {
+                "a PNG has pixels and no millimetres: --size 2000 is 2000 pixels; an SVG, a PDF and a \
+                 DXF have both"
+            }
+            _ => return Ok(()),
+        };
+        Err(Failure::Usage(message.into()))
+    }
+
     /// Refuses what is too much, as far as that can be told before: where only what can be seen is
     /// grown, it cannot.
     fn check(
@@ -184,6 +222,37 @@ impl Arguments {
         }
     }
 
+    /// Says how long a picture takes that is larger than memory.
+    fn tell_of_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
+        let Format::Picture(render::Format::Png) = format else {
+            return;
+        };
+        let options = self.options(loaded, goal, render::Format::Png);
+        let most = match options.size {
+            Size::Long(side) => u64::from(side).pow(2),
+            Size::Exactly(width, height) => u64::from(width) * u64::from(height),
+        };
+        if self.growth.quiet || self.plot || most <= options.in_one_piece {
+            return;
+        }
+        let view = &options.view;
+        let canvas = match view.window {
+            Some(window) => Canvas::of_window(window, view, options.size).ok(),
+            None => growth::rough_bounds(graph, goal.steps())
+                .and_then(|bounds| Canvas::fit(&bounds, options.size, view.margin).ok()),
+        };
+        let Some([width, height]) = canvas.map(|canvas| canvas.size()) else {
+            return;
+        };
+        let pixels = f64::from(width) * f64::from(height);
+        if u64::from(width) * u64::from(height) > options.in_one_piece {
+            text::say(&format!(
+                "note: {width} x {height} pixels are drawn in bands, in about {}",
+                wording::duration(pixels * SECONDS_A_PIXEL)
+            ));
+        }
+    }
+
     /// How the picture is drawn, and what its file says of itself.
     fn options(&self, loaded: &Loaded, goal: Goal, format: render::Format) -> render::Options {
         let mut options = goal.options();
@@ -191,16 +260,22 @@ impl Arguments {
         if format != render::Format::Svg {
             options.push(("format", format.name().into()));
         }
+        options.extend(self.plot.then(|| ("plot", String::new())));
         options.push(("size", self.size.to_string()));
         options.extend(self.picture.options());
+        let Paper { size, unit } = self.size;
+        let heading = loaded.model.heading();
         render::Options {
             format,
-            style: self.picture.style(loaded.model.heading()),
-            view: self.picture.view(loaded.model.heading()),
-            size: self.size,
+            style: self.picture.style_in(heading, unit),
+            view: self.picture.view_in(heading, unit),
+            size,
+            unit,
+            plot: self.plot,
             threads: self.growth.threads(),
-            detail: goal.detail(),
+            detail: goal.detail(unit),
             labels: labels(loaded, &goal.described(), "grow", options),
+            ..render::Options::default()
         }
     }
 }
@@ -222,21 +297,34 @@ impl Arguments {
                 (asked, output) => format::choose(asked, output)?,
             },
         };
-        if format == Format::Picture(render::Format::Svg) {
-            let message = "--method chaos draws points, too many for an SVG: write a .png, or a \
-                           .csv of the points";
+        if let Format::Picture(picture) = format
+            && picture != render::Format::Png
+        {
+            return Err(Failure::Usage(format!(
+                "--method chaos draws points, too many for {} {}: write a .png, or a .csv of the \
+                 points",
+                if picture == render::Format::Svg {
+                    "an"
+                } else {
+                    "a"
+                },
+                picture.name().to_uppercase()
+            )));
+        }
+        if self.plot {
+            let message = "--plot is of lines, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
+        self.refuse_paper(format)?;
         let loaded = self.rule.load(catalogue, self.growth.quiet)?;
         let game = self.chaos.game(&loaded, self.steps, &self.picture)?;
         let default = self.rule.file("", format.name());
         let path = self.output.as_ref().unwrap_or(&default);
+        let size = self.size.size;
         let (summary, bytes) = output::write(path, self.growth.quiet, |out, progress| {
             match format {
                 Format::Table(format) => game.list(format, &self.growth, progress, out),
-                Format::Picture(_) => {
-                    game.draw(self.size, &self.growth, &self.picture, progress, out)
-                }
+                Format::Picture(_) => game.draw(size, &self.growth, &self.picture, progress, out),
             }
             .map_err(|failure| match failure {
                 chaos::Stopped::Said(failure) => failure,
@@ -261,6 +349,7 @@ struct Wrote {
     elements: u64,
     fractals: u64,
     pixels: Option<[u32; 2]>,
+    plotted: Option<Plotted>,
     /// Whether elements outside a window may not be among them.
     is_part: bool,
 }
@@ -272,6 +361,7 @@ impl From<render::Picture> for Wrote {
             elements: picture.elements,
             fractals: picture.fractals,
             pixels: Some(picture.size),
+            plotted: picture.plotted,
             is_part: picture.is_part,
         }
     }
@@ -284,11 +374,12 @@ impl Wrote {
             elements: walked.elements,
             fractals: walked.fractals,
             pixels: None,
+            plotted: None,
             is_part: false,
         }
     }
 
-    fn summary(&self) -> String {
+    fn summary(&self, unit: Unit) -> String {
         let mut summary = wording::counted(&self.elements.into(), "element");
         if self.is_part {
             summary.push_str(" visited");
@@ -297,9 +388,29 @@ impl Wrote {
             summary.push_str(" in ");
             summary.push_str(&wording::counted(&self.fractals.into(), "fractal"));
         }
-        if let Some([width, height]) = self.pixels {
-            summary.push_str(&format!(", {width} x {height} pixels"));
+        if let Some(size) = self.pixels {
+            summary.push_str(&format!(", {}", length::described(size, unit)));
+        }
+        if let Some(plotted) = &self.plotted {
+            summary.push_str(&format!(", {}", strokes(plotted)));
         }
         summary
     }
+}
+
+/// What a plot takes, in words.
+fn strokes(plotted: &Plotted) -> String {
+    let layers = match plotted.layers {
+        1 => String::new(),
+        layers => format!(" in {}", wording::counted(&layers.into(), "layer")),
+    };
+    format!(
+        "{}{layers} of {:.0} mm, {:.0} mm from stroke to stroke (as drawn: {:.0} mm), {} left out as \
+         drawn before",
+        wording::counted(&plotted.strokes.into(), "stroke"),
+        plotted.drawn,
+        plotted.carried,
+        plotted.carried_as_drawn,
+        wording::counted(&plotted.repeated.into(), "edge"),
+    )
 }

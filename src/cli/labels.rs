@@ -67,8 +67,11 @@ fn command(
     let omitted: Vec<_> = loaded.omitted.iter().map(u32::to_string).collect();
     let omitted = (!omitted.is_empty()).then(|| ("omit", omitted.join(",")));
     for (name, value) in settings.chain(omitted).chain(options) {
-        // Joined by a sign of equality, so that a value may begin with a minus.
-        command.push_str(&format!(" --{name}={}", quoted(&value)));
+        command.push_str(&format!(" --{name}"));
+        // Joined by a sign of equality, so that a value may begin with a minus; flags have none.
+        if !value.is_empty() {
+            command.push_str(&format!("={}", quoted(&value)));
+        }
     }
     command
 }

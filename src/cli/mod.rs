@@ -17,6 +17,7 @@ mod help;
 mod import;
 mod info;
 mod labels;
+mod length;
 mod list;
 mod man;
 mod output;

@@ -3,10 +3,11 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::heading::Heading;
-use crate::render::Size;
-use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View, Width};
+use crate::render::Unit;
+use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View};
 
 use super::Failure;
+use super::length::{Length, StrokeWidth};
 
 /// Options of pictures.
 #[derive(clap::Args)]
@@ -21,9 +22,10 @@ pub(super) struct PictureArguments {
     /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161)
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     stroke: Option<Colour>,
-    /// The width of strokes in pixels, or, with a % sign, relative to the element's length
-    #[arg(long, value_name = "W", value_parser = width)]
-    pub(super) stroke_width: Option<Width>,
+    /// The width of strokes in pixels, or in millimetres as 0.3mm, or, with a % sign, relative to
+    /// the element's length
+    #[arg(long, value_name = "W", value_parser = StrokeWidth::parse)]
+    pub(super) stroke_width: Option<StrokeWidth>,
     /// The colour inside closed shapes
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     fill: Option<Colour>,
@@ -33,9 +35,9 @@ pub(super) struct PictureArguments {
     /// The shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
-    /// Pixels left free around the picture
-    #[arg(long, value_name = "PX", value_parser = length)]
-    margin: Option<f64>,
+    /// Pixels left free around the picture, or millimetres as 10mm
+    #[arg(long, value_name = "PX", value_parser = Length::parse)]
+    margin: Option<Length>,
     /// The colour behind the picture
     #[arg(long, value_name = "COLOR", value_parser = colour)]
     background: Option<Colour>,
@@ -50,10 +52,16 @@ pub(super) struct PictureArguments {
 impl PictureArguments {
     /// The rule's style with what is asked for.
     pub(super) fn style(&self, heading: &Heading) -> Style {
+        self.style_in(heading, Unit::Pixel)
+    }
+
+    /// The same, with widths in the units of the picture.
+    pub(super) fn style_in(&self, heading: &Heading, unit: Unit) -> Style {
         let own = &heading.style;
+        let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
         Style {
             stroke: self.stroke.or(own.stroke),
-            width: self.stroke_width.unwrap_or(own.width),
+            width: width.width(unit),
             cap: self.cap.unwrap_or(own.cap),
             join: self.join.unwrap_or(own.join),
             fill: self.fill.or(own.fill),
@@ -70,9 +78,15 @@ impl PictureArguments {
 
     /// The rule's view with what is asked for.
     pub(super) fn view(&self, heading: &Heading) -> View {
+        self.view_in(heading, Unit::Pixel)
+    }
+
+    /// The same, with the margin in the units of the picture.
+    pub(super) fn view_in(&self, heading: &Heading, unit: Unit) -> View {
+        let margin = self.margin.unwrap_or(Length::Pixels(heading.view.margin));
         View {
             window: self.view.or(heading.view.window),
-            margin: self.margin.unwrap_or(heading.view.margin),
+            margin: margin.count(unit),
         }
     }
 
@@ -123,10 +137,7 @@ impl PictureArguments {
         option("stroke", colour(self.stroke));
         option(
             "stroke-width",
-            self.stroke_width.map(|width| match width {
-                Width::Pixels(width) => width.to_string(),
-                Width::Relative(width) => format!("{}%", width * 100.0),
-            }),
+            self.stroke_width.map(|width| width.to_string()),
         );
         option("fill", colour(self.fill));
         option("cap", self.cap.map(|cap| cap.name().into()));
@@ -139,22 +150,6 @@ impl PictureArguments {
             self.palette.as_ref().map(|palette| palette.name().into()),
         );
         options
-    }
-}
-
-const MOST_PIXELS: u32 = 1_000_000;
-
-/// Reads the size of a picture.
-pub(super) fn size(text: &str) -> Result<Size, String> {
-    let side = |text: &str| match text.parse::<u32>() {
-        Ok(side) if (1..=MOST_PIXELS).contains(&side) => Ok(side),
-        _ => Err(format!(
-            "a side is a whole number of pixels from 1 to {MOST_PIXELS}"
-        )),
-    };
-    match text.split_once('x') {
-        Some((width, height)) => Ok(Size::Exactly(side(width)?, side(height)?)),
-        None => Ok(Size::Long(side(text)?)),
     }
 }
 
@@ -186,20 +181,6 @@ pub(super) fn pixels(text: &str) -> Result<f64, String> {
 pub(super) fn colour(text: &str) -> Result<Colour, String> {
     Colour::parse(text)
         .ok_or_else(|| "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161)".into())
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
-        _ => Err("this is a number that is not negative".into()),
-    }
-}
-
-fn width(text: &str) -> Result<Width, String> {
-    match text.strip_suffix('%') {
-        Some(percent) => Ok(Width::Relative(length(percent)? / 100.0)),
-        None => Ok(Width::Pixels(length(text)?)),
-    }
 }
 
 /// Reads one of the names of an enumeration.

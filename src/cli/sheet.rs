@@ -17,7 +17,7 @@ use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
-use super::{Failure, format, help, output, steps, text};
+use super::{Failure, format, help, length, output, steps, text};
 
 /// Draws approximants side by side, or a family of fractals
 ///
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     growth: GrowthArguments,
     /// The long side of every single picture in pixels, or WIDTHxHEIGHT
-    #[arg(long, value_name = "SIZE", default_value = "256", value_parser = picture::size)]
+    #[arg(long, value_name = "SIZE", default_value = "256", value_parser = length::size)]
     #[arg(help_heading = "Picture")]
     size: Size,
     #[command(flatten)]
@@ -205,8 +205,8 @@ impl Arguments {
             view: self.picture.view(loaded.model.heading()),
             size: self.size,
             threads: self.growth.threads(),
-            detail: None,
             labels: labels(loaded, shown, "sheet", options),
+            ..render::Options::default()
         }
     }
 }

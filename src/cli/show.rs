@@ -15,7 +15,7 @@ use crate::wording;
 use super::labels::labels;
 use super::picture;
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, format, help, output, text};
+use super::{Failure, format, help, length, output, text};
 
 /// Draws a production rule as a figure: initiator, generators, base element
 ///
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
     /// The long side in pixels, or WIDTHxHEIGHT [default: as small as can be read]
-    #[arg(long, value_name = "SIZE", value_parser = picture::size)]
+    #[arg(long, value_name = "SIZE", value_parser = length::size)]
     size: Option<Size>,
     /// The colour behind the figure
     #[arg(long, value_name = "COLOR", value_parser = picture::colour)]

@@ -1,4 +1,5 @@
 use std::fmt;
+use std::ops::Range;
 
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
 use crate::style::View;
@@ -151,10 +152,17 @@ impl Canvas {
 
     /// What part of the plane is shown, with so many pixels more on every side.
     pub(super) fn shown(&self, pad: f64) -> Bounds {
-        let [width, height] = self.size.map(f64::from);
+        self.shown_in(0..self.size[1], pad)
+    }
+
+    /// The same of some rows of pixels.
+    pub(super) fn shown_in(&self, rows: Range<u32>, pad: f64) -> Bounds {
+        let width = f64::from(self.size[0]);
+        let [top, bottom] = [rows.start, rows.end].map(f64::from);
         let pad = pad / self.scale;
-        let opposite = self.corner + DVec2::new(width, -height) / self.scale;
-        let shown = Bounds::new(self.corner, opposite);
+        let corners = [[0.0, -top], [width, -bottom]];
+        let [upper, lower] = corners.map(|[x, y]| self.corner + DVec2::new(x, y) / self.scale);
+        let shown = Bounds::new(upper, lower);
         Bounds::new(shown.min() - pad, shown.max() + pad)
     }
 

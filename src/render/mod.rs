@@ -4,16 +4,22 @@
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
 //! that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
 //! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
+//! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
+//! bands.
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail;
 //! and where colours tell steps, what is born later than they tell.
 
+mod bands;
 mod canvas;
 mod classes;
 mod comb;
 mod density;
+mod dxf;
 mod known;
 mod layout;
 mod painter;
+mod pdf;
+mod plot;
 mod png;
 mod scene;
 mod sight;
@@ -22,13 +28,16 @@ mod surface;
 mod survey;
 mod svg;
 mod tracer;
+mod unit;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
 pub use layout::{Detail, NoDetail};
+pub use plot::Plotted;
 pub use png::TooManyPixels;
 pub use survey::Survey;
+pub use unit::Unit;
 
 pub(crate) use scene::Scene;
 pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
@@ -37,6 +46,7 @@ pub(crate) use tracer::Tracer;
 use std::convert::Infallible;
 use std::io::{self, Write};
 use std::num::NonZero;
+use std::sync::atomic::AtomicBool;
 
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
@@ -44,7 +54,10 @@ use crate::heading::Heading;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 
+use self::bands::Bands;
 use self::layout::Layout;
+use self::pdf::Pdf;
+use self::plot::Plot;
 use self::png::Png;
 use self::svg::Svg;
 
@@ -57,12 +70,33 @@ pub enum Format {
     /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
     Svg,
     /// Portable network graphics, antialiased, of four to sixteen bytes a pixel in memory, and twelve
-    /// more for every thread beside the first, as far as that makes no more than 200 MB.
+    /// more for every thread beside the first, as far as that makes no more than 200 MB; approximants
+    /// that are larger than [`Options::in_one_piece`] in bands, one after another.
     Png,
+    /// Portable document format, streamed: memory grows by a few bytes for 256 kB of content.
+    ///
+    /// Where an area is stroked with a colour that is not opaque, the fill does not show through
+    /// the stroke.
+    Pdf,
+    /// Drawing exchange format of release 12: polylines in millimetres, always a plot.
+    Dxf,
+}
+
+impl Format {
+    /// Whether sizes in it are lengths as well as pixels.
+    #[must_use]
+    pub fn has_lengths(self) -> bool {
+        self != Self::Png
+    }
 }
 
 impl Named for Format {
-    const NAMES: &'static [(&'static str, Self)] = &[("svg", Self::Svg), ("png", Self::Png)];
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("svg", Self::Svg),
+        ("png", Self::Png),
+        ("pdf", Self::Pdf),
+        ("dxf", Self::Dxf),
+    ];
 }
 
 /// What a file says of itself beside the picture.
@@ -87,6 +121,20 @@ pub struct Options {
     pub view: View,
     /// The size; 1024 pixels on the long side unless said otherwise.
     pub size: Size,
+    /// What size, strokes, margin and detail are counted in.
+    pub unit: Unit,
+    /// Whether it is drawn as single strokes, nothing twice, and the pen carried over short ways:
+    /// for plotters and cutters. Nothing is filled, not even the background. This is done in memory,
+    /// of some hundred bytes an edge.
+    pub plot: bool,
+    /// The most pixels of a PNG that is drawn in one piece, 2^26 unless said otherwise. A larger one
+    /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
+    /// without growing it; and twice, unless its colours are soon known to be many.
+    pub in_one_piece: u64,
+    /// The pixels of a band, 2^21 unless said otherwise, with which drawing takes less than 300 MB.
+    /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is no
+    /// thin line of a round pen.
+    pub band: u64,
     /// Down to what size elements are replaced; to any unless said otherwise.
     pub detail: Option<Detail>,
     /// What the file says of itself.
@@ -103,6 +151,10 @@ impl Default for Options {
             style: Style::default(),
             view: View::default(),
             size: Size::Long(1024),
+            unit: Unit::Pixel,
+            plot: false,
+            in_one_piece: 1 << 26,
+            band: 1 << 21,
             detail: None,
             labels: Labels::default(),
             threads: all_cores(),
@@ -135,6 +187,8 @@ pub struct Picture {
     pub fractals: u64,
     /// Whether some may not have been visited because they lie outside a window.
     pub is_part: bool,
+    /// What it takes as a plot, if it is one.
+    pub plotted: Option<Plotted>,
 }
 
 /// Why a picture is not made.
@@ -206,21 +260,27 @@ pub fn write(
         canvas,
         growth,
     } = Layout::find(graph, growth, options)?;
+    let [width, height] = canvas.size().map(u64::from);
+    let in_bands = options.format == Format::Png && width * height > options.in_one_piece;
+    if in_bands && !options.plot {
+        Bands::new(&survey, &growth, canvas, options).write(out)?;
+        return Ok(picture(&survey, canvas, growth.steps, None));
+    }
     let scene = Scene::new(&survey, &growth, canvas);
-    let Options {
-        format,
-        labels,
-        threads,
-        ..
-    } = options;
-    write_drawing(&scene, *format, labels, *threads, out)?;
-    Ok(Picture {
+    let plotted = write_in(&scene, options, growth.cancel, out)?;
+    Ok(picture(&survey, canvas, growth.steps, plotted))
+}
+
+/// What has been written.
+fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
+    Picture {
         size: canvas.size(),
-        steps: growth.steps,
+        steps,
         elements: survey.elements,
         fractals: survey.fractals,
         is_part: survey.sight().is_bounded(),
-    })
+        plotted,
+    }
 }
 
 /// Writes a drawing as a file.
@@ -231,17 +291,92 @@ pub(crate) fn write_drawing(
     threads: NonZero<usize>,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
-    let (size, background) = (drawing.size(), drawing.background());
-    with_team(threads, |team| match format {
-        Format::Svg => {
-            let mut svg = Svg::begin(out, size, background, drawing.pen(), labels, team)?;
+    let options = Options {
+        format,
+        labels: labels.clone(),
+        threads,
+        ..Options::default()
+    };
+    write_in(drawing, &options, None, out).map(|_| ())
+}
+
+/// Writes a drawing, as strokes if that is asked for; tells what those take.
+fn write_in(
+    drawing: &impl Drawing,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<Option<Plotted>, RenderError> {
+    let Options { unit, threads, .. } = *options;
+    let format = match options.format {
+        Format::Svg => PathFormat::Svg,
+        Format::Png => PathFormat::Png,
+        Format::Pdf => PathFormat::Pdf,
+        Format::Dxf => {
+            let plot = Plot::of(drawing, unit, threads, cancel)?;
+            dxf::write(&plot, unit, &options.labels, out)?;
+            return Ok(Some(plot.plotted));
+        }
+    };
+    if options.plot {
+        let plot = Plot::of(drawing, unit, threads, cancel)?;
+        write_paths(&plot, format, options, out)?;
+        return Ok(Some(plot.plotted));
+    }
+    write_paths(drawing, format, options, out)?;
+    Ok(None)
+}
+
+/// The formats that any paths can be written in, one after another.
+#[derive(Clone, Copy)]
+enum PathFormat {
+    Svg,
+    Png,
+    Pdf,
+}
+
+/// What vector graphics begin with.
+#[derive(Clone, Copy)]
+struct Page<'a> {
+    size: [u32; 2],
+    unit: Unit,
+    background: Option<Colour>,
+    /// The pen of most strokes.
+    pen: Pen,
+    labels: &'a Labels,
+    /// Whether every colour comes once, as a layer.
+    has_layers: bool,
+}
+
+fn write_paths(
+    drawing: &impl Drawing,
+    format: PathFormat,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    let page = Page {
+        size: drawing.size(),
+        unit: options.unit,
+        background: drawing.background(),
+        pen: drawing.pen(),
+        labels: &options.labels,
+        has_layers: options.plot,
+    };
+    with_team(options.threads, |team| match format {
+        PathFormat::Svg => {
+            let mut svg = Svg::begin(out, &page, team)?;
             drawing.draw(&mut svg, team)?;
             Ok(svg.finish()?)
         }
-        Format::Png => {
-            let mut png = Png::begin(size, background, team)?;
+        PathFormat::Png => {
+            let mut png = Png::begin(page.size, page.background, team)?;
             drawing.draw(&mut png, team)?;
-            Ok(png.write(labels, out)?)
+            Ok(png.write(page.labels, out)?)
+        }
+        PathFormat::Pdf => {
+            let mut pdf = Pdf::begin(out, &page, team)?;
+            drawing.draw(&mut pdf, team)?;
+            Ok(pdf.finish()?)
         }
     })
 }

@@ -8,13 +8,18 @@ mod nib;
 mod part;
 mod planes;
 mod skia;
+mod split;
 #[cfg(test)]
 mod tests;
 
-pub(super) use encode::encode as write_pixels;
+pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
+pub(super) use split::ROWS as BAND_ROWS;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
+use std::ops::Range;
+
+pub(super) use tiny_skia::Pixmap;
 
 use crate::parallel::{Line, Team};
 use crate::style::Colour;
@@ -81,7 +86,29 @@ impl<'t, 'w> Png<'t, 'w> {
         if u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(TooManyPixels { size });
         }
-        let mut part = Part::new([0, 0], size).ok_or(TooManyPixels { size })?;
+        Self::begin_on(size, 0..height, Outline::default(), background, team)
+    }
+
+    /// Begins a band of a picture: some of its rows, of which the first is a multiple of
+    /// [`BAND_ROWS`]. What is drawn in them does not depend on where bands begin.
+    pub(super) fn begin_band(
+        size: [u32; 2],
+        rows: Range<u32>,
+        background: Option<Colour>,
+        team: &'t Team<'w>,
+    ) -> Result<Self, TooManyPixels> {
+        let outline = Outline::of_rows(rows.clone());
+        Self::begin_on(size, rows, outline, background, team)
+    }
+
+    fn begin_on(
+        size: [u32; 2],
+        rows: Range<u32>,
+        outline: Outline,
+        background: Option<Colour>,
+        team: &'t Team<'w>,
+    ) -> Result<Self, TooManyPixels> {
+        let mut part = Part::of_rows([0, 0], size, rows).ok_or(TooManyPixels { size })?;
         if let Some(background) = background {
             let [red, green, blue, opacity] = background.rgba();
             part.pixmap
@@ -99,9 +126,15 @@ impl<'t, 'w> Png<'t, 'w> {
             start: [0; 2],
             covers: false,
             ring: Vec::with_capacity(MOST_VERTICES),
-            outline: Outline::default(),
+            outline,
             is_outlined: false,
         })
+    }
+
+    /// The pixels of the rows.
+    pub(super) fn into_pixels(mut self) -> Pixmap {
+        self.settle();
+        self.part.pixmap
     }
 
     /// Encodes the picture.

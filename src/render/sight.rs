@@ -28,6 +28,8 @@ pub(super) struct Sight {
 #[derive(Clone, Debug)]
 struct Window {
     bounds: Bounds,
+    /// How far beyond what is to be seen they lie.
+    pad: f64,
     /// How far what becomes of an object reaches from the middle of its frame, by object.
     reaches: Arc<[f64]>,
     /// That middle, in every frame.
@@ -79,7 +81,8 @@ impl Sight {
             return self;
         }
         let window = Window {
-            bounds: Bounds::new(bounds.min() - pad, bounds.max() + pad),
+            bounds: padded(bounds, pad),
+            pad,
             reaches: reaches.into(),
             middle: graph.middle(),
             outside,
@@ -88,6 +91,15 @@ impl Sight {
             window: Some(window),
             ..self
         }
+    }
+
+    /// The same of another part of the plane, where a part is seen.
+    pub(super) fn moved_to(&self, bounds: &Bounds) -> Self {
+        let mut moved = self.clone();
+        if let Some(window) = &mut moved.window {
+            window.bounds = padded(bounds, window.pad);
+        }
+        moved
     }
 
     /// Whether walks may leave out what lies outside a window.
@@ -123,6 +135,10 @@ impl Sight {
         }
         Enter::Replace
     }
+}
+
+fn padded(bounds: &Bounds, pad: f64) -> Bounds {
+    Bounds::new(bounds.min() - pad, bounds.max() + pad)
 }
 
 impl Window {

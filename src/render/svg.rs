@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join, Named};
 
-use super::Labels;
+use super::Page;
 use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
 use chunk::Chunk;
 
@@ -24,23 +24,32 @@ pub(super) struct Svg<'t, 'w, W> {
     pen: Pen,
     /// The colour of strokes in the group that is open.
     group: Option<Colour>,
+    /// Whether groups are layers, as Inkscape has them.
+    has_layers: bool,
     label: Option<String>,
 }
 
 impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
-    /// Begins a document whose strokes are mostly drawn with `pen`.
-    pub(super) fn begin(
-        mut out: W,
-        [width, height]: [u32; 2],
-        background: Option<Colour>,
-        pen: Pen,
-        labels: &Labels,
-        team: &'t Team<'w>,
-    ) -> io::Result<Self> {
-        let [wide, high] = fine([width, height]);
+    /// Begins a document.
+    pub(super) fn begin(mut out: W, page: &Page<'_>, team: &'t Team<'w>) -> io::Result<Self> {
+        let Page {
+            size,
+            unit,
+            background,
+            pen,
+            labels,
+            has_layers,
+        } = *page;
+        let [wide, high] = fine(size);
+        let [width, height] = size.map(|side| unit.length(side));
+        let namespace = if has_layers {
+            r#" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape""#
+        } else {
+            ""
+        };
         writeln!(
             out,
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
+            r#"<svg xmlns="http://www.w3.org/2000/svg"{namespace} width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
         )?;
         writeln!(out, "<title>{}</title>", escaped(&labels.title))?;
         writeln!(out, "<desc>{}</desc>", escaped(&labels.description))?;
@@ -74,6 +83,7 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
             at: [[0, 0]; 2],
             pen,
             group: None,
+            has_layers,
             label: None,
         })
     }
@@ -102,7 +112,13 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
             self.close_group();
             self.group = Some(colour);
             let opacity = opacity("stroke", colour);
-            self.text(&format!("<g stroke=\"{colour}\"{opacity}>\n"));
+            self.text("<g");
+            if self.has_layers {
+                self.text(&format!(
+                    r#" inkscape:groupmode="layer" inkscape:label="{colour}""#
+                ));
+            }
+            self.text(&format!(" stroke=\"{colour}\"{opacity}>\n"));
         }
     }
 

@@ -12,8 +12,21 @@ pub(in crate::render) fn encode(
     labels: &Labels,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let mut encoder = Encoder::new(out, pixmap.width(), pixmap.height());
     let colours = Colours::of(pixmap);
+    let size = [pixmap.width(), pixmap.height()];
+    encode_pieces(size, &colours, labels, out, |encode| encode(pixmap))
+}
+
+/// The same of pixels that come in pieces of some rows each, from the top, and of whose colours all
+/// is known. `give` hands on one after another.
+pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
+    [width, height]: [u32; 2],
+    colours: &Colours,
+    labels: &Labels,
+    out: &mut impl Write,
+    give: impl FnOnce(&mut dyn FnMut(&Pixmap) -> io::Result<()>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut encoder = Encoder::new(out, width, height);
     let layout = colours.layout();
     if matches!(layout.colour, ColorType::Rgb | ColorType::Rgba) {
         // Half the time of what is usual, for a tenth more bytes: these pictures take longest.
@@ -51,28 +64,31 @@ pub(in crate::render) fn encode(
     }
     let mut writer = encoder.write_header().map_err(io_error)?;
     let mut stream = writer.stream_writer().map_err(io_error)?;
-    let width = pixmap.width() as usize;
     let mut row = Vec::new();
-    for pixels in pixmap.pixels().chunks_exact(width) {
-        row.clear();
-        match layout.colour {
-            ColorType::Indexed => indices(pixels, &colours.few, layout.depth, &mut row),
-            ColorType::Grayscale => row.extend(pixels.iter().map(|pixel| pixel.red())),
-            ColorType::GrayscaleAlpha => row.extend(pixels.iter().flat_map(|&pixel| {
-                let [grey, _, _, opacity] = rgba(pixel);
-                [grey, opacity]
-            })),
-            ColorType::Rgb => row.extend(
-                pixels
-                    .iter()
-                    .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]),
-            ),
-            ColorType::Rgba => row.extend(pixels.iter().flat_map(|&pixel| rgba(pixel))),
+    let mut encode = |pixmap: &Pixmap| -> io::Result<()> {
+        for pixels in pixmap.pixels().chunks_exact(width as usize) {
+            row.clear();
+            match layout.colour {
+                ColorType::Indexed => indices(pixels, &colours.few, layout.depth, &mut row),
+                ColorType::Grayscale => row.extend(pixels.iter().map(|pixel| pixel.red())),
+                ColorType::GrayscaleAlpha => row.extend(pixels.iter().flat_map(|&pixel| {
+                    let [grey, _, _, opacity] = rgba(pixel);
+                    [grey, opacity]
+                })),
+                ColorType::Rgb => row.extend(
+                    pixels
+                        .iter()
+                        .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]),
+                ),
+                ColorType::Rgba => row.extend(pixels.iter().flat_map(|&pixel| rgba(pixel))),
+            }
+            stream.write_all(&row)?;
         }
-        stream.write_all(&row)?;
-    }
+        Ok(())
+    };
+    give(&mut encode)?;
     stream.finish().map_err(io_error)?;
-    writer.finish().map_err(io_error)
+    Ok(writer.finish().map_err(io_error)?)
 }
 
 type Rgba = [u8; 4];
@@ -83,7 +99,7 @@ fn rgba(pixel: PremultipliedColorU8) -> Rgba {
 }
 
 /// What colours a picture has.
-struct Colours {
+pub(in crate::render) struct Colours {
     /// Every one of them, if there are 256 at most.
     few: Few,
     grey: bool,
@@ -150,25 +166,47 @@ struct Layout {
 }
 
 impl Colours {
+    /// Those of a picture without pixels.
+    pub(in crate::render) fn none() -> Self {
+        Self {
+            few: Few::new(Vec::new()),
+            grey: true,
+            opaque: true,
+        }
+    }
+
     fn of(pixmap: &Pixmap) -> Self {
-        let mut few = Few::new(Vec::new());
-        let (mut grey, mut opaque) = (true, true);
+        let mut colours = Self::none();
+        colours.add(pixmap);
+        colours.sorted()
+    }
+
+    /// Adds those of some pixels.
+    pub(in crate::render) fn add(&mut self, pixmap: &Pixmap) {
         let mut last = None;
         for &pixel in pixmap.pixels() {
             if last == Some(pixel) {
                 continue;
             }
             last = Some(pixel);
-            grey &= pixel.red() == pixel.green() && pixel.green() == pixel.blue();
-            opaque &= pixel.is_opaque();
-            few.add(pixel);
+            self.grey &= pixel.red() == pixel.green() && pixel.green() == pixel.blue();
+            self.opaque &= pixel.is_opaque();
+            self.few.add(pixel);
         }
-        let mut sorted = few.colours;
-        sorted.sort_unstable_by_key(|&pixel| bits(pixel));
+    }
+
+    /// Whether more pixels change nothing, on a background that is opaque or is not.
+    pub(in crate::render) fn are_settled(&self, on_opaque: bool) -> bool {
+        self.few.colours.len() > Few::MOST && !self.grey && (on_opaque || !self.opaque)
+    }
+
+    /// The same in an order that does not depend on where they are.
+    pub(in crate::render) fn sorted(self) -> Self {
+        let mut colours = self.few.colours;
+        colours.sort_unstable_by_key(|&pixel| bits(pixel));
         Self {
-            few: Few::new(sorted),
-            grey,
-            opaque,
+            few: Few::new(colours),
+            ..self
         }
     }
 

@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::sync::Arc;
 
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
@@ -16,7 +17,9 @@ const MOST_COVERED: u64 = MOST_PIXELS * 4 / (4 + Plane::BYTES);
 /// A part of a picture, or all of it.
 pub(super) struct Part {
     pub(super) pixmap: Pixmap,
+    /// Width and height of what it shows rows of, and which.
     size: [u32; 2],
+    rows: Range<u32>,
     /// Its place in what it is a part of.
     corner: [u32; 2],
     /// What is covered and not yet coloured, once something has been, and its colour.
@@ -26,9 +29,15 @@ pub(super) struct Part {
 
 impl Part {
     pub(super) fn new(corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
+        Self::of_rows(corner, size, 0..size[1])
+    }
+
+    /// Some rows of a part.
+    pub(super) fn of_rows(corner: [u32; 2], size: [u32; 2], rows: Range<u32>) -> Option<Self> {
         Some(Self {
-            pixmap: Pixmap::new(size[0], size[1])?,
+            pixmap: Pixmap::new(size[0], rows.end - rows.start)?,
             size,
+            rows,
             corner,
             planes: None,
             ink: None,
@@ -37,8 +46,8 @@ impl Part {
 
     /// Whether the part is small enough to have a plane.
     pub(super) fn may_cover(&self) -> bool {
-        let [width, height] = self.size.map(u64::from);
-        width * height <= MOST_COVERED
+        let pixels = u64::from(self.pixmap.width()) * u64::from(self.pixmap.height());
+        pixels <= MOST_COVERED
     }
 
     /// What paths cover, if any does.
@@ -64,7 +73,7 @@ impl Part {
     pub(super) fn begin(&mut self, paint: &Paint, threads: usize) {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         self.ink = stroke.or(paint.fill);
-        let planes = || Arc::new(Planes::new(self.size, threads));
+        let planes = || Arc::new(Planes::new(self.size, self.rows.clone(), threads));
         self.planes.get_or_insert_with(planes);
     }
 

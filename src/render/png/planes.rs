@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use super::coverage::Plane;
@@ -5,22 +6,33 @@ use super::coverage::Plane;
 /// Planes beside the first one have no more pixels than this together.
 const MOST_PIXELS: u64 = 1 << 24;
 
+/// Those of a picture that is drawn in bands, so that it stays within 300 MB.
+const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
+
 /// Planes of one part of a picture, so that several threads cover it at once. What they cover comes
 /// together when it is coloured; which of them it is on does not show.
 pub(super) struct Planes {
-    size: [u32; 2],
+    picture: [u32; 2],
+    rows: Range<u32>,
     /// Nothing as long as nothing has been covered.
     planes: Vec<Mutex<Option<Plane>>>,
 }
 
 impl Planes {
     /// As many planes as there are threads, but no more than memory should hold.
-    pub(super) fn new(size: [u32; 2], threads: usize) -> Self {
-        let pixels = size.map(u64::from).iter().product::<u64>().max(1);
-        let others = usize::try_from(MOST_PIXELS / pixels).unwrap_or(usize::MAX);
+    pub(super) fn new(picture: [u32; 2], rows: Range<u32>, threads: usize) -> Self {
+        let pixels = u64::from(picture[0]) * u64::from(rows.end - rows.start).max(1);
+        let is_band = rows != (0..picture[1]);
+        let most = if is_band {
+            MOST_PIXELS_OF_BANDS
+        } else {
+            MOST_PIXELS
+        };
+        let others = usize::try_from(most / pixels).unwrap_or(usize::MAX);
         let count = threads.min(others.saturating_add(1));
         Self {
-            size,
+            picture,
+            rows,
             planes: std::iter::repeat_with(Mutex::default).take(count).collect(),
         }
     }
@@ -36,7 +48,11 @@ impl Planes {
                 Err(TryLockError::WouldBlock) => None,
             });
         let mut plane = free.next().unwrap_or_else(|| lock(&self.planes[0]));
-        cover(plane.get_or_insert_with(|| Plane::new(self.size)));
+        cover(plane.get_or_insert_with(|| self.plane()));
+    }
+
+    fn plane(&self) -> Plane {
+        Plane::of_rows(self.picture, self.rows.clone())
     }
 
     /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
@@ -45,7 +61,7 @@ impl Planes {
         let Some(mut first) = planes.next() else {
             return;
         };
-        let first = first.get_or_insert_with(|| Plane::new(self.size));
+        let first = first.get_or_insert_with(|| self.plane());
         for mut other in planes {
             if let Some(other) = &mut *other {
                 first.take_over(other);

@@ -1,5 +1,7 @@
 //! Paths that tiny-skia draws.
 
+use std::ops::Range;
+
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, Pixmap, PixmapPaint, StrokeDash,
     Transform,
@@ -7,6 +9,8 @@ use tiny_skia::{
 
 use crate::render::surface::{FINE, Paint, Position, Stroke};
 use crate::style::{Cap, Colour, Join};
+
+use super::split::split;
 
 /// A path that is only stroked is drawn in pieces of about this many vertices,
 const STROKE_CHUNK: usize = 1 << 17;
@@ -31,11 +35,21 @@ pub(super) struct Outline {
     before: Option<[f32; 2]>,
     /// Whether the start of the subpath has been drawn in an earlier piece.
     is_broken: bool,
+    /// The rows of the picture that are drawn, where it is drawn in bands.
+    band: Option<[u32; 2]>,
     /// Pieces of one path that is not opaque come together here before they are laid over the rest.
     layer: Option<Pixmap>,
 }
 
 impl Outline {
+    /// What is drawn of paths in a band of rows.
+    pub(super) fn of_rows(rows: Range<u32>) -> Self {
+        Self {
+            band: Some([rows.start, rows.end]),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn begin(&mut self, paint: Paint) {
         self.paint = paint;
     }
@@ -114,14 +128,18 @@ impl Outline {
             .or(paint.stroke.map(|stroke| stroke.colour))
             .map_or(255, |colour| colour.rgba()[3]);
         let in_pieces = opacity < 255 && (self.layer.is_some() || !is_whole);
+        let draw = |pixmap: &mut Pixmap, paint: &Paint| match self.band {
+            None => draw(pixmap, &path, paint),
+            Some(rows) => draw_band(pixmap, &path, paint, rows),
+        };
         if !in_pieces {
-            draw(pixmap, &path, &paint);
+            draw(pixmap, &paint);
             return;
         }
         let (width, height) = (pixmap.width(), pixmap.height());
         let mut layer = self.layer.take().or_else(|| Pixmap::new(width, height));
         if let Some(layer) = &mut layer {
-            draw(layer, &path, &opaque(paint));
+            draw(layer, &opaque(paint));
             if is_whole {
                 let over = PixmapPaint {
                     opacity: f32::from(opacity) / 255.0,
@@ -157,6 +175,25 @@ fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
         && stroke.pen.width > 0.0
     {
         pixmap.stroke_path(path, &ink(stroke.colour), &shape(&stroke), none, None);
+    }
+}
+
+/// Draws what rows of a picture show of a path.
+fn draw_band(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint, rows: [u32; 2]) {
+    let none = Transform::identity();
+    let mut fill = |path: Option<tiny_skia::Path>, colour| {
+        if let Some(path) = path {
+            pixmap.fill_path(&path, &ink(colour), FillRule::Winding, none, None);
+        }
+    };
+    if let Some(colour) = paint.fill {
+        fill(split(path, rows), colour);
+    }
+    if let Some(stroke) = paint.stroke
+        && stroke.pen.width > 0.0
+        && let Some(outline) = path.stroke(&shape(&stroke), 1.0)
+    {
+        fill(split(&outline, rows), stroke.colour);
     }
 }
 

@@ -140,15 +140,21 @@ impl Plane {
     fn near_hair(&mut self, pen: &HairPen, from: Position, to: Position, ends: bool) {
         let way = [to[0] - from[0], to[1] - from[1]];
         let [across, down] = way.map(|along| along as f32);
-        let length = (across * across + down * down).sqrt() + if ends { pen.ends } else { 0.0 };
-        let ink = length * pen.ink;
+        let length = (across * across + down * down).sqrt();
+        let ends = if ends { pen.ends } else { 0.0 };
         // Twice the middle, so that halves are whole.
         let middle = [from[0] + to[0], from[1] + to[1]];
         let extent = way.map(i64::abs);
         let longest = extent[0].max(extent[1]);
         if longest <= PIECE {
+            let ink = (length + ends) * pen.ink;
             self.blot(middle, extent.map(|extent| extent + pen.width), ink);
         } else {
+            // Where the line begins: whether it does is not seen from far along it.
+            if ends > 0.0 {
+                self.blot(from.map(|at| 2 * at), [pen.width; 2], ends * pen.ink);
+            }
+            let ink = length * pen.ink;
             let pieces = (longest + PIECE - 1) / PIECE;
             let step = way.map(|along| (along << (PLACES + 1)) / pieces);
             let extent = extent.map(|extent| extent / pieces + pen.width);
@@ -169,7 +175,8 @@ impl Plane {
         reason = "casts from floats saturate"
     )]
     fn blot(&mut self, middle: [i64; 2], extent: [i64; 2], ink: f32) {
-        let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * MARGIN);
+        let first = [MARGIN, MARGIN - self.top];
+        let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * first[axis]);
         // What is negative becomes larger than any plane.
         let cell = least.map(|least| index(least) / (2 * FINE) as usize);
         let [most_columns, most_rows] = self.size.map(|side| index(side + 2 * MARGIN) - 2);
@@ -178,7 +185,7 @@ impl Plane {
         }
         let within = [0, 1].map(|axis| least[axis] - cell[axis] as i64 * 2 * FINE);
         let beyond = [0, 1].map(|axis| within[axis] + 2 * extent[axis] - 2 * FINE);
-        let [column, row] = cell.map(|cell| cell as i64 - MARGIN);
+        let [column, row] = [0, 1].map(|axis| cell[axis] as i64 - first[axis]);
         self.touched.add([column, column + 1], [row, row + 1]);
         let start = cell[1] * self.stride + cell[0];
         let cells = &self.hairs.cells[start..start + self.stride + 2];

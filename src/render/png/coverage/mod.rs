@@ -12,6 +12,7 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 
 pub(crate) use curve::flattened;
@@ -52,8 +53,11 @@ fn mask(covers: impl Fn([f64; 2]) -> bool) -> u64 {
 
 /// Which samples of a picture are covered.
 pub(crate) struct Plane {
-    /// Width and height in pixels.
+    /// Width and height in pixels, of the picture and of the rows that the plane has of it,
+    picture: [i64; 2],
     size: [i64; 2],
+    /// of which this is the first.
+    top: i64,
     /// The cells of a row, the margins' among them.
     stride: usize,
     /// By rows. Atomic so that the compiler does not join neighbours into wider stores: prints
@@ -91,11 +95,22 @@ impl Plane {
     pub(crate) const BYTES: u64 = 12;
 
     /// A plane where nothing is covered.
-    pub(crate) fn new([width, height]: [u32; 2]) -> Self {
-        let size = [i64::from(width), i64::from(height)];
+    #[cfg(test)]
+    pub(crate) fn new(size: [u32; 2]) -> Self {
+        Self::of_rows(size, 0..size[1])
+    }
+
+    /// One of some rows of a picture. Positions are those in the picture, and what is covered is
+    /// what the plane of all of it would have covered in these rows.
+    pub(crate) fn of_rows([width, height]: [u32; 2], rows: Range<u32>) -> Self {
+        let picture = [i64::from(width), i64::from(height)];
+        let top = i64::from(rows.start);
+        let size = [picture[0], i64::from(rows.end) - top];
         let [stride, rows] = size.map(|side| index(side + 2 * MARGIN));
         Self {
+            picture,
             size,
+            top,
             stride,
             cells: (0..stride * rows).map(|_| AtomicU64::new(0)).collect(),
             hairs: Hairs::default(),
@@ -105,8 +120,9 @@ impl Plane {
 
     /// The rows and columns, the margins among them, where something may be covered, which is then
     /// forgotten.
-    fn take_touched(&mut self) -> [std::ops::Range<usize>; 2] {
+    fn take_touched(&mut self) -> [Range<usize>; 2] {
         let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
+        let rows = rows.map(|row| row.saturating_sub(self.top));
         let range = |[first, last]: [i64; 2], side: i64| {
             let (first, last) = (first.max(-MARGIN), last.min(side + MARGIN - 1));
             if first > last {

@@ -157,7 +157,8 @@ impl Plane {
     #[inline(always)]
     fn print<const SIDE: usize>(&mut self, prints: &[Print<SIDE>], corner: [i64; 2]) {
         let [x, y] = corner.map(place);
-        let (column, row) = ((x >> STEP_BITS) + MARGIN, (y >> STEP_BITS) + MARGIN);
+        let (column, row) = (x >> STEP_BITS, (y >> STEP_BITS) - self.top);
+        let (column, row) = (column + MARGIN, row + MARGIN);
         let (column, row) = (index(column), index(row));
         let [most_columns, most_rows] = self.size.map(|side| index(side + MARGIN));
         if column > most_columns || row > most_rows {
@@ -185,14 +186,14 @@ impl Plane {
     #[inline]
     pub(super) fn is_near(&self, [x, y]: Position) -> bool {
         // What lies too far left or above is larger than any side.
-        let most = self.size.map(|side| index((side + 2 * MARGIN) * FINE));
+        let most = self.picture.map(|side| index((side + 2 * MARGIN) * FINE));
         index(x + MARGIN * FINE) <= most[0] && index(y + MARGIN * FINE) <= most[1]
     }
 
     /// The part of a line that lies near enough to be seen.
     #[cold]
     pub(super) fn clipped(&self, from: Position, to: Position) -> Option<[Position; 2]> {
-        clipped(from, to, self.size.map(|side| (side + MARGIN) * FINE))
+        clipped(from, to, self.picture.map(|side| (side + MARGIN) * FINE))
     }
 }
 

@@ -157,9 +157,10 @@ impl Plane {
             return false;
         };
         let pixels = |axis: usize| {
-            let first = least[axis].div_euclid(FINE).max(-MARGIN);
+            let origin = [0, self.top][axis];
+            let first = least[axis].div_euclid(FINE).max(origin - MARGIN);
             let last = most[axis].div_euclid(FINE);
-            [first, last.min(self.size[axis] + MARGIN - 1)]
+            [first, last.min(origin + self.size[axis] + MARGIN - 1)]
         };
         let (columns, rows) = (pixels(0), pixels(1));
         if orientation == 0 || columns[0] > columns[1] || rows[0] > rows[1] {
@@ -185,7 +186,7 @@ impl Plane {
         let table = HALF_PLANES.as_slice();
         let width = index(columns[1] - columns[0] + 1);
         for row in rows[0]..=rows[1] {
-            let start = index(row + MARGIN) * self.stride + index(columns[0] + MARGIN);
+            let start = index(row - self.top + MARGIN) * self.stride + index(columns[0] + MARGIN);
             for (cell, column) in self.cells[start..start + width].iter_mut().zip(0..) {
                 *cell.get_mut() |= edges.iter().fold(u64::MAX, |mask, edge| {
                     mask & edge.mask(table, edge.area + column * edge.right)

@@ -1,0 +1,161 @@
+use crate::geometry::DVec2;
+use crate::render::surface::Position;
+
+/// Curves are drawn as lines that are no farther from them than this: 0.05 units of the picture.
+const FLAT: f64 = 5.0;
+
+/// A window in which lines are drawn, in positions of the picture, and where positions in it start.
+#[derive(Clone, Copy)]
+pub(super) struct Window {
+    origin: Position,
+    low: Position,
+    high: Position,
+}
+
+impl Window {
+    /// All of a picture.
+    pub(super) fn of(size: [u32; 2]) -> Self {
+        Self {
+            origin: [0; 2],
+            low: [0; 2],
+            high: fine(size),
+        }
+    }
+
+    /// A part of it, with corner and size.
+    pub(super) fn part(&self, corner: [u32; 2], size: [u32; 2]) -> Self {
+        let (corner, size) = (fine(corner), fine(size));
+        let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis]);
+        Self {
+            origin,
+            low: [0, 1].map(|axis| self.low[axis].max(origin[axis])),
+            high: [0, 1].map(|axis| self.high[axis].min(origin[axis] + size[axis])),
+        }
+    }
+
+    /// Where a position of the window is in the picture.
+    #[inline]
+    pub(super) fn place(&self, position: Position) -> Position {
+        [0, 1].map(|axis| self.origin[axis].saturating_add(position[axis]))
+    }
+
+    /// What of a line lies in the window, if anything does (Liang & Barsky 1984). Ends that lie in
+    /// it stay where they are.
+    pub(super) fn clip(&self, [from, to]: [Position; 2]) -> Option<[Position; 2]> {
+        let holds = |at: Position| {
+            (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&at[axis]))
+        };
+        if holds(from) && holds(to) {
+            return Some([from, to]);
+        }
+        let (mut enter, mut leave) = (0.0, 1.0);
+        let start = vector(from);
+        let along = vector(to) - start;
+        for axis in 0..2 {
+            let [low, high] = [self.low, self.high].map(vector);
+            if along[axis] == 0.0 {
+                if start[axis] < low[axis] || start[axis] > high[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let [a, b] = [low, high].map(|edge| (edge[axis] - start[axis]) / along[axis]);
+            enter = f64::max(enter, a.min(b));
+            leave = f64::min(leave, a.max(b));
+        }
+        let at = |part: f64| {
+            let inside = nearest(start + along * part);
+            [0, 1].map(|axis| inside[axis].clamp(self.low[axis], self.high[axis]))
+        };
+        (enter <= leave).then(|| {
+            [
+                if enter > 0.0 { at(enter) } else { from },
+                if leave < 1.0 { at(leave) } else { to },
+            ]
+        })
+    }
+}
+
+/// The vertices of lines along a cubic curve after its start: the same ones from either end.
+pub(super) fn flattened(curve: [Position; 4]) -> Vec<Position> {
+    let backwards = curve[0] > curve[3];
+    let mut points = curve.map(vector);
+    if backwards {
+        points.reverse();
+    }
+    let [a, b, c, d] = points;
+    let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
+    // A chord of 1/n of the parameter is no farther away than 6 bend / 8 n².
+    let count = (0.75 * bend / FLAT).sqrt().ceil().clamp(1.0, 10_000.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within these bounds"
+    )]
+    let inner = (1..count as u32).map(|number| {
+        let t = f64::from(number) / count;
+        let s = 1.0 - t;
+        nearest(a * s * s * s + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * t * t * t)
+    });
+    let mut vertices: Vec<_> = inner.collect();
+    if backwards {
+        vertices.reverse();
+    }
+    vertices.push(curve[3]);
+    vertices
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "what lies on a picture is exact"
+)]
+fn vector(position: Position) -> DVec2 {
+    DVec2::new(position[0] as f64, position[1] as f64)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn nearest(point: DVec2) -> Position {
+    [point.x.round() as i64, point.y.round() as i64]
+}
+
+fn fine(pixels: [u32; 2]) -> Position {
+    pixels.map(|side| i64::from(side) * 100)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Window, flattened};
+
+    #[test]
+    fn what_lies_outside_is_cut_off() {
+        let window = Window::of([10, 10]).part([2, 2], [4, 20]);
+        let cases = [
+            ([[300, 300], [400, 900]], Some([[300, 300], [400, 900]])),
+            ([[0, 500], [1000, 500]], Some([[200, 500], [600, 500]])),
+            ([[300, 900], [300, 1100]], Some([[300, 900], [300, 1000]])),
+            ([[0, 0], [400, 400]], Some([[200, 200], [400, 400]])),
+            ([[0, 300], [100, 900]], None),
+            ([[0, 900], [300, 1600]], None),
+        ];
+        for (line, expected) in cases {
+            assert_eq!(window.clip(line), expected, "{line:?}");
+        }
+        assert_eq!(window.place([5, 7]), [205, 207]);
+    }
+
+    #[test]
+    fn curves_have_the_same_vertices_from_either_end() {
+        let curve = [[0, 0], [333, 1000], [701, -900], [1000, 117]];
+        let mut there = vec![curve[0]];
+        there.extend(flattened(curve));
+        let [a, b, c, d] = curve;
+        let mut back = vec![d];
+        back.extend(flattened([d, c, b, a]));
+        back.reverse();
+        assert_eq!(there, back);
+        assert!(there.len() > 10);
+    }
+}

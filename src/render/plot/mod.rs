@@ -1,0 +1,337 @@
+//! Plots: what a machine draws with a pen, or cuts, line by line.
+//!
+//! A picture's paths are taken as strokes, outlines of what is filled too, and put in order: what
+//! lies on what has been drawn is left out, strokes whose ends meet become one, and the pen is carried
+//! over short ways. Every colour is a layer, a pen of its own; where two colours draw the same edge,
+//! the layer that is begun later has it, as on the picture it lies on top.
+//!
+//! All of it is in memory: some hundred bytes an edge.
+
+mod clip;
+mod merge;
+mod order;
+mod points;
+mod strokes;
+mod tree;
+mod unique;
+
+use std::io;
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::grow::WalkError;
+use crate::parallel::{Team, with_team};
+use crate::style::Colour;
+
+use super::surface::{Paint, Pen, Position, Stroke, Surface};
+use super::{Drawing, RenderError, Unit};
+use clip::{Window, flattened};
+use merge::merged;
+use order::{Order, Way};
+use points::{Point, Points, vector};
+use strokes::{Strokes, is_closed};
+use unique::Unique;
+
+/// What a plot takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Plotted {
+    /// The number of strokes, one after each lift of the pen.
+    pub strokes: u64,
+    /// The number of layers, one a colour.
+    pub layers: u64,
+    /// How far the pen draws, in millimetres.
+    pub drawn: f64,
+    /// How far it is carried, in millimetres: in every layer from the upper left corner to the first
+    /// stroke and from stroke to stroke,
+    pub carried: f64,
+    /// and how far it would be if the strokes came in the order of the picture.
+    pub carried_as_drawn: f64,
+    /// How many edges, or pieces of them, have been left out because they had been drawn.
+    pub repeated: u64,
+}
+
+/// Takes what is drawn as strokes.
+struct Plotter {
+    window: Window,
+    outer: Vec<Window>,
+    points: Points,
+    /// What each colour draws.
+    layers: Vec<(Colour, Strokes)>,
+    /// The layer of the path.
+    layer: usize,
+    /// Where the path is and where its subpath starts, in the picture,
+    at: Position,
+    start: Position,
+    /// and where the pen is, as long as it is down.
+    pen: Option<Position>,
+    is_full: bool,
+}
+
+impl Plotter {
+    fn new(size: [u32; 2]) -> Self {
+        Self {
+            window: Window::of(size),
+            outer: Vec::new(),
+            points: Points::default(),
+            layers: Vec::new(),
+            layer: 0,
+            at: [0; 2],
+            start: [0; 2],
+            pen: None,
+            is_full: false,
+        }
+    }
+
+    fn draw_to(&mut self, to: Position) {
+        let from = std::mem::replace(&mut self.at, to);
+        let Some([from, to]) = self.window.clip([from, to]) else {
+            return;
+        };
+        let Some((_, strokes)) = self.layers.get_mut(self.layer) else {
+            return;
+        };
+        if self.pen != Some(from) {
+            match self.points.at(from) {
+                Some(point) => strokes.begin(point),
+                None => self.is_full = true,
+            }
+        }
+        match self.points.at(to) {
+            Some(point) => strokes.go_on(point),
+            None => self.is_full = true,
+        }
+        self.pen = Some(to);
+    }
+
+    fn lift(&mut self) {
+        self.pen = None;
+        if let Some((_, strokes)) = self.layers.get_mut(self.layer) {
+            strokes.end();
+        }
+    }
+}
+
+impl Surface for Plotter {
+    fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        let stroke = paint.stroke.map(|stroke| stroke.colour);
+        let colour = stroke.or(paint.fill).unwrap_or(Colour::BLACK).opaque();
+        let known = self.layers.iter().position(|layer| layer.0 == colour);
+        self.layer = known.unwrap_or_else(|| {
+            self.layers.push((colour, Strokes::default()));
+            self.layers.len() - 1
+        });
+        Ok(())
+    }
+
+    fn move_to(&mut self, to: Position) {
+        self.lift();
+        self.at = self.window.place(to);
+        self.start = self.at;
+    }
+
+    fn line_to(&mut self, to: Position) {
+        self.draw_to(self.window.place(to));
+    }
+
+    fn curve_to(&mut self, a: Position, b: Position, to: Position) {
+        let [a, b, to] = [a, b, to].map(|position| self.window.place(position));
+        for vertex in flattened([self.at, a, b, to]) {
+            self.draw_to(vertex);
+        }
+    }
+
+    fn close(&mut self) {
+        self.draw_to(self.start);
+        self.lift();
+    }
+
+    fn hand_on(&mut self) -> io::Result<()> {
+        if self.is_full {
+            return Err(io::Error::other("a plot has room for 2^32 points"));
+        }
+        Ok(())
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.lift();
+        self.hand_on()
+    }
+
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+        let part = self.window.part(corner, size);
+        self.outer.push(std::mem::replace(&mut self.window, part));
+        Ok(())
+    }
+
+    fn leave(&mut self) -> io::Result<()> {
+        self.window = self.outer.pop().unwrap_or(self.window);
+        Ok(())
+    }
+
+    fn label(&mut self, _: &str) {}
+}
+
+/// A plot that is ready to be written.
+pub(super) struct Plot {
+    size: [u32; 2],
+    pen: Pen,
+    places: Vec<[i32; 2]>,
+    layers: Vec<Layer>,
+    pub(super) plotted: Plotted,
+}
+
+/// What is drawn with one pen.
+struct Layer {
+    colour: Colour,
+    strokes: Strokes,
+    order: Order,
+}
+
+impl Plot {
+    /// A drawing as strokes.
+    pub(super) fn of(
+        drawing: &impl Drawing,
+        unit: Unit,
+        threads: NonZero<usize>,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, RenderError> {
+        let size = drawing.size();
+        let Plotter { points, layers, .. } =
+            with_team(threads, |team| -> Result<_, RenderError> {
+                let mut plotter = Plotter::new(size);
+                drawing.draw(&mut plotter, team)?;
+                Ok(plotter)
+            })?;
+        let go_on = || match cancel {
+            Some(cancel) if cancel.load(Ordering::Relaxed) => {
+                Err(RenderError::Walk(WalkError::Cancelled))
+            }
+            _ => Ok(()),
+        };
+        let mut plot = Self {
+            size,
+            pen: drawing.pen(),
+            places: points.places(),
+            layers: Vec::new(),
+            plotted: Plotted::default(),
+        };
+        let places = plot.places.as_slice();
+        let mut unique = Unique::new(places);
+        // From the top down.
+        for (colour, strokes) in layers.into_iter().rev() {
+            let mut kept = Strokes::default();
+            for stroke in strokes.iter() {
+                go_on()?;
+                unique.add(stroke, &mut kept);
+            }
+            drop(strokes);
+            if kept.len() == 0 {
+                continue;
+            }
+            let strokes = merged(&kept);
+            go_on()?;
+            let as_drawn = Order::as_drawn(&strokes, places);
+            plot.plotted.carried_as_drawn += as_drawn.travel;
+            let order = as_drawn.shortened(&strokes, places);
+            plot.plotted.carried += order.travel;
+            plot.plotted.strokes += strokes.len() as u64;
+            for stroke in strokes.iter() {
+                let edges = stroke.windows(2).map(|edge| edge.iter().copied());
+                let ends = edges.map(|edge| edge.map(|point| vector(places[point as usize])));
+                let lengths = ends.map(|mut ends| match (ends.next(), ends.next()) {
+                    (Some(from), Some(to)) => from.distance(to),
+                    _ => 0.0,
+                });
+                plot.plotted.drawn += lengths.sum::<f64>();
+            }
+            plot.layers.push(Layer {
+                colour,
+                strokes,
+                order,
+            });
+        }
+        plot.plotted.repeated = unique.repeated;
+        plot.layers.reverse();
+        plot.plotted.layers = plot.layers.len() as u64;
+        let scale = unit.millimetres() / super::FINE;
+        let plotted = &mut plot.plotted;
+        for length in [
+            &mut plotted.drawn,
+            &mut plotted.carried,
+            &mut plotted.carried_as_drawn,
+        ] {
+            *length *= scale;
+        }
+        Ok(plot)
+    }
+
+    /// The colours of the layers, in order.
+    pub(super) fn colours(&self) -> impl Iterator<Item = Colour> {
+        self.layers.iter().map(|layer| layer.colour)
+    }
+
+    /// The strokes in the order in which they are drawn, each with its layer: vertices, and whether
+    /// the last is led back to the first, which is then not among them twice.
+    pub(super) fn each<E>(
+        &self,
+        mut draw: impl FnMut(usize, &[Position], bool) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut vertices = Vec::new();
+        for (number, layer) in self.layers.iter().enumerate() {
+            for turn in &layer.order.turns {
+                let stroke = layer.strokes.get(turn.stroke);
+                let place = |&point: &Point| self.places[point as usize].map(i64::from);
+                vertices.clear();
+                vertices.extend(stroke.iter().map(place));
+                let closed = is_closed(stroke);
+                if closed {
+                    vertices.pop();
+                }
+                match turn.way {
+                    Way::Forwards => {}
+                    Way::Backwards => vertices.reverse(),
+                    Way::From(vertex) => vertices.rotate_left(vertex),
+                }
+                draw(number, &vertices, closed)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drawing for Plot {
+    fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    fn background(&self) -> Option<Colour> {
+        None
+    }
+
+    fn pen(&self) -> Pen {
+        self.pen
+    }
+
+    fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
+        let paint = |colour| Paint {
+            fill: None,
+            stroke: Some(Stroke {
+                colour,
+                pen: self.pen,
+            }),
+        };
+        let paints: Vec<_> = self.colours().map(paint).collect();
+        self.each(|layer, vertices, closed| {
+            surface.begin(&paints[layer])?;
+            surface.move_to(vertices[0]);
+            for vertices in vertices[1..].chunks(1 << 8) {
+                surface.lines_to(vertices);
+                surface.hand_on()?;
+            }
+            if closed {
+                surface.close();
+            }
+            Ok(surface.end()?)
+        })
+    }
+}

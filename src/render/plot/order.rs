@@ -1,0 +1,184 @@
+use crate::geometry::DVec2;
+
+use super::points::{Point, vector};
+use super::strokes::{Strokes, is_closed};
+use super::tree::Tree;
+
+/// A stroke, and how it is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Turn {
+    pub(super) stroke: usize,
+    pub(super) way: Way,
+}
+
+/// Where a stroke begins.
+#[derive(Clone, Copy)]
+pub(super) enum Way {
+    Forwards,
+    Backwards,
+    /// At a vertex of one that is closed.
+    From(usize),
+}
+
+/// In what order strokes are drawn, and how far the pen is carried between them: from the upper left
+/// corner of the picture to the first, but not back.
+pub(super) struct Order {
+    pub(super) turns: Vec<Turn>,
+    pub(super) travel: f64,
+}
+
+/// Strokes from which an exchange reaches forward.
+const REACH: usize = 50;
+
+/// How often all strokes are tried for exchanges.
+const ROUNDS: usize = 10;
+
+impl Order {
+    /// The order in which they come.
+    pub(super) fn as_drawn(strokes: &Strokes, places: &[[i32; 2]]) -> Self {
+        let turns = (0..strokes.len()).map(|stroke| Turn {
+            stroke,
+            way: Way::Forwards,
+        });
+        Self::of(turns.collect(), strokes, places)
+    }
+
+    fn of(turns: Vec<Turn>, strokes: &Strokes, places: &[[i32; 2]]) -> Self {
+        let ends = |turn: &Turn| ends(turn, strokes, places);
+        let mut at = DVec2::ZERO;
+        let mut travel = 0.0;
+        for [from, to] in turns.iter().map(ends) {
+            travel += at.distance(from);
+            at = to;
+        }
+        Self { turns, travel }
+    }
+
+    /// An order in which the pen is carried less far, if one is found: from stroke to nearest stroke,
+    /// at either end or at any vertex of one that is closed, then by reversing stretches of the
+    /// order where that is shorter (2-opt, Croes 1958).
+    pub(super) fn shortened(self, strokes: &Strokes, places: &[[i32; 2]]) -> Self {
+        let nearest = Self::of(by_nearest(strokes, places), strokes, places);
+        let better = [self, nearest].map(|order| exchanged(order, strokes, places));
+        let [drawn, nearest] = better;
+        if nearest.travel < drawn.travel {
+            nearest
+        } else {
+            drawn
+        }
+    }
+}
+
+/// Where a stroke begins and ends.
+fn ends(turn: &Turn, strokes: &Strokes, places: &[[i32; 2]]) -> [DVec2; 2] {
+    let stroke = strokes.get(turn.stroke);
+    let place = |vertex: usize| vector(places[stroke[vertex] as usize]);
+    let last = stroke.len() - 1;
+    match turn.way {
+        Way::Forwards => [place(0), place(last)],
+        Way::Backwards => [place(last), place(0)],
+        Way::From(vertex) => [place(vertex); 2],
+    }
+}
+
+/// Always to the nearest stroke.
+fn by_nearest(strokes: &Strokes, places: &[[i32; 2]]) -> Vec<Turn> {
+    let doors = |stroke: &[Point]| {
+        let last = stroke.len() - 1;
+        let vertices = if is_closed(stroke) {
+            0..last
+        } else {
+            0..last + 1
+        };
+        let step = if is_closed(stroke) { 1 } else { last };
+        vertices.step_by(step)
+    };
+    let mut all = Vec::new();
+    let mut owners = Vec::new();
+    for (number, stroke) in strokes.iter().enumerate() {
+        for vertex in doors(stroke) {
+            let item = u32::try_from(owners.len()).unwrap_or(u32::MAX);
+            all.push((places[stroke[vertex] as usize], item));
+            owners.push((number, vertex));
+        }
+    }
+    let firsts: Vec<_> = owners
+        .chunk_by(|a, b| a.0 == b.0)
+        .scan(0, |sum, owned| {
+            let first = *sum;
+            *sum += owned.len();
+            Some(first)
+        })
+        .collect();
+    let mut tree = Tree::new(all);
+    tree.fill();
+    let mut turns = Vec::with_capacity(strokes.len());
+    let mut at = DVec2::ZERO;
+    while let Some((_, item)) = tree.nearest(at) {
+        let (number, vertex) = owners[item as usize];
+        let stroke = strokes.get(number);
+        let way = match vertex {
+            vertex if is_closed(stroke) => Way::From(vertex),
+            0 => Way::Forwards,
+            _ => Way::Backwards,
+        };
+        let turn = Turn {
+            stroke: number,
+            way,
+        };
+        turns.push(turn);
+        at = ends(&turn, strokes, places)[1];
+        for (item, vertex) in (firsts[number]..).zip(doors(stroke)) {
+            let item = u32::try_from(item).unwrap_or(u32::MAX);
+            tree.remove(places[stroke[vertex] as usize], item);
+        }
+    }
+    turns
+}
+
+/// Reverses stretches of the order as long as that makes it shorter, within bounds.
+fn exchanged(order: Order, strokes: &Strokes, places: &[[i32; 2]]) -> Order {
+    let mut turns = order.turns;
+    let mut lines: Vec<_> = turns
+        .iter()
+        .map(|turn| ends(turn, strokes, places))
+        .collect();
+    for _ in 0..ROUNDS {
+        let mut is_better = false;
+        for first in 0..lines.len() {
+            let at = first
+                .checked_sub(1)
+                .map_or(DVec2::ZERO, |before| lines[before][1]);
+            for last in first..lines.len().min(first + REACH) {
+                let [begin, end] = [lines[first][0], lines[last][1]];
+                let next = lines.get(last + 1).map(|line| line[0]);
+                let on = |from: DVec2| next.map_or(0.0, |next| from.distance(next));
+                let gain = at.distance(begin) + on(end) - at.distance(end) - on(begin);
+                // More than rounding, so that it ends.
+                if gain > 1e-3 {
+                    is_better = true;
+                    lines[first..=last].reverse();
+                    lines[first..=last]
+                        .iter_mut()
+                        .for_each(|ends| ends.reverse());
+                    turns[first..=last].reverse();
+                    turns[first..=last].iter_mut().for_each(Turn::turn);
+                }
+            }
+        }
+        if !is_better {
+            break;
+        }
+    }
+    Order::of(turns, strokes, places)
+}
+
+impl Turn {
+    fn turn(&mut self) {
+        self.way = match self.way {
+            Way::Forwards => Way::Backwards,
+            Way::Backwards => Way::Forwards,
+            from @ Way::From(_) => from,
+        };
+    }
+}

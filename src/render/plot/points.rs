@@ -1,0 +1,114 @@
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+use crate::geometry::DVec2;
+use crate::render::surface::Position;
+
+/// Positions no farther apart than this are one point: 0.02 units of the picture, which is what
+/// rounding makes of one place that is computed in several ways.
+pub(super) const MEET: i32 = 2;
+
+/// A point of a plot: its place among all of them.
+pub(super) type Point = u32;
+
+/// The points of a plot.
+#[derive(Default)]
+pub(super) struct Points {
+    places: Vec<[i32; 2]>,
+    /// The point in a square with sides of [`MEET`]: no two fit in.
+    squares: HashMap<u64, Point, BuildHasherDefault<Mix>>,
+}
+
+impl Points {
+    /// The point at a position, a new one if there is none; nothing if there are too many.
+    pub(super) fn at(&mut self, position: Position) -> Option<Point> {
+        let place = [
+            i32::try_from(position[0]).ok()?,
+            i32::try_from(position[1]).ok()?,
+        ];
+        let square = place.map(|value| value.div_euclid(MEET));
+        if let Some(&known) = self.squares.get(&key(square)) {
+            return Some(known);
+        }
+        let near = |by: [i32; 2]| {
+            let other = [square[0] + by[0], square[1] + by[1]];
+            let known = *self.squares.get(&key(other))?;
+            let [x, y] = self.places[known as usize];
+            let [x, y] = [i64::from(x - place[0]), i64::from(y - place[1])];
+            (x * x + y * y <= i64::from(MEET * MEET)).then_some(known)
+        };
+        const AROUND: [[i32; 2]; 8] = [
+            [-1, 0],
+            [1, 0],
+            [0, -1],
+            [0, 1],
+            [-1, -1],
+            [1, -1],
+            [-1, 1],
+            [1, 1],
+        ];
+        if let Some(known) = AROUND.into_iter().find_map(near) {
+            return Some(known);
+        }
+        let new = Point::try_from(self.places.len()).ok()?;
+        self.places.push(place);
+        self.squares.insert(key(square), new);
+        Some(new)
+    }
+
+    /// The points alone, once there are no more to come.
+    pub(super) fn places(self) -> Vec<[i32; 2]> {
+        self.places
+    }
+}
+
+/// A place as a vector.
+pub(super) fn vector([x, y]: [i32; 2]) -> DVec2 {
+    DVec2::new(x.into(), y.into())
+}
+
+fn key([x, y]: [i32; 2]) -> u64 {
+    u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned())
+}
+
+/// Mixes the bits of a word: these tables are never walked over, so their order does not matter.
+#[derive(Default)]
+pub(super) struct Mix(u64);
+
+impl Hasher for Mix {
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u64(byte.into());
+        }
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        let mixed = u128::from(self.0 ^ word) * 0x9E37_79B9_7F4A_7C15;
+        #[expect(clippy::cast_possible_truncation, reason = "both halves are used")]
+        {
+            self.0 = (mixed >> 64) as u64 ^ mixed as u64;
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Points;
+
+    #[test]
+    fn what_rounding_moves_stays_one_point() {
+        let mut points = Points::default();
+        let first = points.at([100, -7]).unwrap();
+        for near in [[101, -7], [99, -8], [102, -7], [100, -9], [98, -7]] {
+            assert_eq!(points.at(near), Some(first), "{near:?}");
+        }
+        for far in [[104, -7], [96, -7], [100, -3]] {
+            assert_ne!(points.at(far), Some(first), "{far:?}");
+        }
+        assert_eq!(points.at([i64::MAX, 0]), None);
+    }
+}

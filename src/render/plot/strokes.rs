@@ -1,0 +1,62 @@
+use super::points::Point;
+
+/// Strokes one after another, each of two points or more; one that ends where it begins is closed.
+#[derive(Clone, Default)]
+pub(super) struct Strokes {
+    points: Vec<Point>,
+    /// Where strokes end among the points.
+    ends: Vec<usize>,
+}
+
+impl Strokes {
+    /// Begins a stroke, and ends the one before.
+    pub(super) fn begin(&mut self, at: Point) {
+        self.end();
+        self.points.push(at);
+    }
+
+    /// Goes on with the stroke; to stay is nothing.
+    pub(super) fn go_on(&mut self, to: Point) {
+        if self.points.last() != Some(&to) {
+            self.points.push(to);
+        }
+    }
+
+    /// Ends the stroke; one that has gone nowhere is none.
+    pub(super) fn end(&mut self) {
+        let start = self.ends.last().copied().unwrap_or(0);
+        match self.points.len() - start {
+            0 => {}
+            1 => self.points.truncate(start),
+            _ => self.ends.push(self.points.len()),
+        }
+    }
+
+    /// Where the stroke is, to go back to.
+    pub(super) fn mark(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Goes back to a place on the stroke that has been gone on with.
+    pub(super) fn go_back(&mut self, mark: usize) {
+        self.points.truncate(mark);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    pub(super) fn get(&self, number: usize) -> &[Point] {
+        let start = number.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.points[start..self.ends[number]]
+    }
+
+    pub(super) fn iter(&self) -> impl DoubleEndedIterator<Item = &[Point]> {
+        (0..self.len()).map(|number| self.get(number))
+    }
+}
+
+/// Whether a stroke ends where it begins.
+pub(super) fn is_closed(stroke: &[Point]) -> bool {
+    stroke.first() == stroke.last()
+}

@@ -1,0 +1,162 @@
+//! Pictures that are drawn in bands are the same pictures.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+
+use std::num::NonZero;
+
+use kfrac::graph::Graph;
+use kfrac::grow::{Growth, Progress};
+use kfrac::render::{self, Detail, Format, Options, Size};
+use kfrac::style::{Cap, ColorBy, Colour, Join, Width};
+
+/// The file of a rule of the library, drawn in bands of so many pixels or in one piece.
+fn png(name: &str, steps: u32, band: Option<u64>, change: &dyn Fn(&mut Options)) -> Vec<u8> {
+    let document = common::document(name);
+    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+    let graph = Graph::compile(&rule, steps).unwrap();
+    let mut options = Options {
+        style: rule.style().clone(),
+        format: Format::Png,
+        size: Size::Long(90),
+        threads: NonZero::<usize>::MIN,
+        ..Options::default()
+    };
+    if let Some(band) = band {
+        (options.in_one_piece, options.band) = (0, band);
+    }
+    change(&mut options);
+    let mut bytes = Vec::new();
+    render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
+    bytes
+}
+
+/// All pixels, and some twenty rows.
+const BANDS: [u64; 2] = [u64::MAX, 1_700];
+
+const STYLES: [fn(&mut Options); 9] = [
+    |_| {},
+    |options| options.style.width = Width::Pixels(0.1),
+    |options| options.style.width = Width::Relative(0.05),
+    |options| options.style.width = Width::Pixels(5.5),
+    |options| {
+        options.style.width = Width::Pixels(4.0);
+        (options.style.cap, options.style.join) = (Cap::Butt, Join::Miter);
+        options.style.stroke = Some(Colour::of_rgba([200, 0, 90, 120]));
+        options.style.color_by = ColorBy::None;
+    },
+    |options| {
+        options.style.fill = Some(Colour::of_rgba([0, 90, 30, 150]));
+        options.style.background = Some(Colour::grey(250));
+    },
+    |options| options.style.color_by = ColorBy::Step,
+    |options| options.style.color_by = ColorBy::Index,
+    |options| {
+        options.view.window = Some([0.1, 0.05, 0.5, 0.3]);
+        options.detail = Some(Detail {
+            pixels: 2.0,
+            decides_steps: false,
+        });
+    },
+];
+
+#[test]
+fn the_height_of_bands_does_not_show() {
+    let rules = [
+        ("koch-snowflake", 3),
+        ("pythagoras-squares", 5),
+        ("hilbert", 3),
+        ("fern", 3),
+        ("random-tree", 4),
+    ];
+    for (name, steps) in rules {
+        for (number, style) in STYLES.iter().enumerate() {
+            let whole = png(name, steps, Some(BANDS[0]), style);
+            let drawn = png(name, steps, Some(BANDS[1]), style);
+            assert!(drawn == whole, "{name}, style {number}");
+        }
+    }
+}
+
+/// What is drawn as coverage, strokes of thin round pens and small polygons, does not know of bands.
+#[test]
+fn what_is_drawn_in_one_piece_is_the_same_in_bands() {
+    for (name, steps) in [("koch", 5), ("levy", 8), ("gosper", 2)] {
+        for width in [0.2, 1.5, 3.0] {
+            let style = |options: &mut Options| options.style.width = Width::Pixels(width);
+            let one = png(name, steps, None, &style);
+            for band in BANDS {
+                assert!(
+                    png(name, steps, Some(band), &style) == one,
+                    "{name}, {width}"
+                );
+            }
+            let threads = |options: &mut Options| {
+                style(options);
+                options.threads = NonZero::new(3).unwrap();
+            };
+            assert!(
+                png(name, steps, Some(1), &threads) == one,
+                "{name}, {width}"
+            );
+        }
+    }
+}
+
+#[test]
+fn progress_counts_pixels() {
+    let koch = common::resolved(&common::document("koch"), &[]);
+    let graph = Graph::compile(&koch, 12).unwrap();
+    let options = Options {
+        format: Format::Png,
+        in_one_piece: 0,
+        band: 12_000,
+        size: Size::Long(600),
+        threads: NonZero::<usize>::MIN,
+        detail: Some(Detail {
+            pixels: 1.0,
+            decides_steps: false,
+        }),
+        ..Options::default()
+    };
+    let progress = Progress::default();
+    let growth = Growth {
+        progress: Some(&progress),
+        ..Growth::steps(12)
+    };
+    let mut bytes = Vec::new();
+    let picture = render::write(&graph, &growth, &options, &mut bytes).unwrap();
+    // Two looks at every pixel, and the survey.
+    let [width, height] = picture.size.map(u64::from);
+    assert!(progress.walked() >= 2 * width * height);
+    assert!(progress.expected() >= Some(progress.walked()));
+}
+
+#[test]
+fn the_command_line_says_how_long_bands_take() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let arguments = [
+        "grow",
+        "koch",
+        "--steps",
+        "3",
+        "--size",
+        "67200x1000",
+        "-o",
+        "wide.png",
+    ];
+    let output = command
+        .current_dir(folder.path())
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let note =
+        "note: 67200 x 1000 pixels are drawn in bands, in about 1 s\nwide.png: step 3 of koch, ";
+    assert!(said.starts_with(note), "{said}");
+    let bytes = std::fs::read(folder.path().join("wide.png")).unwrap();
+    // The width and height that PNG has in its first chunk.
+    assert_eq!(bytes[16..24], [0, 1, 6, 128, 0, 0, 3, 232]);
+}

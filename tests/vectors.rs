@@ -1,0 +1,101 @@
+//! What other programs read in our vector graphics: SVG, PDF and DXF, as they are and as plots.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+mod common;
+#[path = "vectors/paper.rs"]
+mod paper;
+#[path = "vectors/plots.rs"]
+mod plots;
+#[path = "vectors/readers.rs"]
+mod readers;
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use kfrac::graph::Graph;
+use kfrac::grow::Growth;
+use kfrac::render::{self, Format, Options, Picture, Size, Unit};
+use kfrac::rule::Rule;
+use kfrac::style::{Style, Width};
+
+/// A rule of the library.
+fn library(name: &str) -> Arc<Rule> {
+    common::document(name)
+        .resolve(&[])
+        .unwrap()
+        .0
+        .into_rule()
+        .unwrap()
+}
+
+/// A rule that is written in a test.
+fn written(text: &str) -> Arc<Rule> {
+    common::resolved(&common::document_of(text), &[])
+}
+
+/// A picture of one colour and its bytes.
+fn draw(rule: &Arc<Rule>, steps: u32, change: impl FnOnce(&mut Options)) -> (Picture, Vec<u8>) {
+    let graph = Graph::compile(rule, steps).unwrap();
+    let mut options = Options {
+        style: Style {
+            width: Width::Pixels(1.5),
+            ..Style::default()
+        },
+        threads: NonZero::<usize>::MIN,
+        ..Options::default()
+    };
+    change(&mut options);
+    let mut bytes = Vec::new();
+    let picture = render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
+    (picture, bytes)
+}
+
+/// A plot, 200 mm on the long side.
+fn plot(rule: &Arc<Rule>, steps: u32, format: Format) -> (Picture, Vec<u8>) {
+    draw(rule, steps, |options| {
+        options.format = format;
+        options.plot = true;
+        options.unit = Unit::Tenth;
+        options.size = Size::Long(2000);
+    })
+}
+
+/// A stroke that has been read: its vertices in millimetres, y down, and whether it is closed.
+#[derive(Clone, Debug, Default)]
+struct Read {
+    vertices: Vec<[f64; 2]>,
+    closed: bool,
+    /// What is said of its colour.
+    ink: String,
+}
+
+impl Read {
+    fn edges(&self) -> Vec<[[f64; 2]; 2]> {
+        let pairs = self.vertices.windows(2).map(|pair| [pair[0], pair[1]]);
+        let last = [*self.vertices.last().unwrap(), self.vertices[0]];
+        pairs.chain(self.closed.then_some(last)).collect()
+    }
+}
+
+fn length([[a, b], [c, d]]: [[f64; 2]; 2]) -> f64 {
+    (c - a).hypot(d - b)
+}
+
+fn total(strokes: &[Read]) -> f64 {
+    strokes.iter().flat_map(Read::edges).map(length).sum()
+}
+
+/// The box of all vertices: least x and y, greatest x and y.
+fn bounds(strokes: &[Read]) -> [f64; 4] {
+    let mut bounds = [f64::INFINITY, f64::INFINITY, -f64::INFINITY, -f64::INFINITY];
+    for [x, y] in strokes.iter().flat_map(|stroke| &stroke.vertices) {
+        bounds = [
+            bounds[0].min(*x),
+            bounds[1].min(*y),
+            bounds[2].max(*x),
+            bounds[3].max(*y),
+        ];
+    }
+    bounds
+}

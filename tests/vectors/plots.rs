@@ -1,0 +1,196 @@
+//! Plots: nothing is drawn twice, nothing is left out, and the pen goes short ways.
+
+use std::collections::BTreeSet;
+use std::num::NonZero;
+
+use kfrac::graph::Graph;
+use kfrac::grow::Growth;
+use kfrac::render::{Format, Options, Size};
+use kfrac::style::{ColorBy, Colour};
+
+use crate::readers::read;
+use crate::{Read, bounds, common, draw, length, library, plot, total, written};
+
+const FORMATS: [Format; 3] = [Format::Svg, Format::Pdf, Format::Dxf];
+
+/// An edge on a lattice, from its lesser end.
+type Edge = [[i64; 2]; 2];
+
+/// Lines between points of a lattice, by its unit, from the lower left corner of all.
+fn on_lattice(edges: impl IntoIterator<Item = [[f64; 2]; 2]>, unit: f64) -> Vec<Edge> {
+    let edges: Vec<_> = edges.into_iter().collect();
+    let least = |axis: usize| {
+        let ends = edges.iter().flatten().map(|end| end[axis]);
+        ends.fold(f64::INFINITY, f64::min)
+    };
+    let low = [least(0), least(1)];
+    let place = |end: [f64; 2]| {
+        [0, 1].map(|axis| {
+            let steps = (end[axis] - low[axis]) / unit;
+            let whole = steps.round();
+            assert!((steps - whole).abs() < 0.01, "{steps}");
+            #[expect(clippy::cast_possible_truncation, reason = "a whole number")]
+            let whole = whole as i64;
+            whole
+        })
+    };
+    let edge = |[from, to]: [[f64; 2]; 2]| {
+        let [from, to] = [place(from), place(to)];
+        [from.min(to), from.max(to)]
+    };
+    edges.into_iter().map(edge).collect()
+}
+
+/// Lévy's curve at step 10 has edges of one length on a lattice, many of them more than once.
+#[test]
+fn coincident_edges_are_drawn_once() {
+    let levy = library("levy");
+    let graph = Graph::compile(&levy, 10).unwrap();
+    let grown = common::grown(&graph, &Growth::steps(10));
+    let elements = grown.iter().flat_map(|fractal| &fractal.elements);
+    let lines = elements.map(|element| element.frame.ends().map(|end| [end.x, -end.y]));
+    let lines: Vec<_> = lines.collect();
+    let all = on_lattice(lines.iter().copied(), 1.0 / 32.0);
+    let expected: BTreeSet<_> = all.iter().copied().collect();
+    assert_eq!(all.len() - expected.len(), 109);
+    for format in FORMATS {
+        let (picture, bytes) = plot(&levy, 10, format);
+        let plotted = picture.plotted.unwrap();
+        let strokes = read(format, &bytes);
+        let edges: Vec<_> = strokes.iter().flat_map(Read::edges).collect();
+        let unit = edges.iter().copied().map(length).sum::<f64>() / edges.len() as f64;
+        let drawn = on_lattice(edges, unit);
+        let once: BTreeSet<_> = drawn.iter().copied().collect();
+        assert_eq!(drawn.len(), once.len(), "{format:?}");
+        assert_eq!(once, expected, "{format:?}");
+        assert_eq!(plotted.repeated, 109);
+        assert_eq!(plotted.strokes, strokes.len() as u64);
+        assert!((total(&strokes) - plotted.drawn).abs() < 1e-3 * plotted.drawn);
+    }
+}
+
+#[test]
+fn edges_that_overlap_in_part_are_drawn_once() {
+    // From 0 to 3, and on from 2 to 5; at an angle, so that rounding matters.
+    for angle in ["0", "17", "45", "61.3"] {
+        let text = format!(
+            "params: {{a: {angle}}}\n\
+             initiator: [{{from: [0, 0], to: [3*cos(a), 3*sin(a)]}}, \
+             {{from: [5*cos(a), 5*sin(a)], to: [2*cos(a), 2*sin(a)], connected: false}}]\n\
+             generator: [[0, 0], [1/2, 0], [1, 0]]"
+        );
+        let rule = written(&text);
+        for steps in [0, 3] {
+            let (picture, bytes) = plot(&rule, steps, Format::Dxf);
+            let strokes = read(Format::Dxf, &bytes);
+            let [left, top, right, bottom] = bounds(&strokes);
+            let whole = (right - left).hypot(bottom - top);
+            assert!((total(&strokes) - whole).abs() < 0.02, "{angle}, {steps}");
+            assert!(picture.plotted.unwrap().repeated > 0);
+            assert_eq!(strokes.len(), 1, "{angle}, {steps}");
+        }
+    }
+}
+
+#[test]
+fn the_pen_is_not_carried_farther_than_before() {
+    for (name, steps) in [
+        ("levy", 12),
+        ("pythagoras", 7),
+        ("monkeys-tree", 3),
+        ("pythagoras-squares", 6),
+    ] {
+        let rule = library(name);
+        let (picture, bytes) = plot(&rule, steps, Format::Dxf);
+        let plotted = picture.plotted.unwrap();
+        assert!(plotted.carried <= plotted.carried_as_drawn, "{name}");
+        // As the reader sees it, from the upper left corner.
+        let mut at = [0.0; 2];
+        let mut carried = 0.0;
+        for stroke in read(Format::Dxf, &bytes) {
+            carried += length([at, stroke.vertices[0]]);
+            let closed = stroke.closed;
+            at = stroke.vertices[if closed { 0 } else { stroke.vertices.len() - 1 }];
+        }
+        let difference = (carried - plotted.carried).abs();
+        assert!(difference < 1e-3 * carried.max(1.0), "{name}");
+    }
+}
+
+#[test]
+fn outlines_of_what_is_filled_are_strokes() {
+    let square = "initiator: segment\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\n\
+                  base_element: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], closed: true}";
+    for format in FORMATS {
+        let (_, bytes) = plot(&written(square), 2, format);
+        let strokes = read(format, &bytes);
+        // Four squares in a row of 200 mm: 13 edges, which take three strokes.
+        let side = (bounds(&strokes)[2] - bounds(&strokes)[0]) / 4.0;
+        assert!((total(&strokes) - 13.0 * side).abs() < 0.05, "{strokes:?}");
+    }
+}
+
+#[test]
+fn colours_are_layers() {
+    let rule = library("pythagoras");
+    let draw = |format| {
+        draw(&rule, 4, |options| {
+            options.format = format;
+            options.plot = true;
+            options.style.color_by = ColorBy::Step;
+        })
+    };
+    let (picture, bytes) = draw(Format::Svg);
+    let layers = usize::try_from(picture.plotted.unwrap().layers).unwrap();
+    assert!(layers > 1);
+    let text = String::from_utf8(bytes).unwrap();
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let inkscape = "http://www.inkscape.org/namespaces/inkscape";
+    let is_layer =
+        |node: &roxmltree::Node<'_, '_>| node.attribute((inkscape, "groupmode")) == Some("layer");
+    let labels: BTreeSet<_> = document
+        .descendants()
+        .filter(is_layer)
+        .map(|node| node.attribute((inkscape, "label")).unwrap().to_owned())
+        .collect();
+    assert_eq!(labels.len(), layers);
+    for format in [Format::Svg, Format::Pdf, Format::Dxf] {
+        let (_, bytes) = draw(format);
+        let mut inks: Vec<_> = read(format, &bytes).into_iter().map(|it| it.ink).collect();
+        inks.dedup();
+        // One after another, and none again.
+        assert_eq!(inks.len(), layers, "{format:?}");
+    }
+}
+
+#[test]
+fn what_lies_outside_of_the_page_is_not_drawn() {
+    let koch = library("koch");
+    let (_, bytes) = draw(&koch, 5, |options: &mut Options| {
+        options.format = Format::Dxf;
+        options.size = Size::Exactly(400, 200);
+        options.view.window = Some([0.3, 0.1, 0.4, 0.2]);
+    });
+    let pixel = 25.4 / 96.0;
+    let [left, top, right, bottom] = bounds(&read(Format::Dxf, &bytes));
+    assert!(left >= -1e-6 && top >= -1e-6, "{left} {top}");
+    assert!(right <= 400.0 * pixel + 1e-6 && bottom <= 200.0 * pixel + 1e-6);
+    assert!(right - left > 300.0 * pixel);
+}
+
+#[test]
+fn plots_are_the_same_on_any_number_of_threads() {
+    let levy = library("levy");
+    for format in FORMATS {
+        let with = |threads: usize| {
+            draw(&levy, 13, |options| {
+                options.format = format;
+                options.plot = true;
+                options.style.stroke = Some(Colour::BLACK);
+                options.threads = NonZero::new(threads).unwrap();
+            })
+        };
+        let one = with(1);
+        assert!(one == with(2) && one == with(3), "{format:?}");
+    }
+}

@@ -1,0 +1,147 @@
+//! Strokes as other programs read them.
+
+use kfrac::render::Format;
+use resvg::tiny_skia::{PathSegment, Point};
+use resvg::usvg;
+
+use crate::Read;
+
+/// Millimetres to a pixel.
+const PIXEL: f64 = 25.4 / 96.0;
+/// Millimetres to a point.
+const INCH_72: f64 = 25.4 / 72.0;
+
+pub(crate) fn read(format: Format, bytes: &[u8]) -> Vec<Read> {
+    match format {
+        Format::Svg => svg(bytes),
+        Format::Pdf => pdf(bytes),
+        Format::Dxf => dxf(bytes),
+        Format::Png => unreachable!("pixels are no strokes"),
+    }
+}
+
+pub(crate) fn svg(bytes: &[u8]) -> Vec<Read> {
+    let tree = usvg::Tree::from_data(bytes, &usvg::Options::default()).unwrap();
+    let mut strokes = Vec::new();
+    group(tree.root(), &mut strokes);
+    strokes
+}
+
+fn group(of: &usvg::Group, strokes: &mut Vec<Read>) {
+    for node in of.children() {
+        match node {
+            usvg::Node::Group(inner) => group(inner, strokes),
+            usvg::Node::Path(path) => {
+                let map = path.abs_transform();
+                let ink = path.stroke().map(|stroke| format!("{:?}", stroke.paint()));
+                for segment in path.data().segments() {
+                    let place = |at: Point| {
+                        let (x, y) = (f64::from(at.x), f64::from(at.y));
+                        let x = x * f64::from(map.sx) + f64::from(map.tx);
+                        let y = y * f64::from(map.sy) + f64::from(map.ty);
+                        [x * PIXEL, y * PIXEL]
+                    };
+                    match segment {
+                        PathSegment::MoveTo(to) => strokes.push(Read {
+                            vertices: vec![place(to)],
+                            closed: false,
+                            ink: ink.clone().unwrap_or_default(),
+                        }),
+                        PathSegment::LineTo(to) | PathSegment::CubicTo(.., to) => {
+                            strokes.last_mut().unwrap().vertices.push(place(to));
+                        }
+                        PathSegment::QuadTo(..) => unreachable!("we write none"),
+                        PathSegment::Close => strokes.last_mut().unwrap().closed = true,
+                    }
+                }
+            }
+            _ => unreachable!("we write paths"),
+        }
+    }
+}
+
+/// The operators on a PDF's one page, with their operands, and its resources.
+pub(crate) fn operators(bytes: &[u8]) -> Vec<(String, Vec<lopdf::Object>)> {
+    let document = lopdf::Document::load_mem(bytes).unwrap();
+    let page = document.page_iter().next().unwrap();
+    let content = lopdf::content::Content::decode(&document.get_page_content(page)).unwrap();
+    let operations = content.operations.into_iter();
+    operations.map(|it| (it.operator, it.operands)).collect()
+}
+
+pub(crate) fn pdf(bytes: &[u8]) -> Vec<Read> {
+    let document = lopdf::Document::load_mem(bytes).unwrap();
+    let page = document.page_iter().next().unwrap();
+    let page = document.get_dictionary(page).unwrap();
+    let number = |object: &lopdf::Object| f64::from(object.as_float().unwrap());
+    let media = page.get(b"MediaBox").unwrap().as_array().unwrap();
+    let unit = page.get(b"UserUnit").map_or(1.0, number);
+    let top = number(&media[3]);
+    // Maps that are scaled and moved alone.
+    let mut map = [1.0, 0.0, 1.0, 0.0];
+    let mut outer = Vec::new();
+    let mut strokes = Vec::<Read>::new();
+    let mut ink = String::new();
+    let mut painted = 0;
+    for (operator, operands) in operators(bytes) {
+        let numbers: Vec<_> = match operator.as_str() {
+            "gs" | "d" => Vec::new(),
+            _ => operands.iter().map(number).collect(),
+        };
+        let place = || {
+            let [x, y] = [numbers[numbers.len() - 2], numbers[numbers.len() - 1]];
+            let [x, y] = [map[0] * x + map[1], map[2] * y + map[3]];
+            [x * unit * INCH_72, (top - y) * unit * INCH_72]
+        };
+        match operator.as_str() {
+            "q" => outer.push(map),
+            "Q" => map = outer.pop().unwrap(),
+            "cm" => {
+                assert_eq!([numbers[1], numbers[2]], [0.0; 2]);
+                map = [
+                    map[0] * numbers[0],
+                    map[0] * numbers[4] + map[1],
+                    map[2] * numbers[3],
+                    map[2] * numbers[5] + map[3],
+                ];
+            }
+            "m" => strokes.push(Read {
+                vertices: vec![place()],
+                ..Read::default()
+            }),
+            "l" | "c" => strokes.last_mut().unwrap().vertices.push(place()),
+            "h" => strokes.last_mut().unwrap().closed = true,
+            "RG" | "rg" => ink = format!("{numbers:.2?}"),
+            "S" | "f" | "B" | "n" => {
+                strokes[painted..]
+                    .iter_mut()
+                    .for_each(|it| it.ink = ink.clone());
+                painted = strokes.len();
+            }
+            "w" | "J" | "j" | "M" | "d" | "gs" | "re" | "W" => {}
+            other => unreachable!("{other}"),
+        }
+    }
+    assert_eq!(painted, strokes.len());
+    strokes
+}
+
+pub(crate) fn dxf(bytes: &[u8]) -> Vec<Read> {
+    let drawing = dxf::Drawing::load(&mut std::io::Cursor::new(bytes)).unwrap();
+    assert_eq!(drawing.header.version, dxf::enums::AcadVersion::R12);
+    let top = drawing.header.maximum_drawing_extents.y;
+    let layers: Vec<_> = drawing.layers().map(|layer| layer.name.clone()).collect();
+    let read = |entity: &dxf::entities::Entity| {
+        assert!(layers.contains(&entity.common.layer));
+        let dxf::entities::EntityType::Polyline(line) = &entity.specific else {
+            unreachable!("we write polylines")
+        };
+        let vertices = line.vertices().map(|vertex| &vertex.location);
+        Read {
+            vertices: vertices.map(|at| [at.x, top - at.y]).collect(),
+            closed: line.is_closed(),
+            ink: entity.common.layer.clone(),
+        }
+    };
+    drawing.entities().map(read).collect()
+}
