@@ -14,6 +14,9 @@ use super::survey::relative_overhang;
 #[cfg(test)]
 mod tests;
 
+/// After more steps than this it is not told how long elements are.
+const MOST_POWERS: usize = 1 << 10;
+
 /// Where walks for a picture need not go.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
@@ -22,6 +25,9 @@ pub(super) struct Sight {
     window: Option<Window>,
     /// Whether an object is replaced however small it is, by object; empty if none is.
     is_whole: Arc<[bool]>,
+    /// The most that what becomes of an element is long after a number of steps, as a multiple of
+    /// its length.
+    longest: Arc<[f64]>,
 }
 
 /// What part of the plane is seen.
@@ -43,6 +49,7 @@ impl Sight {
             shortest: 0.0,
             window: None,
             is_whole: Arc::new([]),
+            longest: Arc::new([]),
         }
     }
 
@@ -57,6 +64,7 @@ impl Sight {
             } else {
                 Arc::new([])
             },
+            longest: longest(graph, shortest),
         }
     }
 
@@ -105,6 +113,14 @@ impl Sight {
         self.cuts().then_some(self.shortest)
     }
 
+    /// Whether anything that becomes of an element of a length in a number of steps may be so long
+    /// that it is replaced.
+    #[inline]
+    pub(super) fn lasts(&self, length: f64, steps: u32) -> bool {
+        let longest = self.longest.get(steps as usize).or(self.longest.last());
+        longest.is_none_or(|longest| length * longest >= self.shortest)
+    }
+
     /// What a walk does with an element that can be replaced.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {
@@ -135,6 +151,19 @@ impl Window {
         let reach = self.reaches[subtree.object] * length * SLACK;
         middle.distance_squared(nearest) > reach * reach
     }
+}
+
+/// The most that what becomes of an element is long after each number of steps, as a multiple of its
+/// length, where a length decides what is replaced.
+fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
+    // Rounding must not hide what is just as long.
+    const SLACK: f64 = 1.0 + 1e-9;
+    let ratio = graph.longest_child() * SLACK;
+    if shortest <= 0.0 || ratio >= 1.0 {
+        return Arc::new([]);
+    }
+    let powers = std::iter::successors(Some(SLACK), |power| Some(power * ratio));
+    powers.take(MOST_POWERS).collect()
 }
 
 /// What can be done with an element that is not seen; `None` if it is to be replaced nevertheless.

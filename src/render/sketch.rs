@@ -4,6 +4,7 @@
 //! sketches of all spans together, in order.
 
 use std::io;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -107,19 +108,14 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     if reversed { [end, start] } else { [start, end] }
 }
 
-/// The step after which nothing is born that a pass needs, if there is one: where lines do not lead
-/// to the ends of elements that it does not paint.
-fn last_step(scene: &Scene<'_>, pass: Pass) -> Option<u32> {
-    let Pass::Class(class) = pass else {
-        return None;
-    };
+/// Whether no line leads to the end of an element that a pass does not paint.
+fn stands_alone(scene: &Scene<'_>) -> bool {
     let graph = scene.graph;
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
-    let stands_alone = drawn.all(|object| {
+    drawn.all(|object| {
         let base_element = &graph.base_elements()[object.base_element];
         base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
-    });
-    scene.classes.last_step(class).filter(|_| stands_alone)
+    })
 }
 
 /// Sketches what one walk over an approximant is for.
@@ -132,12 +128,16 @@ pub(super) struct Sketcher<'a> {
     comb: Option<Arc<Comb>>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
-    /// What is born in later steps is not painted, nor is it needed for what is.
-    last_step: u32,
+    /// The steps in which is born what is painted, where nothing is needed of others.
+    steps: Option<RangeInclusive<u32>>,
 }
 
 impl<'a> Sketcher<'a> {
     pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, comb: Option<Arc<Comb>>) -> Self {
+        let steps = match pass {
+            Pass::Class(class) if stands_alone(scene) => scene.classes.steps(class),
+            _ => None,
+        };
         Self {
             scene,
             pass,
@@ -145,7 +145,7 @@ impl<'a> Sketcher<'a> {
             sketch: Sketch::default(),
             comb,
             open: None,
-            last_step: last_step(scene, pass).unwrap_or(u32::MAX),
+            steps,
         }
     }
 
@@ -339,6 +339,21 @@ impl<'a> Sketcher<'a> {
         }
     }
 
+    /// Elements that are born in some steps, of which lines lead to no others.
+    fn born_in(&mut self, run: &Run<'_>, steps: RangeInclusive<u32>) {
+        let mut next = 0;
+        for (number, element) in run.born_in(steps) {
+            if number != next {
+                self.pass_by(Mark::Break);
+            }
+            next = number + 1;
+            self.see(&element);
+        }
+        if next as u64 != run.count() {
+            self.pass_by(Mark::Break);
+        }
+    }
+
     /// Lines of one class, short and thin ones as tufts; whether there are any.
     fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
         let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
@@ -384,6 +399,16 @@ impl<'a> Sketcher<'a> {
         let Scene { graph, style, .. } = self.scene;
         let is_tinted = graph.tints() && style.color_by == ColorBy::Tint;
         is_tinted.then(|| element.coat.on(own))
+    }
+
+    /// Whether anything that becomes of an element may be born in a step that is painted.
+    #[inline]
+    fn may_paint(&self, subtree: &Subtree) -> bool {
+        self.steps.as_ref().is_none_or(|steps| {
+            let before = steps.start().saturating_sub(subtree.born + 1);
+            let length = subtree.frame.stretch();
+            subtree.born < *steps.end() && self.scene.sight.lasts(length, before)
+        })
     }
 
     fn kind(&self) -> Kind {
@@ -476,7 +501,7 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.sight.enter(subtree) {
-            Enter::Replace if subtree.born >= self.last_step => Enter::Skip,
+            Enter::Replace if !self.may_paint(subtree) => Enter::Skip,
             enter => enter,
         }
     }
@@ -501,7 +526,10 @@ impl Visitor for Sketcher<'_> {
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
-            _ => run.elements().for_each(|element| self.see(&element)),
+            _ => match self.steps.clone() {
+                Some(steps) => self.born_in(run, steps),
+                None => run.elements().for_each(|element| self.see(&element)),
+            },
         }
         Ok(())
     }
