@@ -1,4 +1,4 @@
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use crate::graph::Graph;
 use crate::grow::{Element, Fractal, Run};
@@ -56,7 +56,7 @@ impl Classes {
         (self.largest + 1).min(MOST_CLASSES)
     }
 
-    pub(super) fn all(&self) -> std::ops::Range<u64> {
+    pub(super) fn all(&self) -> Range<u64> {
         0..self.count()
     }
 
@@ -157,6 +157,22 @@ impl Classes {
         let last = self.count().saturating_sub(1).max(1);
         #[expect(clippy::cast_precision_loss, reason = "no more than 64 classes")]
         Some(style.palette.at(class as f64 / last as f64))
+    }
+
+    /// The class of all elements of some ranks from 0, if colours tell them and there is one.
+    pub(super) fn of_ranks(&self, ranks: &Range<u64>) -> Option<u64> {
+        let class = self.of_value(ranks.start);
+        let is_one = self.by == ColorBy::Index && self.of_value(ranks.end) == class;
+        is_one.then_some(class)
+    }
+
+    /// Whether no element comes after one of a later class.
+    pub(super) fn come_in_order(&self, graph: &Graph) -> bool {
+        match self.by {
+            ColorBy::Fractal => true,
+            ColorBy::Index => !graph.seeds,
+            _ => false,
+        }
     }
 
     /// Whether all elements of a fractal are of one class.

@@ -15,9 +15,10 @@ pub(super) use encode::encode as write_pixels;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
+use std::sync::Arc;
 
 use crate::parallel::{Line, Team};
-use crate::style::Colour;
+use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
 use self::coverage::{HairPen, MOST_VERTICES, flattened, is_small};
@@ -25,6 +26,7 @@ use self::nib::{Nib, Nibs};
 use self::part::Part;
 use self::skia::Outline;
 use super::Labels;
+use super::filled::Filled;
 use super::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// The most pixels that a picture may have: two gibibytes.
@@ -55,6 +57,8 @@ pub(super) struct Png<'t, 'w> {
     chunk: Chunk,
     line: Line<'t, 'w, Chunk>,
     threads: usize,
+    /// The layer that paths are of.
+    layer: u64,
     nibs: Nibs,
     /// The nib that draws the path as coverage, if one does.
     nib: Option<Nib>,
@@ -93,6 +97,7 @@ impl<'t, 'w> Png<'t, 'w> {
             chunk: Chunk::default(),
             line: team.line(Chunk::cover),
             threads: team.threads().get(),
+            layer: 0,
             nibs: Nibs::default(),
             nib: None,
             at: [0; 2],
@@ -188,6 +193,7 @@ impl Surface for Png<'_, '_> {
             self.chunk.nib(nib.clone());
             self.nib = Some(nib);
             (self.covers, self.is_outlined) = (false, false);
+            self.part.begin_layer(self.layer);
             return Ok(());
         }
         if self.part.settles_before(paint) {
@@ -201,6 +207,7 @@ impl Surface for Png<'_, '_> {
             && paint.fill.is_some_and(|fill| fill == fill.opaque());
         if self.covers || self.nib.is_some() {
             self.part.begin(paint, self.threads);
+            self.part.begin_layer(self.layer);
         }
         if let Some(nib) = &self.nib {
             self.chunk.nib(nib.clone());
@@ -308,6 +315,24 @@ impl Surface for Png<'_, '_> {
 
     fn tufts(&mut self, tufts: &[Tuft]) {
         self.chunk.tufts(tufts);
+    }
+
+    fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+        let is_round = |stroke: &Stroke| {
+            let pen = stroke.pen;
+            pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0
+        };
+        let colour = match (paint.fill, &paint.stroke) {
+            (Some(fill), None) => Some(fill),
+            (None, Some(stroke)) if is_round(stroke) => Some(stroke.colour),
+            _ => None,
+        };
+        let is_opaque = colour.is_some_and(|colour| colour == colour.opaque());
+        (is_opaque && self.part.may_cover()).then(|| self.part.filled(self.threads))
+    }
+
+    fn layer(&mut self, layer: u64) {
+        self.layer = layer;
     }
 
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {

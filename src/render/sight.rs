@@ -189,7 +189,7 @@ fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
 }
 
 /// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
-fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
+pub(super) fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
     let stroke = match style.width {
         Width::Relative(width) => width * graph.unit() * relative_overhang(style),
         Width::Pixels(_) => 0.0,

@@ -4,7 +4,7 @@
 //! sketches of all spans together, in order.
 
 use std::io;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -15,6 +15,7 @@ use crate::style::{ColorBy, Colour, Width};
 use super::WIDTHS_AN_OCTAVE;
 use super::classes::Share;
 use super::comb::Comb;
+use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
 use super::surface::{FINE, Position, Tuft, position};
 
@@ -72,6 +73,8 @@ pub(super) struct Line {
 pub(super) enum Mark {
     /// A fractal begins.
     Begin,
+    /// Elements of a class come.
+    Class(u64),
     /// A line begins at a point.
     Line(Line),
     /// A polygon begins at a point.
@@ -109,7 +112,7 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
 }
 
 /// Whether no line leads to the end of an element that a pass does not paint.
-fn stands_alone(scene: &Scene<'_>) -> bool {
+pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
     let graph = scene.graph;
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
     drawn.all(|object| {
@@ -126,6 +129,12 @@ pub(super) struct Sketcher<'a> {
     pub(super) sketch: Sketch,
     /// What makes tufts, where the surface takes them.
     comb: Option<Arc<Comb>>,
+    /// What need not be drawn, where that can be told,
+    hidden: Option<Arc<Hidden>>,
+    /// and the class that all of the span is of, if it is known.
+    whole: Option<u64>,
+    /// The class that the sketch has come to, where it holds all.
+    class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
     /// The steps in which is born what is painted, where nothing is needed of others.
@@ -133,7 +142,12 @@ pub(super) struct Sketcher<'a> {
 }
 
 impl<'a> Sketcher<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, comb: Option<Arc<Comb>>) -> Self {
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        pass: Pass,
+        comb: Option<Arc<Comb>>,
+        hidden: Option<Arc<Hidden>>,
+    ) -> Self {
         let steps = match pass {
             Pass::Class(class) if stands_alone(scene) => scene.classes.steps(class),
             _ => None,
@@ -144,6 +158,12 @@ impl<'a> Sketcher<'a> {
             fractal: Fractal::default(),
             sketch: Sketch::default(),
             comb,
+            hidden,
+            whole: match pass {
+                Pass::Class(class) => Some(class),
+                Pass::Areas | Pass::Along => None,
+            },
+            class: None,
             open: None,
             steps,
         }
@@ -154,7 +174,11 @@ impl<'a> Sketcher<'a> {
         self.sketch.marks.clear();
         self.sketch.points.clear();
         self.sketch.tufts.clear();
+        self.class = None;
         self.open = None;
+        if self.pass == Pass::Along {
+            self.whole = None;
+        }
     }
 
     #[inline]
@@ -177,6 +201,14 @@ impl<'a> Sketcher<'a> {
             *last = mark;
         } else {
             self.mark(mark);
+        }
+    }
+
+    /// What comes is of a class.
+    fn come_to(&mut self, class: u64) {
+        if self.class != Some(class) {
+            self.class = Some(class);
+            self.mark(Mark::Class(class));
         }
     }
 
@@ -411,6 +443,15 @@ impl<'a> Sketcher<'a> {
         })
     }
 
+    /// Whether nothing that becomes of an element can be seen any more.
+    #[inline]
+    fn is_hidden(&self, subtree: &Subtree) -> bool {
+        let (Some(hidden), Some(class)) = (&self.hidden, self.whole) else {
+            return false;
+        };
+        hidden.hides(self.scene, subtree, class)
+    }
+
     fn kind(&self) -> Kind {
         if self.scene.fills_strokes {
             Kind::Ring
@@ -425,15 +466,21 @@ impl<'a> Sketcher<'a> {
         let object = &graph.objects()[element.object];
         let base_element = &graph.base_elements()[object.base_element];
         let is_closed = base_element.is_closed();
-        let Pass::Class(class) = self.pass else {
-            if self.fractal.is_ring && !is_closed {
-                self.area(element, base_element);
-            } else {
-                self.pass_by(Mark::Break);
+        let is_drawn = match self.pass {
+            Pass::Areas if self.fractal.is_ring && !is_closed => {
+                return self.area(element, base_element);
             }
-            return;
+            Pass::Areas => return self.pass_by(Mark::Break),
+            Pass::Class(class) => {
+                object.visible && classes.of(element, &self.fractal, graph) == class
+            }
+            Pass::Along => {
+                if object.visible {
+                    self.come_to(classes.of(element, &self.fractal, graph));
+                }
+                object.visible
+            }
         };
-        let is_drawn = object.visible && classes.of(element, &self.fractal, graph) == class;
         match (is_drawn, is_closed) {
             (true, true) => self.polygon(element, base_element),
             (true, false) => self.line(element, base_element),
@@ -492,6 +539,12 @@ impl Visitor for Sketcher<'_> {
         self.fractal = fractal;
     }
 
+    fn expect(&mut self, ranks: Range<u64>) {
+        if self.pass == Pass::Along {
+            self.whole = self.scene.classes.of_ranks(&ranks);
+        }
+    }
+
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
         self.fractal = fractal;
         self.mark(Mark::Begin);
@@ -501,7 +554,7 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.sight.enter(subtree) {
-            Enter::Replace if !self.may_paint(subtree) => Enter::Skip,
+            Enter::Replace if !self.may_paint(subtree) || self.is_hidden(subtree) => Enter::Skip,
             enter => enter,
         }
     }
@@ -517,6 +570,17 @@ impl Visitor for Sketcher<'_> {
         let share = match self.pass {
             Pass::Areas => Share::Some,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
+            Pass::Along => {
+                let ends = [run.first(), run.last()].map(|element| {
+                    element.map_or(0, |element| classes.of(&element, &self.fractal, graph))
+                });
+                if ends[0] == ends[1] {
+                    self.come_to(ends[0]);
+                    Share::All
+                } else {
+                    Share::Some
+                }
+            }
         };
         let one_width = matches!(self.scene.style.width, Width::Pixels(_));
         let line = run.line().filter(|_| one_width);

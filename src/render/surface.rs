@@ -1,7 +1,10 @@
 use std::io;
+use std::sync::Arc;
 
 use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
+
+use super::filled::Filled;
 
 /// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
 ///
@@ -122,6 +125,14 @@ pub(crate) trait Surface {
     }
     /// Tufts, within a path of one that may come so.
     fn tufts(&mut self, _: &[Tuft]) {}
+
+    /// What tells which pixels are covered all over, where paths that are painted so are drawn by
+    /// layers, each of one opaque colour; nothing unless said otherwise.
+    fn filled(&mut self, _: &Paint) -> Option<Arc<Filled>> {
+        None
+    }
+    /// The paths that come are of a layer.
+    fn layer(&mut self, _: u64) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
     /// and nothing is drawn outside.

@@ -1,5 +1,7 @@
 use std::io;
+use std::sync::Arc;
 
+use crate::render::filled::Filled;
 use crate::render::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
@@ -112,6 +114,16 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     /// As [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)
+    }
+
+    /// As [`Surface::filled`].
+    pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+        self.surface.filled(paint)
+    }
+
+    /// As [`Surface::layer`].
+    pub(crate) fn layer(&mut self, layer: u64) {
+        self.surface.layer(layer);
     }
 
     /// Tufts, wherever the pen is.

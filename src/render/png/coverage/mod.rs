@@ -12,7 +12,9 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 
 pub(crate) use curve::flattened;
 pub(crate) use hair::HairPen;
@@ -34,7 +36,7 @@ pub(crate) const WHOLE: u32 = SAMPLES << 8;
 
 /// Pixels around the picture that are drawn on and never seen, so that nothing that touches the
 /// picture needs to be cut.
-const MARGIN: i64 = 4;
+pub(crate) const MARGIN: i64 = 4;
 
 /// Where sample `number` lies in its pixel. The samples form a lattice; no two of them share a
 /// row or a column, so that edges that are nearly level, or upright, have 65 shades too.
@@ -57,8 +59,9 @@ pub(crate) struct Plane {
     /// The cells of a row, the margins' among them.
     stride: usize,
     /// By rows. Atomic so that the compiler does not join neighbours into wider stores: prints
-    /// overlap, and to load what was stored in other portions takes a processor long.
-    cells: Vec<AtomicU64>,
+    /// overlap, and to load what was stored in other portions takes a processor long. Shared so that
+    /// others see what is covered all over.
+    cells: Arc<[AtomicU64]>,
     /// What is thinner than that.
     hairs: Hairs,
     touched: Touched,
@@ -103,6 +106,11 @@ impl Plane {
         }
     }
 
+    /// The samples that are covered, by pixel, by rows, with a margin of [`MARGIN`] around the picture.
+    pub(crate) fn cells(&self) -> Arc<[AtomicU64]> {
+        Arc::clone(&self.cells)
+    }
+
     /// The rows and columns, the margins among them, where something may be covered, which is then
     /// forgotten.
     fn take_touched(&mut self) -> [std::ops::Range<usize>; 2] {
@@ -127,9 +135,10 @@ impl Plane {
         for row in rows {
             let start = row * self.stride;
             let cells = start + columns.start..start + columns.end;
-            let others = &mut other.cells[cells.clone()];
-            for (cell, other) in self.cells[cells.clone()].iter_mut().zip(others) {
-                *cell.get_mut() |= std::mem::take(other.get_mut());
+            let others = &other.cells[cells.clone()];
+            for (cell, other) in self.cells[cells.clone()].iter().zip(others) {
+                cover(cell, other.load(Relaxed));
+                other.store(0, Relaxed);
             }
             self.hairs.take_over(&mut other.hairs, cells);
         }
@@ -147,8 +156,9 @@ impl Plane {
             let start = row * self.stride;
             let shown = (margin..margin + height).contains(&row);
             let cells = start + columns.start..start + columns.end;
-            for (column, cell) in columns.clone().zip(&mut self.cells[cells]) {
-                let samples = std::mem::take(cell.get_mut()).count_ones();
+            for (column, cell) in columns.clone().zip(&self.cells[cells]) {
+                let samples = cell.load(Relaxed).count_ones();
+                cell.store(0, Relaxed);
                 let hairs = self.hairs.take(start + column);
                 let covered = covered(samples, hairs);
                 if covered > 0 && shown && seen.contains(&column) {
@@ -158,6 +168,12 @@ impl Plane {
             }
         }
     }
+}
+
+/// Covers samples of a pixel, on a plane on which no other thread draws.
+#[inline(always)]
+fn cover(cell: &AtomicU64, samples: u64) {
+    cell.store(cell.load(Relaxed) | samples, Relaxed);
 }
 
 /// How much of a pixel is covered by samples and, of the rest, by a part.

@@ -1,6 +1,4 @@
-use std::sync::atomic::Ordering::Relaxed;
-
-use super::{FINE, MARGIN, Plane, Position, index, mask};
+use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// Where the pen can stand: steps to a pixel, as a power of two.
 const STEP_BITS: u32 = 4;
@@ -169,7 +167,7 @@ impl Plane {
         for (row, masks) in print.iter().enumerate() {
             let cells = &cells[row * self.stride..][..SIDE];
             for (cell, mask) in cells.iter().zip(masks) {
-                cell.store(cell.load(Relaxed) | mask, Relaxed);
+                cover(cell, *mask);
             }
         }
     }

@@ -1,6 +1,6 @@
 use std::sync::LazyLock;
 
-use super::{FINE, MARGIN, Plane, Position, index, mask};
+use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// The most vertices of a polygon that is drawn here.
 pub(crate) const MOST_VERTICES: usize = 8;
@@ -186,10 +186,11 @@ impl Plane {
         let width = index(columns[1] - columns[0] + 1);
         for row in rows[0]..=rows[1] {
             let start = index(row + MARGIN) * self.stride + index(columns[0] + MARGIN);
-            for (cell, column) in self.cells[start..start + width].iter_mut().zip(0..) {
-                *cell.get_mut() |= edges.iter().fold(u64::MAX, |mask, edge| {
-                    mask & edge.mask(table, edge.area + column * edge.right)
-                });
+            for (cell, column) in self.cells[start..start + width].iter().zip(0..) {
+                let masks = edges
+                    .iter()
+                    .map(|edge| edge.mask(table, edge.area + column * edge.right));
+                cover(cell, masks.fold(u64::MAX, |all, mask| all & mask));
             }
             for edge in &mut *edges {
                 edge.area += edge.down;
