@@ -3,7 +3,7 @@ use std::num::NonZero;
 
 use crate::geometry::{DVec2, Direction};
 use crate::graph::Graph;
-use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, Walked, Division, walk_with};
+use crate::grow::{Division, Element, Fractal, Growth, Visitor, WalkError, Walked, walk_with};
 use crate::parallel::with_team;
 
 /// How the rows of a table are written.

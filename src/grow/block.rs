@@ -1,6 +1,9 @@
 //! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
 //! place by a single map wherever the object stands.
 
+#[cfg(test)]
+mod tests;
+
 use std::ops::{Range, RangeInclusive};
 use std::sync::OnceLock;
 
@@ -118,6 +121,23 @@ impl Run<'_> {
     pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element> {
         let leaves = self.block.leaves.iter().enumerate();
         leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map))
+    }
+
+    /// The elements that a test chooses by all but their places, and their numbers from 0.
+    pub(crate) fn chosen(
+        &self,
+        test: impl Fn(&Element) -> bool,
+    ) -> impl Iterator<Item = (usize, Element)> {
+        let elements = self.elements_in_place().enumerate();
+        let chosen = elements.filter(move |(_, element)| test(element));
+        chosen.map(|(number, element)| {
+            let map = self.frame.map * self.block.leaves[number].map;
+            let frame = Frame {
+                map,
+                ..element.frame
+            };
+            (number, Element { frame, ..element })
+        })
     }
 
     /// The elements that are born in some steps, and their numbers from 0, step by step and in order

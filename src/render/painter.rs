@@ -177,6 +177,18 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 *points = rest;
                 return self.lines(lines);
             }
+            Mark::Polygons {
+                look,
+                vertices,
+                count,
+            } => {
+                let (now, rest) = points.split_at((vertices * count).min(points.len()));
+                *points = rest;
+                self.previous = None;
+                self.is_first = false;
+                self.begin_path(look)?;
+                return self.tracer.polygons(now, vertices);
+            }
             Mark::Curve => {
                 let (a, b, end) = (next(), next(), next());
                 self.tracer.curve_to(a, b, end);

@@ -21,7 +21,7 @@ use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
-use self::coverage::{HairPen, MOST_VERTICES, flattened, is_small};
+use self::coverage::{HairPen, MOST_VERTICES, bounding, flattened, is_small, smoothed};
 use self::nib::{Nib, Nibs};
 use self::part::Part;
 use self::skia::Outline;
@@ -166,6 +166,10 @@ impl<'t, 'w> Png<'t, 'w> {
         if is_small(&self.ring) {
             self.chunk.polygon(&self.ring);
             self.ring.clear();
+        } else if let Some(smooth) = smoothed(&self.ring).filter(|ring| is_small(ring)) {
+            // Of round shapes there are many that only rounding has dented.
+            self.chunk.polygon(&smooth);
+            self.ring.clear();
         } else {
             self.hand_over_ring();
             self.outline.close(&mut self.part.pixmap);
@@ -263,12 +267,21 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        self.stroke(flattened([self.at, a, b, to]));
+        let curve = [self.at, a, b, to];
+        self.stroke(flattened(curve));
         self.at = to;
-        if self.is_outlined {
-            self.hand_over_ring();
-            self.outline.curve_to(a, b, to);
+        if !self.is_outlined {
+            return;
         }
+        if !self.ring.is_empty() {
+            let lines = bounding(curve);
+            if lines.len() <= MOST_VERTICES - self.ring.len() {
+                self.ring.extend(lines);
+                return;
+            }
+            self.hand_over_ring();
+        }
+        self.outline.curve_to(a, b, to);
     }
 
     fn close(&mut self) {
@@ -279,6 +292,17 @@ impl Surface for Png<'_, '_> {
         } else if self.is_outlined {
             self.outline.close(&mut self.part.pixmap);
         }
+    }
+
+    #[inline]
+    fn polygon(&mut self, vertices: &[Position]) -> bool {
+        if !self.covers || !is_small(vertices) {
+            return false;
+        }
+        self.end_ring();
+        self.chunk.polygon(vertices);
+        self.hand_on_chunk();
+        true
     }
 
     #[inline]

@@ -79,6 +79,12 @@ pub(super) enum Mark {
     Line(Line),
     /// A polygon begins at a point.
     Polygon(Look),
+    /// Polygons that look alike, by number, each of so many vertices.
+    Polygons {
+        look: Look,
+        vertices: usize,
+        count: usize,
+    },
     /// The outline of a fractal begins or goes on at a point.
     Area,
     /// Straight lines to so many points.
@@ -103,6 +109,16 @@ pub(super) struct Sketch {
     pub(super) marks: Vec<Mark>,
     pub(super) points: Vec<Position>,
     pub(super) tufts: Vec<Tuft>,
+}
+
+/// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
+fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
+    let is_line = |piece: &Piece| matches!(piece, Piece::Line(_));
+    let (_, sides) = pieces.split_last()?;
+    pieces
+        .iter()
+        .all(is_line)
+        .then(|| sides.iter().map(Piece::end))
 }
 
 /// Whether an outline starts and ends where its frame does, in the order of traversal.
@@ -137,7 +153,9 @@ pub(super) struct Sketcher<'a> {
     class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
-    /// The steps in which is born what is painted, where nothing is needed of others.
+    /// Whether nothing needs to be known of elements that are not painted.
+    stands_alone: bool,
+    /// The steps in which is born what is painted, where that is so.
     steps: Option<RangeInclusive<u32>>,
 }
 
@@ -148,8 +166,9 @@ impl<'a> Sketcher<'a> {
         comb: Option<Arc<Comb>>,
         hidden: Option<Arc<Hidden>>,
     ) -> Self {
+        let stands_alone = stands_alone(scene);
         let steps = match pass {
-            Pass::Class(class) if stands_alone(scene) => scene.classes.steps(class),
+            Pass::Class(class) if stands_alone => scene.classes.steps(class),
             _ => None,
         };
         Self {
@@ -165,6 +184,7 @@ impl<'a> Sketcher<'a> {
             },
             class: None,
             open: None,
+            stands_alone,
             steps,
         }
     }
@@ -253,22 +273,48 @@ impl<'a> Sketcher<'a> {
         } else {
             0
         };
-        self.mark(Mark::Polygon(Look {
+        let look = Look {
             kind: Kind::Polygon,
             width,
             colour: self.colour(element, self.scene.style.polygons()),
-        }));
+        };
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
+        if let Some(vertices) = vertices(pieces) {
+            self.polygon_of(look, pieces.len());
+            [start]
+                .into_iter()
+                .chain(vertices)
+                .for_each(|vertex| self.start_at(map.transform_point2(vertex)));
+            return;
+        }
+        self.mark(Mark::Polygon(look));
         self.start_at(map.transform_point2(start));
         for piece in pieces {
             self.piece(&piece.transformed(&map));
         }
         let returned = matches!(pieces.last(), Some(Piece::Line(_)));
         self.mark(Mark::Close { returned });
+    }
+
+    /// One more polygon of a number of vertices.
+    #[inline]
+    fn polygon_of(&mut self, look: Look, sides: usize) {
+        match self.sketch.marks.last_mut() {
+            Some(Mark::Polygons {
+                look: last,
+                vertices,
+                count,
+            }) if *last == look && *vertices == sides => *count += 1,
+            _ => self.mark(Mark::Polygons {
+                look,
+                vertices: sides,
+                count: 1,
+            }),
+        }
     }
 
     /// Goes on along the outline of a fractal that is filled, whether it is drawn there or not.
@@ -371,10 +417,10 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// Elements that are born in some steps, of which lines lead to no others.
-    fn born_in(&mut self, run: &Run<'_>, steps: RangeInclusive<u32>) {
+    /// Some elements of a run, by number, from which lines lead to no others.
+    fn some(&mut self, run: &Run<'_>, elements: impl Iterator<Item = (usize, Element)>) {
         let mut next = 0;
-        for (number, element) in run.born_in(steps) {
+        for (number, element) in elements {
             if number != next {
                 self.pass_by(Mark::Break);
             }
@@ -590,9 +636,14 @@ impl Visitor for Sketcher<'_> {
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
-            _ => match self.steps.clone() {
-                Some(steps) => self.born_in(run, steps),
-                None => run.elements().for_each(|element| self.see(&element)),
+            _ => match (self.pass, self.steps.clone()) {
+                (_, Some(steps)) => self.some(run, run.born_in(steps)),
+                (Pass::Class(class), None) if self.stands_alone => {
+                    let fractal = self.fractal;
+                    let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
+                    self.some(run, run.chosen(is_of));
+                }
+                _ => run.elements().for_each(|element| self.see(&element)),
             },
         }
         Ok(())

@@ -113,6 +113,11 @@ pub(crate) trait Surface {
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.
     fn close(&mut self);
+    /// A polygon that is a subpath of its own, with vertices that may be equal, where the surface knows
+    /// a short way to draw it; whether it does.
+    fn polygon(&mut self, _: &[Position]) -> bool {
+        false
+    }
     /// Hands on what has been drawn of the path, if that is much.
     fn hand_on(&mut self) -> io::Result<()>;
     /// Ends the path.

@@ -73,6 +73,23 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.has_length = true;
     }
 
+    /// Polygons of a number of vertices, one after another.
+    pub(crate) fn polygons(&mut self, vertices: &[Position], sides: usize) -> io::Result<()> {
+        self.finish();
+        for polygon in vertices.chunks_exact(sides) {
+            if self.surface.polygon(polygon) {
+                continue;
+            }
+            if let Some((&start, rest)) = polygon.split_first() {
+                self.move_to(start);
+                rest.iter().for_each(|&vertex| self.line_to(vertex));
+                self.close(false);
+            }
+            self.surface.hand_on()?;
+        }
+        self.surface.hand_on()
+    }
+
     /// Closes the subpath; `returned` tells that its last vertex is its first, which is then not
     /// drawn twice.
     pub(crate) fn close(&mut self, returned: bool) {

@@ -16,11 +16,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
-pub(crate) use curve::flattened;
+pub(crate) use curve::{bounding, flattened};
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
-pub(crate) use polygon::{MOST_VERTICES, is_small};
+pub(crate) use polygon::{MOST_VERTICES, is_small, smoothed};
 
 /// A position in hundredths of a pixel.
 type Position = [i64; 2];
@@ -36,7 +36,7 @@ pub(crate) const WHOLE: u32 = SAMPLES << 8;
 
 /// Pixels around the picture that are drawn on and never seen, so that nothing that touches the
 /// picture needs to be cut.
-pub(crate) const MARGIN: i64 = 4;
+pub(crate) const MARGIN: i64 = 5;
 
 /// Where sample `number` lies in its pixel. The samples form a lattice; no two of them share a
 /// row or a column, so that edges that are nearly level, or upright, have 65 shades too.

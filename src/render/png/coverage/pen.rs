@@ -48,13 +48,14 @@ enum Prints {
     Two(Vec<Print<2>>),
     Three(Vec<Print<3>>),
     Four(Vec<Print<4>>),
+    Five(Vec<Print<5>>),
 }
 
 type Print<const SIDE: usize> = [[u64; SIDE]; SIDE];
 
 impl RoundPen {
     /// The widths that there are pens of, in pixels: what is thinner falls between the samples.
-    pub(crate) const WIDTHS: std::ops::RangeInclusive<f64> = 0.25..=3.0;
+    pub(crate) const WIDTHS: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 
     /// A pen of one of the [`WIDTHS`](Self::WIDTHS).
     #[expect(clippy::cast_possible_truncation, reason = "pens are small")]
@@ -69,8 +70,10 @@ impl RoundPen {
                 Prints::Two(prints(radius))
             } else if width <= 2.0 {
                 Prints::Three(prints(radius))
-            } else {
+            } else if width <= 3.0 {
                 Prints::Four(prints(radius))
+            } else {
+                Prints::Five(prints(radius))
             },
         }
     }
@@ -100,6 +103,7 @@ impl Plane {
                 Prints::Two(prints) => self.print(prints, corner(pen, at)),
                 Prints::Three(prints) => self.print(prints, corner(pen, at)),
                 Prints::Four(prints) => self.print(prints, corner(pen, at)),
+                Prints::Five(prints) => self.print(prints, corner(pen, at)),
             }
             self.touch(corner(pen, at));
         }
@@ -122,6 +126,7 @@ impl Plane {
             Prints::Two(prints) => self.line_of(prints, pen, from, to),
             Prints::Three(prints) => self.line_of(prints, pen, from, to),
             Prints::Four(prints) => self.line_of(prints, pen, from, to),
+            Prints::Five(prints) => self.line_of(prints, pen, from, to),
         }
     }
 
@@ -175,8 +180,8 @@ impl Plane {
     #[inline]
     fn touch(&mut self, corner: [i64; 2]) {
         let [column, row] = corner.map(|corner| place(corner) >> STEP_BITS);
-        // The widest pen reaches into the third pixel after the first.
-        self.touched.add([column, column + 3], [row, row + 3]);
+        // The widest pen reaches into the fourth pixel after the first.
+        self.touched.add([column, column + 4], [row, row + 4]);
     }
 
     /// Whether a position lies near enough to be seen, which most often it does.
