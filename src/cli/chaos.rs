@@ -293,11 +293,11 @@ impl ChaosGame<'_> {
         out: &mut impl Write,
     ) -> Result<String, Stopped> {
         let points = self.arguments.points.unwrap_or(100_000);
-        if points > growth.max_elements {
+        if points > growth.most_elements() {
             let error = anyhow!(
                 "{} are more rows than --max-elements {} allows",
                 counted(&points.into(), "point"),
-                growth.max_elements
+                growth.most_elements()
             );
             return Err(Stopped::Said(error.into()));
         }

@@ -157,7 +157,12 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             Format::Picture(format) => {
                 let options = arguments.options(&loaded, goal, format);
                 goal.come_to(&loaded, graph, |graph, steps| {
-                    let growth = arguments.growth.to(steps, progress);
+                    let growth = match format {
+                        render::Format::Png if arguments.detail.is_some() => {
+                            arguments.growth.to_detail(steps, progress)
+                        }
+                        _ => arguments.growth.to(steps, progress),
+                    };
                     render::write(graph, &growth, &options, out).map(Wrote::from)
                 })
             }

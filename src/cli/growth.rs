@@ -18,17 +18,21 @@ use crate::wording::{counted, duration, grouped, rough_bytes};
 use super::rule::Loaded;
 use super::{Failure, output, stop};
 
+/// The most elements that are grown unless said otherwise, where a detail in pixels bounds them and all
+/// of them come to no more than pixels.
+const MOST_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
+
 /// How a rule is grown, and how far at most.
 #[derive(clap::Args)]
 pub(super) struct GrowthArguments {
     /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(super) seed: u64,
-    /// The most elements that are grown
+    /// The most elements that are grown [default: 50 million, 500 million to a PNG's detail]
     ///
     /// Where the number is known before, a step that has more is refused before the work starts.
-    #[arg(long, value_name = "N", default_value_t = Model::MOST_ELEMENTS)]
-    pub(super) max_elements: u64,
+    #[arg(long, value_name = "N")]
+    max_elements: Option<u64>,
     /// How many threads work [default: as many as there are cores]
     ///
     /// What they make does not depend on how many they are.
@@ -56,6 +60,10 @@ impl GrowthArguments {
         self.threads.unwrap_or_else(all_cores)
     }
 
+    pub(super) fn most_elements(&self) -> u64 {
+        self.max_elements.unwrap_or(Model::MOST_ELEMENTS)
+    }
+
     /// Refuses a step that has too many elements, as far as that can be told before.
     ///
     /// `picture` tells how it would be drawn, if it would.
@@ -66,7 +74,7 @@ impl GrowthArguments {
         loaded: &Loaded,
         picture: Option<&render::Options>,
     ) -> Result<(), Failure> {
-        let checked = graph.check_size(steps, self.max_elements);
+        let checked = graph.check_size(steps, self.most_elements());
         checked.map_err(|error| {
             anyhow!(self.too_large(&error, &loaded.name, steps, graph, picture))
         })?;
@@ -78,9 +86,17 @@ impl GrowthArguments {
         Growth {
             steps,
             seed: self.seed,
-            most_elements: self.max_elements,
+            most_elements: self.most_elements(),
             cancel: Some(stop::flag()),
             progress,
+        }
+    }
+
+    /// Growth to a detail of a picture that takes no more room the more elements it has.
+    pub(super) fn to_detail<'a>(&self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
+        Growth {
+            most_elements: self.max_elements.unwrap_or(MOST_GROWN_TO_DETAIL),
+            ..self.to(steps, progress)
         }
     }
 
@@ -92,7 +108,7 @@ impl GrowthArguments {
         graph: &Graph,
         picture: Option<&render::Options>,
     ) -> String {
-        let limit = grouped(&self.max_elements.into());
+        let limit = grouped(&self.most_elements().into());
         let count = error.elements.as_ref().map_or_else(
             || "more elements than can be counted".into(),
             |elements| counted(elements, "element"),
@@ -129,8 +145,8 @@ impl GrowthArguments {
             RenderError::Walk(WalkError::NotFinite(error)) => {
                 loaded.model.diagnostic(&error).into()
             }
-            RenderError::Walk(WalkError::TooManyElements { .. }) => {
-                let limit = counted(&self.max_elements.into(), "element");
+            RenderError::Walk(WalkError::TooManyElements { limit }) => {
+                let limit = counted(&limit.into(), "element");
                 anyhow!(
                     "{} has more than {limit}; --max-elements allows more",
                     loaded.name

@@ -69,7 +69,7 @@ pub(super) struct Loaded {
 impl Loaded {
     /// The same to be grown in a way.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
-        self.growth = (growth.seed, growth.max_elements);
+        self.growth = (growth.seed, growth.most_elements());
         self
     }
 

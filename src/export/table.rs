@@ -3,7 +3,7 @@ use std::num::NonZero;
 
 use crate::geometry::{DVec2, Direction};
 use crate::graph::Graph;
-use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, Walked, walk_with};
+use crate::grow::{Division, Element, Fractal, Growth, Visitor, WalkError, Walked, walk_with};
 use crate::parallel::with_team;
 
 /// How the rows of a table are written.
@@ -78,7 +78,11 @@ pub fn write(
             goes_on: 0,
             rows: Vec::new(),
         };
-        let walked = walk_with(team, graph, growth, Some(MANY), fresh, |span, seam| {
+        let division = Division {
+            span: Some(MANY),
+            ranks: &[],
+        };
+        let walked = walk_with(team, graph, growth, division, fresh, |span, seam| {
             let goes_on = span.goes_on.min(span.rows.len());
             span.goes_on = 0;
             for row in &mut span.rows[..goes_on] {

@@ -217,6 +217,16 @@ impl Graph {
         longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
     }
 
+    /// The most that what may be replaced is long, as a multiple of the element's length that it comes
+    /// of; infinite where the graph does not tell.
+    #[must_use]
+    pub fn longest_child(&self) -> f64 {
+        if self.resets().contains(&true) {
+            return f64::INFINITY;
+        }
+        self.longest_edge(&self.edges())
+    }
+
     /// The largest ratio of what may be fertile.
     fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);

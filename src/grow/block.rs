@@ -1,6 +1,10 @@
 //! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
 //! place by a single map wherever the object stands.
 
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Range, RangeInclusive};
 use std::sync::OnceLock;
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
@@ -57,6 +61,10 @@ pub(super) struct Block {
     fertile: u64,
     /// The lengths of all leaves together.
     length: f64,
+    /// The numbers of the leaves, sorted by the steps of their birth,
+    by_birth: Vec<u32>,
+    /// and how many of them are born before each.
+    births: Vec<usize>,
     /// Whether the last leaf reaches the end of the object.
     pub(super) meets_end: bool,
 }
@@ -105,11 +113,66 @@ impl Run<'_> {
 
     /// The elements in order of traversal.
     pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element> {
-        let unit = unit(self.frame.direction.is_reversed());
         let leaves = self.block.leaves.iter().enumerate();
-        leaves.map(move |(number, leaf)| Element {
+        leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map * leaf.map))
+    }
+
+    /// The elements as [`Run::elements`] tells them, but all in the place of the run.
+    pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element> {
+        let leaves = self.block.leaves.iter().enumerate();
+        leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map))
+    }
+
+    /// The elements that a test chooses by all but their places, and their numbers from 0.
+    pub(crate) fn chosen(
+        &self,
+        test: impl Fn(&Element) -> bool,
+    ) -> impl Iterator<Item = (usize, Element)> {
+        let elements = self.elements_in_place().enumerate();
+        let chosen = elements.filter(move |(_, element)| test(element));
+        chosen.map(|(number, element)| {
+            let map = self.frame.map * self.block.leaves[number].map;
+            let frame = Frame {
+                map,
+                ..element.frame
+            };
+            (number, Element { frame, ..element })
+        })
+    }
+
+    /// The elements that are born in some steps, and their numbers from 0, step by step and in order
+    /// of traversal in each.
+    pub(crate) fn born_in(
+        &self,
+        steps: RangeInclusive<u32>,
+    ) -> impl Iterator<Item = (usize, Element)> {
+        let range = self.births(&steps);
+        self.block.by_birth[range].iter().map(|&number| {
+            let leaf = &self.block.leaves[number as usize];
+            let map = self.frame.map * leaf.map;
+            (number as usize, self.element(number as usize, leaf, map))
+        })
+    }
+
+    /// How many elements are born in some steps.
+    pub(crate) fn count_born_in(&self, steps: &RangeInclusive<u32>) -> u64 {
+        self.births(steps).len() as u64
+    }
+
+    fn births(&self, steps: &RangeInclusive<u32>) -> Range<usize> {
+        let births = &self.block.births;
+        let before = |step: u32| {
+            let step = step.saturating_sub(self.born) as usize;
+            births.get(step).or(births.last()).copied().unwrap_or(0)
+        };
+        before(*steps.start())..before(steps.end().saturating_add(1))
+    }
+
+    fn element(&self, number: usize, leaf: &Leaf, map: DAffine2) -> Element {
+        let unit = unit(self.frame.direction.is_reversed());
+        Element {
             frame: Frame {
-                map: self.frame.map * leaf.map,
+                map,
                 direction: self.frame.direction * unit * leaf.direction,
             },
             length: self.length * leaf.length,
@@ -122,7 +185,7 @@ impl Run<'_> {
                 Replacement::Kept
             ),
             joined: leaf.joined && (number > 0 || self.joined),
-        })
+        }
     }
 
     /// Where the elements end, one after another, in the unit frame of [`Run::map`], if all are
@@ -289,7 +352,12 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
         let mut later = sticks[1..].iter();
         later.all(|stick| stick.joined)
     });
+    let births = births(&leaves);
+    let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
+    by_birth.sort_by_key(|&number| leaves[number as usize].born);
     Ok(Block {
+        by_birth,
+        births,
         line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
         sticks,
         leaves,
@@ -298,6 +366,19 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
         length,
         meets_end: descent.ends_joined(),
     })
+}
+
+/// How many leaves are born before each step from the object's, up to where all are.
+fn births(leaves: &[Leaf]) -> Vec<usize> {
+    let last = leaves.iter().map(|leaf| leaf.born).max().unwrap_or(0);
+    let mut births = vec![0; last as usize + 2];
+    for leaf in leaves {
+        births[leaf.born as usize + 1] += 1;
+    }
+    for step in 1..births.len() {
+        births[step] += births[step - 1];
+    }
+    births
 }
 
 /// The corners of outlines, by coordinate, so that many are moved at once.

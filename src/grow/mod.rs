@@ -30,7 +30,9 @@ pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
-pub(crate) use spans::walk_with;
+pub(crate) use spans::{Division, walk_with};
+
+use std::ops::Range;
 
 use crate::geometry::Frame;
 use crate::graph::CompileError;
@@ -106,8 +108,12 @@ pub trait Visitor {
     /// A visitor of a span of a walk begins in the middle of a fractal.
     fn go_on(&mut self, _: Fractal) {}
 
+    /// A visitor of a span of a walk sees these ranks of one fractal, where that is known before.
+    fn expect(&mut self, _: Range<u64>) {}
+
     /// Says what is done with an element that can be replaced. An element may be asked about more
-    /// than once, where fractals are walked again for their seeds: the answer must be the same.
+    /// than once, where fractals are walked again for their seeds: the answer must be the same, unless
+    /// nothing that becomes of the element matters any more.
     ///
     /// Not asked where a walk counts indices ([`Graph::counts_index`](crate::graph::Graph)): what
     /// is not visited could not be counted.

@@ -7,6 +7,7 @@
 //! the one who takes them knows both.
 
 use std::num::NonZero;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::graph::Graph;
@@ -51,8 +52,8 @@ impl Seam {
 /// threads. Spans have about `span` elements, or more where they come by runs; where they begin and
 /// end is left open: in the middle of a fractal, too.
 ///
-/// If they [cut](Visitor::cuts), all of them must say the same when they are asked to enter. One more
-/// is asked what no other is; it is taken last.
+/// If they [cut](Visitor::cuts), all of them must say the same when they are asked to enter, but of
+/// what does not matter any more. One more is asked what no other is; it is taken last.
 ///
 /// One visitor sees everything, and is taken from time to time, where a walk counts indices, and
 /// where `span` is `None`.
@@ -76,8 +77,19 @@ where
     V::Error: Send,
 {
     with_team(threads, |team| {
-        walk_with(team, graph, growth, span, fresh, take)
+        let division = Division { span, ranks: &[] };
+        walk_with(team, graph, growth, division, fresh, take)
     })
+}
+
+/// How a walk is divided.
+#[derive(Clone, Copy)]
+pub(crate) struct Division<'r> {
+    /// Spans have about so many elements; one visitor sees everything if there is no such number.
+    pub(crate) span: Option<u64>,
+    /// What a walk that was divided in the same way has told as [`Seam::before`] of its spans, if there
+    /// was one: so visitors know what ranks they see.
+    pub(crate) ranks: &'r [u64],
 }
 
 /// The same with a team that has other work, too.
@@ -85,14 +97,14 @@ pub(crate) fn walk_with<'w, V: Visitor + Send + 'w>(
     team: &Team<'w>,
     graph: &'w Graph,
     growth: &Growth<'_>,
-    span: Option<u64>,
+    division: Division<'_>,
     mut fresh: impl FnMut() -> V,
     take: impl FnMut(&mut V, Seam) -> Result<(), V::Error>,
 ) -> Result<Walked, WalkError<V::Error>>
 where
     V::Error: Send + 'w,
 {
-    let Some(size) = span.filter(|_| !graph.counts_index()) else {
+    let Some(size) = division.span.filter(|_| !graph.counts_index()) else {
         let mut whole = Whole {
             visitor: fresh(),
             take,
@@ -119,6 +131,7 @@ where
         sizes_are_exact: cuts.is_none() && graph.is_plain(),
         asked,
         span: Span::default(),
+        ranks: division.ranks,
         is_open: false,
         line: team.line(Job::run),
         order: Order {
@@ -201,6 +214,8 @@ struct Job<'w, V: Visitor> {
     blocks: Option<Arc<Blocks>>,
     descent: Descent<'w>,
     span: Span,
+    /// The ranks that the visitor sees, if they are known before.
+    ranks: Option<Range<u64>>,
     visitor: V,
     outcome: Result<Outcome, WalkError<V::Error>>,
 }
@@ -231,6 +246,9 @@ impl<V: Visitor> Job<'_, V> {
         let (mut born, mut first, mut joined) = (from.born, from.before, true);
         if self.span.goes_on() {
             self.visitor.go_on(from.fractal);
+        }
+        if let Some(ranks) = &self.ranks {
+            self.visitor.expect(ranks.clone());
         }
         let mut visiting = Visiting::new(self.graph, &mut self.visitor);
         visiting.index = first;
@@ -325,6 +343,8 @@ struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
     /// The visitor that is asked on the way to the subtrees.
     asked: V,
     span: Span,
+    /// The ranks before the spans that come, as far as they are known.
+    ranks: &'v [u64],
     /// Whether a fractal has begun and not ended.
     is_open: bool,
     line: Line<'t, 'w, Job<'w, V>>,
@@ -347,11 +367,20 @@ where
             blocks: self.blocks.clone(),
             descent: Descent::over_subtrees(self.graph, self.steps),
             span: Span::default(),
+            ranks: None,
             visitor: (self.fresh)(),
             outcome: Ok(Outcome::default()),
         });
         std::mem::swap(&mut job.span, &mut self.span);
         self.span.follow(&job.span);
+        let (from, to) = (job.span.from, job.span.to);
+        let is_known = self.sizes_are_exact && from.fractal.number == to.fractal.number;
+        job.ranks = is_known.then_some(from.before..to.before);
+        if let Some((&before, later)) = self.ranks.split_first() {
+            job.span.from.before = before;
+            job.ranks = later.first().map(|&after| before..after.max(before));
+            self.ranks = later;
+        }
         let order = &mut self.order;
         let handed = self.line.hand_on(job, &mut |job| order.take(job));
         self.has_failed = handed.is_err();

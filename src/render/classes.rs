@@ -1,3 +1,5 @@
+use std::ops::{Range, RangeInclusive};
+
 use crate::graph::Graph;
 use crate::grow::{Element, Fractal, Run};
 use crate::style::{ColorBy, Colour, Style};
@@ -54,7 +56,7 @@ impl Classes {
         (self.largest + 1).min(MOST_CLASSES)
     }
 
-    pub(super) fn all(&self) -> std::ops::Range<u64> {
+    pub(super) fn all(&self) -> Range<u64> {
         0..self.count()
     }
 
@@ -84,14 +86,15 @@ impl Classes {
         }
     }
 
-    /// The step after which no element of a class is born any more; `None` if there may be any.
-    pub(super) fn last_step(&self, class: u64) -> Option<u32> {
+    /// The steps in which the elements of a class are born; `None` if it may be any.
+    pub(super) fn steps(&self, class: u64) -> Option<RangeInclusive<u32>> {
         if self.by != ColorBy::Step {
             return None;
         }
+        let first = (0..=self.largest).find(|&step| self.of_value(step) >= class)?;
         let mut steps = (0..=self.largest).rev();
         let last = steps.find(|&step| self.of_value(step) <= class)?;
-        u32::try_from(last).ok()
+        Some(u32::try_from(first).ok()?..=u32::try_from(last).ok()?)
     }
 
     /// How many elements of a run are in a class.
@@ -102,11 +105,20 @@ impl Classes {
         graph: &Graph,
         class: u64,
     ) -> Share {
+        if let Some(steps) = self.steps(class) {
+            return match run.count_born_in(&steps) {
+                0 => Share::None,
+                count if count == run.count() => Share::All,
+                _ => Share::Some,
+            };
+        }
         let of = |element: Element| self.of(&element, fractal, graph);
-        let classes = run.elements().map(of);
-        let (Some(first), Some(last)) = (run.first().map(of), run.last().map(of)) else {
+        let mut classes = run.elements_in_place().map(of);
+        let mut ends = run.elements_in_place().map(of);
+        let (Some(first), last) = (ends.next(), ends.next_back()) else {
             return Share::None;
         };
+        let last = last.unwrap_or(first);
         let (all, any) = match self.by {
             _ if self.keep_fractals_whole() => (first == class, first == class),
             // Ranks grow along the way.
@@ -114,9 +126,8 @@ impl Classes {
                 first == class && last == class,
                 (first..=last).contains(&class),
             ),
-            _ => classes.fold((true, false), |(all, any), of| {
-                (all && of == class, any || of == class)
-            }),
+            _ if first == class => (classes.all(|of| of == class), true),
+            _ => (false, classes.any(|of| of == class)),
         };
         match (all, any) {
             (true, _) => Share::All,
@@ -146,6 +157,22 @@ impl Classes {
         let last = self.count().saturating_sub(1).max(1);
         #[expect(clippy::cast_precision_loss, reason = "no more than 64 classes")]
         Some(style.palette.at(class as f64 / last as f64))
+    }
+
+    /// The class of all elements of some ranks from 0, if colours tell them and there is one.
+    pub(super) fn of_ranks(&self, ranks: &Range<u64>) -> Option<u64> {
+        let class = self.of_value(ranks.start);
+        let is_one = self.by == ColorBy::Index && self.of_value(ranks.end) == class;
+        is_one.then_some(class)
+    }
+
+    /// Whether no element comes after one of a later class.
+    pub(super) fn come_in_order(&self, graph: &Graph) -> bool {
+        match self.by {
+            ColorBy::Fractal => true,
+            ColorBy::Index => !graph.seeds,
+            _ => false,
+        }
     }
 
     /// Whether all elements of a fractal are of one class.

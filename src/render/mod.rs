@@ -1,13 +1,14 @@
 //! Pictures of approximants.
 //!
 //! A picture begins with a survey of what there is to draw and how large it is, which the graph
-//! tells where it can and a walk where it cannot. One walk for every class of colour follows, so
-//! that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
+//! tells where it can and a walk where it cannot. One walk for every class of colour follows, or one
+//! for all where no class comes after a later one, so that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
 //! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
 //! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
 //! bands.
-//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail;
-//! and where colours tell steps, what is born later than they tell.
+//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
+//! what lies where all is covered in its colour already; and where colours tell steps, what nothing
+//! comes of in those that are painted.
 
 mod bands;
 mod canvas;
@@ -15,6 +16,8 @@ mod classes;
 mod comb;
 mod density;
 mod dxf;
+mod filled;
+mod hidden;
 mod known;
 mod layout;
 mod painter;

@@ -1,9 +1,11 @@
+use std::collections::BTreeSet;
 use std::io;
 
 use crate::grow::Seam;
 use crate::style::{Colour, Width};
 
 use super::comb::Comb;
+use super::hidden::Hidden;
 use super::pen;
 use super::scene::{Pass, Scene};
 use super::sketch::{Kind, Line, Look, Mark, Sketch, class_width};
@@ -28,6 +30,10 @@ pub(super) struct Painter<'a, 's, S> {
     scene: &'a Scene<'a>,
     /// The class's colour, where colours tell something.
     colour: Option<Colour>,
+    /// The class that it has come to, where one walk paints all.
+    class: Option<u64>,
+    /// The layer of the first class, where classes are layers.
+    first_layer: Option<u64>,
     tracer: Tracer<'s, S>,
     look: Option<Look>,
     previous: Option<Previous>,
@@ -43,9 +49,11 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Self {
             scene,
             colour: match pass {
-                Pass::Areas => None,
+                Pass::Areas | Pass::Along => None,
                 Pass::Class(class) => scene.classes.colour(class, scene.style),
             },
+            class: None,
+            first_layer: None,
             tracer: Tracer::new(surface),
             look: None,
             previous: None,
@@ -63,6 +71,64 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let stroke = self.paint(Look::TUFTS).stroke?;
         let below = self.tracer.tufts_below(&stroke);
         (below > 0.0).then(|| Comb::new(width, stroke.pen, below))
+    }
+
+    /// What tells what need not be drawn, if everything is covered in one opaque colour a class.
+    pub(super) fn hidden(&mut self, pass: Pass) -> Option<Hidden> {
+        if !Hidden::may_be(self.scene, pass) {
+            return None;
+        }
+        let Scene {
+            graph,
+            classes,
+            style,
+            ..
+        } = self.scene;
+        let drawn = graph.objects().iter().filter(|object| object.visible);
+        let is_closed = |base_element: usize| graph.base_elements()[base_element].is_closed();
+        let kinds: BTreeSet<bool> = drawn.map(|object| is_closed(object.base_element)).collect();
+        let mut filled = None;
+        let mut inks = BTreeSet::new();
+        let all = match pass {
+            Pass::Along => classes.all(),
+            Pass::Areas | Pass::Class(_) => 0..1,
+        };
+        for class in all {
+            if pass == Pass::Along {
+                self.colour = classes.colour(class, style);
+            }
+            inks.clear();
+            for &is_closed in &kinds {
+                let kind = if is_closed { Kind::Polygon } else { Kind::Line };
+                let paint = self.paint(Look {
+                    kind,
+                    ..Look::TUFTS
+                });
+                inks.insert(
+                    paint
+                        .fill
+                        .or(paint.stroke.map(|stroke| stroke.colour))?
+                        .rgba(),
+                );
+                filled = Some(self.tracer.filled(&paint)?);
+            }
+            if inks.len() != 1 {
+                return None;
+            }
+        }
+        let hidden = Hidden::new(self.scene, filled?);
+        self.first_layer = Some(hidden.first);
+        if let Pass::Class(class) = pass {
+            self.begin_layer(class);
+        }
+        Some(hidden)
+    }
+
+    /// What comes is of the layer of a class.
+    fn begin_layer(&mut self, class: u64) {
+        if let Some(first) = self.first_layer {
+            self.tracer.layer(first + class);
+        }
     }
 
     /// Ends what is still open.
@@ -83,7 +149,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.tracer.tufts(now);
             }
             self.mark(mark, joined, &mut points)?;
-            joined = true;
+            // A class is not yet an element.
+            joined |= !matches!(mark, Mark::Class(_));
         }
         Ok(())
     }
@@ -104,10 +171,23 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 return Ok(());
             }
             Mark::End(joined) => return self.end(joined),
+            Mark::Class(class) => return self.come_to(class),
             Mark::Lines(count) => {
                 let (lines, rest) = points.split_at(count.min(points.len()));
                 *points = rest;
                 return self.lines(lines);
+            }
+            Mark::Polygons {
+                look,
+                vertices,
+                count,
+            } => {
+                let (now, rest) = points.split_at((vertices * count).min(points.len()));
+                *points = rest;
+                self.previous = None;
+                self.is_first = false;
+                self.begin_path(look)?;
+                return self.tracer.polygons(now, vertices);
             }
             Mark::Curve => {
                 let (a, b, end) = (next(), next(), next());
@@ -149,6 +229,18 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             Mark::Break => self.previous = None,
         }
         self.is_first = false;
+        Ok(())
+    }
+
+    /// Goes on with elements of a class.
+    fn come_to(&mut self, class: u64) -> io::Result<()> {
+        if self.class == Some(class) {
+            return Ok(());
+        }
+        self.end_path()?;
+        self.begin_layer(class);
+        self.class = Some(class);
+        self.colour = self.scene.classes.colour(class, self.scene.style);
         Ok(())
     }
 

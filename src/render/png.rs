@@ -18,18 +18,20 @@ pub(super) use split::ROWS as BAND_ROWS;
 use std::convert::Infallible;
 use std::io::{self, Write};
 use std::ops::Range;
+use std::sync::Arc;
 
 pub(super) use tiny_skia::Pixmap;
 
 use crate::parallel::{Line, Team};
-use crate::style::Colour;
+use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
-use self::coverage::{HairPen, MOST_VERTICES, flattened, is_small};
+use self::coverage::{HairPen, MOST_VERTICES, bounding, flattened, is_small, smoothed};
 use self::nib::{Nib, Nibs};
 use self::part::Part;
 use self::skia::Outline;
 use super::Labels;
+use super::filled::Filled;
 use super::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// The most pixels that a picture may have: two gibibytes.
@@ -60,6 +62,8 @@ pub(super) struct Png<'t, 'w> {
     chunk: Chunk,
     line: Line<'t, 'w, Chunk>,
     threads: usize,
+    /// The layer that paths are of.
+    layer: u64,
     nibs: Nibs,
     /// The nib that draws the path as coverage, if one does.
     nib: Option<Nib>,
@@ -120,6 +124,7 @@ impl<'t, 'w> Png<'t, 'w> {
             chunk: Chunk::default(),
             line: team.line(Chunk::cover),
             threads: team.threads().get(),
+            layer: 0,
             nibs: Nibs::default(),
             nib: None,
             at: [0; 2],
@@ -194,6 +199,10 @@ impl<'t, 'w> Png<'t, 'w> {
         if is_small(&self.ring) {
             self.chunk.polygon(&self.ring);
             self.ring.clear();
+        } else if let Some(smooth) = smoothed(&self.ring).filter(|ring| is_small(ring)) {
+            // Of round shapes there are many that only rounding has dented.
+            self.chunk.polygon(&smooth);
+            self.ring.clear();
         } else {
             self.hand_over_ring();
             self.outline.close(&mut self.part.pixmap);
@@ -221,6 +230,7 @@ impl Surface for Png<'_, '_> {
             self.chunk.nib(nib.clone());
             self.nib = Some(nib);
             (self.covers, self.is_outlined) = (false, false);
+            self.part.begin_layer(self.layer);
             return Ok(());
         }
         if self.part.settles_before(paint) {
@@ -234,6 +244,7 @@ impl Surface for Png<'_, '_> {
             && paint.fill.is_some_and(|fill| fill == fill.opaque());
         if self.covers || self.nib.is_some() {
             self.part.begin(paint, self.threads);
+            self.part.begin_layer(self.layer);
         }
         if let Some(nib) = &self.nib {
             self.chunk.nib(nib.clone());
@@ -289,12 +300,21 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        self.stroke(flattened([self.at, a, b, to]));
+        let curve = [self.at, a, b, to];
+        self.stroke(flattened(curve));
         self.at = to;
-        if self.is_outlined {
-            self.hand_over_ring();
-            self.outline.curve_to(a, b, to);
+        if !self.is_outlined {
+            return;
         }
+        if !self.ring.is_empty() {
+            let lines = bounding(curve);
+            if lines.len() <= MOST_VERTICES - self.ring.len() {
+                self.ring.extend(lines);
+                return;
+            }
+            self.hand_over_ring();
+        }
+        self.outline.curve_to(a, b, to);
     }
 
     fn close(&mut self) {
@@ -305,6 +325,17 @@ impl Surface for Png<'_, '_> {
         } else if self.is_outlined {
             self.outline.close(&mut self.part.pixmap);
         }
+    }
+
+    #[inline]
+    fn polygon(&mut self, vertices: &[Position]) -> bool {
+        if !self.covers || !is_small(vertices) {
+            return false;
+        }
+        self.end_ring();
+        self.chunk.polygon(vertices);
+        self.hand_on_chunk();
+        true
     }
 
     #[inline]
@@ -341,6 +372,24 @@ impl Surface for Png<'_, '_> {
 
     fn tufts(&mut self, tufts: &[Tuft]) {
         self.chunk.tufts(tufts);
+    }
+
+    fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+        let is_round = |stroke: &Stroke| {
+            let pen = stroke.pen;
+            pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0
+        };
+        let colour = match (paint.fill, &paint.stroke) {
+            (Some(fill), None) => Some(fill),
+            (None, Some(stroke)) if is_round(stroke) => Some(stroke.colour),
+            _ => None,
+        };
+        let is_opaque = colour.is_some_and(|colour| colour == colour.opaque());
+        (is_opaque && self.part.may_cover()).then(|| self.part.filled(self.threads))
+    }
+
+    fn layer(&mut self, layer: u64) {
+        self.layer = layer;
     }
 
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {

@@ -3,7 +3,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 
 use crate::graph::Graph;
-use crate::grow::{Growth, WalkError, walk_with};
+use crate::grow::{Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
@@ -11,6 +11,7 @@ use super::painter::Painter;
 use super::sight::Sight;
 use super::sketch::Sketcher;
 use super::surface::{Pen, Surface};
+use super::survey::{Ranks, SPAN};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
 
 /// An approximant on its canvas.
@@ -24,6 +25,8 @@ pub(crate) struct Scene<'a> {
     passes: Vec<Pass>,
     /// The number of elements.
     elements: u64,
+    /// Ranks of elements, where colours tell them and it took a walk to know them.
+    ranks: Option<Ranks>,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
 }
@@ -35,6 +38,8 @@ pub(super) enum Pass {
     Areas,
     /// The elements of a class.
     Class(u64),
+    /// The elements of all classes, which come one class after another.
+    Along,
 }
 
 impl<'a> Scene<'a> {
@@ -48,7 +53,11 @@ impl<'a> Scene<'a> {
             && graph.widest().is_none()
             && classes.keep_fractals_whole();
         let areas = (style.fill.is_some() && !together).then_some(Pass::Areas);
-        let painted = painted.into_iter().map(Pass::Class);
+        let painted = if classes.come_in_order(graph) {
+            vec![Pass::Along]
+        } else {
+            painted.into_iter().map(Pass::Class).collect()
+        };
         let passes: Vec<_> = areas.into_iter().chain(painted).collect();
         if let Some(progress) = growth.progress {
             // The survey, and a walk for everything that is painted apart.
@@ -64,6 +73,7 @@ impl<'a> Scene<'a> {
             classes,
             passes,
             elements: survey.elements,
+            ranks: survey.ranks.clone(),
             fills_strokes: together && style.fill.is_some(),
         }
     }
@@ -83,19 +93,28 @@ impl Drawing for Scene<'_> {
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
-        let tells_index = self.style.color_by == ColorBy::Index;
-        // Ranks that are not known before need one pair of eyes.
-        let is_whole = tells_index && (self.sight.cuts() || !self.graph.is_plain());
-        let span = (!is_whole).then_some(if tells_index { LONG_SPAN } else { SPAN });
+        let mut growth = *self.growth;
+        let mut division = Division {
+            span: Some(SPAN),
+            ranks: &[],
+        };
+        if self.style.color_by == ColorBy::Index && (self.sight.cuts() || !self.graph.is_plain()) {
+            match &self.ranks {
+                Some(ranks) => (growth.steps, division.ranks) = (ranks.steps, &ranks.before),
+                // Ranks that are not known before need one pair of eyes.
+                None => division.span = None,
+            }
+        }
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
             let comb = painter.comb().map(Arc::new);
-            let fresh = || Sketcher::new(self, pass, comb.clone());
+            let hidden = painter.hidden(pass).map(Arc::new);
+            let fresh = || Sketcher::new(self, pass, comb.clone(), hidden.clone());
             let walked = walk_with(
                 team,
                 self.graph,
-                self.growth,
-                span,
+                &growth,
+                division,
                 fresh,
                 |sketcher, seam| {
                     let painted = painter.paint_span(&sketcher.sketch, seam);
@@ -113,10 +132,6 @@ impl Drawing for Scene<'_> {
     }
 }
 
-/// Sketches are about so many elements; where colours run along, most of them stay empty.
-const SPAN: u64 = 1 << 12;
-const LONG_SPAN: u64 = 1 << 14;
-
 impl<'a> Survey<'a> {
     /// What the graph tells of an approximant, or a walk over it where it does not. Colours that
     /// tell steps span `steps` of them.
@@ -130,6 +145,74 @@ impl<'a> Survey<'a> {
         match Self::known(graph, growth, style, steps) {
             Some(known) => Ok(known),
             None => Self::new(graph, style, steps).walked(growth, threads),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZero;
+
+    use super::{Pass, Scene};
+    use crate::catalogue::{Catalogue, Shelf};
+    use crate::document::Document;
+    use crate::graph::Graph;
+    use crate::grow::Growth;
+    use crate::render::layout::Layout;
+    use crate::render::{Detail, Format, Labels, Options, Size, write_drawing};
+    use crate::style::ColorBy;
+
+    #[test]
+    fn one_walk_paints_classes_that_come_in_order() {
+        let catalogue = Catalogue::embedded();
+        let cases = [
+            ("gosper", ColorBy::Index),
+            ("dragon-wreath", ColorBy::Index),
+            ("pentaflake", ColorBy::Index),
+            ("hilbert", ColorBy::Index),
+            // Of unlike lengths, so that it takes a walk to know ranks.
+            ("snowflake-sweep", ColorBy::Index),
+            ("random-tree", ColorBy::Index),
+            ("self-seeding-square", ColorBy::Fractal),
+        ];
+        for (name, color_by) in cases {
+            let source = catalogue.component(Shelf::Rules, name).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+            let graph = Graph::compile(&rule, 30).unwrap();
+            let mut style = rule.style().clone();
+            style.color_by = color_by;
+            let options = Options {
+                style,
+                size: Size::Long(96),
+                detail: Some(Detail {
+                    pixels: 1.0,
+                    decides_steps: true,
+                }),
+                ..Options::default()
+            };
+            let growth = Growth::steps(30);
+            let layout = Layout::find(&graph, &growth, &options).unwrap();
+            let scene = || Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let png = |scene: &Scene<'_>, threads: usize| {
+                let mut png = Vec::new();
+                let threads = NonZero::new(threads).unwrap();
+                let labels = Labels::default();
+                write_drawing(scene, Format::Png, &labels, threads, &mut png).unwrap();
+                png
+            };
+            let mut one_by_one = scene();
+            assert!(one_by_one.passes == [Pass::Along], "{name}");
+            one_by_one.passes = one_by_one.classes.all().map(Pass::Class).collect();
+            assert!(one_by_one.passes.len() > 10, "{name}");
+            one_by_one.ranks = None;
+            let expected = png(&one_by_one, 1);
+            for threads in [1, 3] {
+                assert!(
+                    png(&scene(), threads) == expected,
+                    "{name} on {threads} threads"
+                );
+            }
         }
     }
 }

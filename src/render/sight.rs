@@ -14,6 +14,9 @@ use super::survey::relative_overhang;
 #[cfg(test)]
 mod tests;
 
+/// After more steps than this it is not told how long elements are.
+const MOST_POWERS: usize = 1 << 10;
+
 /// Where walks for a picture need not go.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
@@ -22,6 +25,9 @@ pub(super) struct Sight {
     window: Option<Window>,
     /// Whether an object is replaced however small it is, by object; empty if none is.
     is_whole: Arc<[bool]>,
+    /// The most that what becomes of an element is long after a number of steps, as a multiple of
+    /// its length.
+    longest: Arc<[f64]>,
 }
 
 /// What part of the plane is seen.
@@ -45,6 +51,7 @@ impl Sight {
             shortest: 0.0,
             window: None,
             is_whole: Arc::new([]),
+            longest: Arc::new([]),
         }
     }
 
@@ -59,6 +66,7 @@ impl Sight {
             } else {
                 Arc::new([])
             },
+            longest: longest(graph, shortest),
         }
     }
 
@@ -117,6 +125,14 @@ impl Sight {
         self.cuts().then_some(self.shortest)
     }
 
+    /// Whether anything that becomes of an element of a length in a number of steps may be so long
+    /// that it is replaced.
+    #[inline]
+    pub(super) fn lasts(&self, length: f64, steps: u32) -> bool {
+        let longest = self.longest.get(steps as usize).or(self.longest.last());
+        longest.is_none_or(|longest| length * longest >= self.shortest)
+    }
+
     /// What a walk does with an element that can be replaced.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {
@@ -153,6 +169,19 @@ impl Window {
     }
 }
 
+/// The most that what becomes of an element is long after each number of steps, as a multiple of its
+/// length, where a length decides what is replaced.
+fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
+    // Rounding must not hide what is just as long.
+    const SLACK: f64 = 1.0 + 1e-9;
+    let ratio = graph.longest_child() * SLACK;
+    if shortest <= 0.0 || ratio >= 1.0 {
+        return Arc::new([]);
+    }
+    let powers = std::iter::successors(Some(SLACK), |power| Some(power * ratio));
+    powers.take(MOST_POWERS).collect()
+}
+
 /// What can be done with an element that is not seen; `None` if it is to be replaced nevertheless.
 fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
     // Elements and fractals that are not visited could not be numbered.
@@ -176,7 +205,7 @@ fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
 }
 
 /// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
-fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
+pub(super) fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
     let stroke = match style.width {
         Width::Relative(width) => {
             width * graph.widest().unwrap_or(1.0) * graph.unit() * relative_overhang(style)

@@ -4,6 +4,7 @@
 //! sketches of all spans together, in order.
 
 use std::io;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -14,6 +15,7 @@ use crate::style::{ColorBy, Colour, Width};
 use super::WIDTHS_AN_OCTAVE;
 use super::classes::Share;
 use super::comb::Comb;
+use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
 use super::surface::{FINE, Position, Tuft, position};
 
@@ -71,10 +73,18 @@ pub(super) struct Line {
 pub(super) enum Mark {
     /// A fractal begins.
     Begin,
+    /// Elements of a class come.
+    Class(u64),
     /// A line begins at a point.
     Line(Line),
     /// A polygon begins at a point.
     Polygon(Look),
+    /// Polygons that look alike, by number, each of so many vertices.
+    Polygons {
+        look: Look,
+        vertices: usize,
+        count: usize,
+    },
     /// The outline of a fractal begins or goes on at a point.
     Area,
     /// Straight lines to so many points.
@@ -101,25 +111,30 @@ pub(super) struct Sketch {
     pub(super) tufts: Vec<Tuft>,
 }
 
+/// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
+fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
+    let is_line = |piece: &Piece| matches!(piece, Piece::Line(_));
+    let (_, sides) = pieces.split_last()?;
+    pieces
+        .iter()
+        .all(is_line)
+        .then(|| sides.iter().map(Piece::end))
+}
+
 /// Whether an outline starts and ends where its frame does, in the order of traversal.
 fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     let [start, end] = base_element.ends_meet_frame();
     if reversed { [end, start] } else { [start, end] }
 }
 
-/// The step after which nothing is born that a pass needs, if there is one: where lines do not lead
-/// to the ends of elements that it does not paint.
-fn last_step(scene: &Scene<'_>, pass: Pass) -> Option<u32> {
-    let Pass::Class(class) = pass else {
-        return None;
-    };
+/// Whether no line leads to the end of an element that a pass does not paint.
+pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
     let graph = scene.graph;
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
-    let stands_alone = drawn.all(|object| {
+    drawn.all(|object| {
         let base_element = &graph.base_elements()[object.base_element];
         base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
-    });
-    scene.classes.last_step(class).filter(|_| stands_alone)
+    })
 }
 
 /// Sketches what one walk over an approximant is for.
@@ -130,22 +145,47 @@ pub(super) struct Sketcher<'a> {
     pub(super) sketch: Sketch,
     /// What makes tufts, where the surface takes them.
     comb: Option<Arc<Comb>>,
+    /// What need not be drawn, where that can be told,
+    hidden: Option<Arc<Hidden>>,
+    /// and the class that all of the span is of, if it is known.
+    whole: Option<u64>,
+    /// The class that the sketch has come to, where it holds all.
+    class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
-    /// What is born in later steps is not painted, nor is it needed for what is.
-    last_step: u32,
+    /// Whether nothing needs to be known of elements that are not painted.
+    stands_alone: bool,
+    /// The steps in which is born what is painted, where that is so.
+    steps: Option<RangeInclusive<u32>>,
 }
 
 impl<'a> Sketcher<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, comb: Option<Arc<Comb>>) -> Self {
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        pass: Pass,
+        comb: Option<Arc<Comb>>,
+        hidden: Option<Arc<Hidden>>,
+    ) -> Self {
+        let stands_alone = stands_alone(scene);
+        let steps = match pass {
+            Pass::Class(class) if stands_alone => scene.classes.steps(class),
+            _ => None,
+        };
         Self {
             scene,
             pass,
             fractal: Fractal::default(),
             sketch: Sketch::default(),
             comb,
+            hidden,
+            whole: match pass {
+                Pass::Class(class) => Some(class),
+                Pass::Areas | Pass::Along => None,
+            },
+            class: None,
             open: None,
-            last_step: last_step(scene, pass).unwrap_or(u32::MAX),
+            stands_alone,
+            steps,
         }
     }
 
@@ -154,7 +194,11 @@ impl<'a> Sketcher<'a> {
         self.sketch.marks.clear();
         self.sketch.points.clear();
         self.sketch.tufts.clear();
+        self.class = None;
         self.open = None;
+        if self.pass == Pass::Along {
+            self.whole = None;
+        }
     }
 
     #[inline]
@@ -177,6 +221,14 @@ impl<'a> Sketcher<'a> {
             *last = mark;
         } else {
             self.mark(mark);
+        }
+    }
+
+    /// What comes is of a class.
+    fn come_to(&mut self, class: u64) {
+        if self.class != Some(class) {
+            self.class = Some(class);
+            self.mark(Mark::Class(class));
         }
     }
 
@@ -221,22 +273,48 @@ impl<'a> Sketcher<'a> {
         } else {
             0
         };
-        self.mark(Mark::Polygon(Look {
+        let look = Look {
             kind: Kind::Polygon,
             width,
             colour: self.colour(element, self.scene.style.polygons()),
-        }));
+        };
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
+        if let Some(vertices) = vertices(pieces) {
+            self.polygon_of(look, pieces.len());
+            [start]
+                .into_iter()
+                .chain(vertices)
+                .for_each(|vertex| self.start_at(map.transform_point2(vertex)));
+            return;
+        }
+        self.mark(Mark::Polygon(look));
         self.start_at(map.transform_point2(start));
         for piece in pieces {
             self.piece(&piece.transformed(&map));
         }
         let returned = matches!(pieces.last(), Some(Piece::Line(_)));
         self.mark(Mark::Close { returned });
+    }
+
+    /// One more polygon of a number of vertices.
+    #[inline]
+    fn polygon_of(&mut self, look: Look, sides: usize) {
+        match self.sketch.marks.last_mut() {
+            Some(Mark::Polygons {
+                look: last,
+                vertices,
+                count,
+            }) if *last == look && *vertices == sides => *count += 1,
+            _ => self.mark(Mark::Polygons {
+                look,
+                vertices: sides,
+                count: 1,
+            }),
+        }
     }
 
     /// Goes on along the outline of a fractal that is filled, whether it is drawn there or not.
@@ -339,6 +417,21 @@ impl<'a> Sketcher<'a> {
         }
     }
 
+    /// Some elements of a run, by number, from which lines lead to no others.
+    fn some(&mut self, run: &Run<'_>, elements: impl Iterator<Item = (usize, Element)>) {
+        let mut next = 0;
+        for (number, element) in elements {
+            if number != next {
+                self.pass_by(Mark::Break);
+            }
+            next = number + 1;
+            self.see(&element);
+        }
+        if next as u64 != run.count() {
+            self.pass_by(Mark::Break);
+        }
+    }
+
     /// Lines of one class, short and thin ones as tufts; whether there are any.
     fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
         let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
@@ -391,6 +484,25 @@ impl<'a> Sketcher<'a> {
         is_tinted.then(|| element.coat.on(own))
     }
 
+    /// Whether anything that becomes of an element may be born in a step that is painted.
+    #[inline]
+    fn may_paint(&self, subtree: &Subtree) -> bool {
+        self.steps.as_ref().is_none_or(|steps| {
+            let before = steps.start().saturating_sub(subtree.born + 1);
+            let length = subtree.frame.stretch();
+            subtree.born < *steps.end() && self.scene.sight.lasts(length, before)
+        })
+    }
+
+    /// Whether nothing that becomes of an element can be seen any more.
+    #[inline]
+    fn is_hidden(&self, subtree: &Subtree) -> bool {
+        let (Some(hidden), Some(class)) = (&self.hidden, self.whole) else {
+            return false;
+        };
+        hidden.hides(self.scene, subtree, class)
+    }
+
     fn kind(&self) -> Kind {
         if self.scene.fills_strokes {
             Kind::Ring
@@ -405,15 +517,21 @@ impl<'a> Sketcher<'a> {
         let object = &graph.objects()[element.object];
         let base_element = &graph.base_elements()[object.base_element];
         let is_closed = base_element.is_closed();
-        let Pass::Class(class) = self.pass else {
-            if self.fractal.is_ring && !is_closed {
-                self.area(element, base_element);
-            } else {
-                self.pass_by(Mark::Break);
+        let is_drawn = match self.pass {
+            Pass::Areas if self.fractal.is_ring && !is_closed => {
+                return self.area(element, base_element);
             }
-            return;
+            Pass::Areas => return self.pass_by(Mark::Break),
+            Pass::Class(class) => {
+                object.visible && classes.of(element, &self.fractal, graph) == class
+            }
+            Pass::Along => {
+                if object.visible {
+                    self.come_to(classes.of(element, &self.fractal, graph));
+                }
+                object.visible
+            }
         };
-        let is_drawn = object.visible && classes.of(element, &self.fractal, graph) == class;
         match (is_drawn, is_closed) {
             (true, true) => self.polygon(element, base_element),
             (true, false) => self.line(element, base_element),
@@ -472,6 +590,12 @@ impl Visitor for Sketcher<'_> {
         self.fractal = fractal;
     }
 
+    fn expect(&mut self, ranks: Range<u64>) {
+        if self.pass == Pass::Along {
+            self.whole = self.scene.classes.of_ranks(&ranks);
+        }
+    }
+
     fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
         self.fractal = fractal;
         self.mark(Mark::Begin);
@@ -481,7 +605,7 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.sight.enter(subtree) {
-            Enter::Replace if subtree.born >= self.last_step => Enter::Skip,
+            Enter::Replace if !self.may_paint(subtree) || self.is_hidden(subtree) => Enter::Skip,
             enter => enter,
         }
     }
@@ -497,6 +621,17 @@ impl Visitor for Sketcher<'_> {
         let share = match self.pass {
             Pass::Areas => Share::Some,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
+            Pass::Along => {
+                let ends = [run.first(), run.last()].map(|element| {
+                    element.map_or(0, |element| classes.of(&element, &self.fractal, graph))
+                });
+                if ends[0] == ends[1] {
+                    self.come_to(ends[0]);
+                    Share::All
+                } else {
+                    Share::Some
+                }
+            }
         };
         let one_width = matches!(self.scene.style.width, Width::Pixels(_));
         let line = run.line().filter(|_| one_width);
@@ -506,7 +641,15 @@ impl Visitor for Sketcher<'_> {
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
-            _ => run.elements().for_each(|element| self.see(&element)),
+            _ => match (self.pass, self.steps.clone()) {
+                (_, Some(steps)) => self.some(run, run.born_in(steps)),
+                (Pass::Class(class), None) if self.stands_alone => {
+                    let fractal = self.fractal;
+                    let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
+                    self.some(run, run.chosen(is_of));
+                }
+                _ => run.elements().for_each(|element| self.see(&element)),
+            },
         }
         Ok(())
     }

@@ -1,7 +1,10 @@
 use std::io;
+use std::sync::Arc;
 
 use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
+
+use super::filled::Filled;
 
 /// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
 ///
@@ -110,6 +113,11 @@ pub(crate) trait Surface {
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.
     fn close(&mut self);
+    /// A polygon that is a subpath of its own, with vertices that may be equal, where the surface knows
+    /// a short way to draw it; whether it does.
+    fn polygon(&mut self, _: &[Position]) -> bool {
+        false
+    }
     /// Hands on what has been drawn of the path, if that is much.
     fn hand_on(&mut self) -> io::Result<()>;
     /// Ends the path.
@@ -122,6 +130,14 @@ pub(crate) trait Surface {
     }
     /// Tufts, within a path of one that may come so.
     fn tufts(&mut self, _: &[Tuft]) {}
+
+    /// What tells which pixels are covered all over, where paths that are painted so are drawn by
+    /// layers, each of one opaque colour; nothing unless said otherwise.
+    fn filled(&mut self, _: &Paint) -> Option<Arc<Filled>> {
+        None
+    }
+    /// The paths that come are of a layer.
+    fn layer(&mut self, _: u64) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
     /// and nothing is drawn outside.

@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::num::NonZero;
+use std::sync::Arc;
 
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
@@ -13,8 +14,17 @@ use crate::style::{Cap, ColorBy, Join, Style, Width};
 use super::sight::Sight;
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
-/// Spans of a survey have about so many elements.
-const SPAN: u64 = 1 << 14;
+/// Spans of a survey, and of what follows from it, have about so many elements.
+pub(super) const SPAN: u64 = 1 << 12;
+
+/// What a walk has told of ranks, for another one that is divided in the same way.
+#[derive(Clone, Debug)]
+pub(super) struct Ranks {
+    /// The number of steps that was walked to.
+    pub(super) steps: u32,
+    /// Of every span, how many elements of the fractal that it goes on with came before.
+    pub(super) before: Arc<[u64]>,
+}
 
 /// What a walk over an approximant learns before anything is drawn.
 #[derive(Clone, Debug)]
@@ -37,6 +47,8 @@ pub struct Survey<'g> {
     pub(super) is_bounded: bool,
     /// The number of steps that are needed: more would change nothing.
     pub(super) steps: u32,
+    /// Ranks, where colours tell them and there was a walk.
+    pub(super) ranks: Option<Ranks>,
     sight: Sight,
     fractal: Fractal,
     /// The last rank in the fractal that a span goes on with, as far as it goes on.
@@ -62,6 +74,7 @@ impl<'g> Survey<'g> {
             walked: false,
             is_bounded: false,
             steps: 0,
+            ranks: None,
             sight: Sight::unbounded(),
             fractal: Fractal::default(),
             last_index: None,
@@ -207,6 +220,8 @@ impl<'g> Survey<'g> {
         };
         self.walked = true;
         let fresh = || none.clone();
+        let tells_index = self.style.color_by == ColorBy::Index;
+        let mut before = Vec::new();
         walk_in_spans(
             self.graph,
             growth,
@@ -215,6 +230,9 @@ impl<'g> Survey<'g> {
             fresh,
             |seen, seam| {
                 self.add(seen, seam);
+                if tells_index {
+                    before.push(seam.before);
+                }
                 let fractal = seen.fractal;
                 *seen = Self {
                     fractal,
@@ -223,6 +241,17 @@ impl<'g> Survey<'g> {
                 Ok(())
             },
         )?;
+        if tells_index {
+            if self.sight.cuts() {
+                // The visitor that was asked on the way is taken last, and has seen nothing.
+                before.pop();
+            }
+            before.push(self.largest_index);
+            self.ranks = Some(Ranks {
+                steps: growth.steps,
+                before: before.into(),
+            });
+        }
         Ok(self)
     }
 

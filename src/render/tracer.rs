@@ -1,5 +1,7 @@
 use std::io;
+use std::sync::Arc;
 
+use crate::render::filled::Filled;
 use crate::render::surface::{Paint, Position, Stroke, Surface, Tuft};
 
 /// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
@@ -71,6 +73,23 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.has_length = true;
     }
 
+    /// Polygons of a number of vertices, one after another.
+    pub(crate) fn polygons(&mut self, vertices: &[Position], sides: usize) -> io::Result<()> {
+        self.finish();
+        for polygon in vertices.chunks_exact(sides) {
+            if self.surface.polygon(polygon) {
+                continue;
+            }
+            if let Some((&start, rest)) = polygon.split_first() {
+                self.move_to(start);
+                rest.iter().for_each(|&vertex| self.line_to(vertex));
+                self.close(false);
+            }
+            self.surface.hand_on()?;
+        }
+        self.surface.hand_on()
+    }
+
     /// Closes the subpath; `returned` tells that its last vertex is its first, which is then not
     /// drawn twice.
     pub(crate) fn close(&mut self, returned: bool) {
@@ -112,6 +131,16 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     /// As [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)
+    }
+
+    /// As [`Surface::filled`].
+    pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+        self.surface.filled(paint)
+    }
+
+    /// As [`Surface::layer`].
+    pub(crate) fn layer(&mut self, layer: u64) {
+        self.surface.layer(layer);
     }
 
     /// Tufts, wherever the pen is.

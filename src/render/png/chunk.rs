@@ -20,8 +20,8 @@ enum Command {
     GoOn,
     /// Lines to so many positions, one after another.
     Lines(usize),
-    /// A small polygon of so many vertices.
-    Polygon(usize),
+    /// Small polygons of so many vertices each, by number.
+    Polygons { vertices: usize, count: usize },
     /// So many tufts.
     Tufts(usize),
 }
@@ -72,7 +72,14 @@ impl Chunk {
     /// Adds a polygon that is small and convex.
     pub(super) fn polygon(&mut self, vertices: &[Position]) {
         self.points.extend_from_slice(vertices);
-        self.commands.push(Command::Polygon(vertices.len()));
+        let sides = vertices.len();
+        match self.commands.last_mut() {
+            Some(Command::Polygons { vertices, count }) if *vertices == sides => *count += 1,
+            _ => self.commands.push(Command::Polygons {
+                vertices: sides,
+                count: 1,
+            }),
+        }
     }
 
     pub(super) fn tufts(&mut self, tufts: &[Tuft]) {
@@ -132,8 +139,10 @@ impl Chunk {
                     }
                     at = lines.last().copied().unwrap_or(at);
                 }
-                Command::Polygon(count) => {
-                    plane.polygon(next(*count));
+                Command::Polygons { vertices, count } => {
+                    for polygon in next(vertices * count).chunks_exact(*vertices) {
+                        plane.polygon(polygon);
+                    }
                 }
                 Command::Tufts(count) => {
                     let (now, rest) = tufts.split_at(*count);

@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
+use crate::render::filled::Filled;
 use crate::render::surface::Paint;
 use crate::style::Colour;
 
@@ -73,8 +74,25 @@ impl Part {
     pub(super) fn begin(&mut self, paint: &Paint, threads: usize) {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         self.ink = stroke.or(paint.fill);
+        self.made_planes(threads);
+    }
+
+    /// Says of what layer the paths are that are covered.
+    #[inline]
+    pub(super) fn begin_layer(&self, layer: u64) {
+        if let Some(planes) = &self.planes {
+            planes.filled().begin(layer);
+        }
+    }
+
+    /// Which pixels are covered all over.
+    pub(super) fn filled(&mut self, threads: usize) -> Arc<Filled> {
+        Arc::clone(self.made_planes(threads).filled())
+    }
+
+    fn made_planes(&mut self, threads: usize) -> &Arc<Planes> {
         let planes = || Arc::new(Planes::new(self.size, self.rows.clone(), threads));
-        self.planes.get_or_insert_with(planes);
+        self.planes.get_or_insert_with(planes)
     }
 
     /// Whether what has been covered must be coloured before the next path, whatever that is.

@@ -1,7 +1,9 @@
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-use super::coverage::Plane;
+use crate::render::filled::Filled;
+
+use super::coverage::{MARGIN, Plane};
 
 /// Planes beside the first one have no more pixels than this together.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -16,6 +18,7 @@ pub(super) struct Planes {
     rows: Range<u32>,
     /// Nothing as long as nothing has been covered.
     planes: Vec<Mutex<Option<Plane>>>,
+    filled: Arc<Filled>,
 }
 
 impl Planes {
@@ -32,27 +35,37 @@ impl Planes {
         let count = threads.min(others.saturating_add(1));
         Self {
             picture,
-            rows,
             planes: std::iter::repeat_with(Mutex::default).take(count).collect(),
+            filled: Arc::new(Filled::new(picture[0], rows.clone(), MARGIN, count)),
+            rows,
         }
     }
 
     /// Covers something on a plane on which no other thread draws.
     pub(super) fn with_one(&self, cover: impl FnOnce(&mut Plane)) {
-        let mut free = self
-            .planes
-            .iter()
-            .filter_map(|plane| match plane.try_lock() {
-                Ok(plane) => Some(plane),
-                Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
-                Err(TryLockError::WouldBlock) => None,
-            });
-        let mut plane = free.next().unwrap_or_else(|| lock(&self.planes[0]));
-        cover(plane.get_or_insert_with(|| self.plane()));
+        let planes = (0..).zip(&self.planes);
+        let mut free = planes.filter_map(|(number, plane)| match plane.try_lock() {
+            Ok(plane) => Some((number, plane)),
+            Err(TryLockError::Poisoned(poisoned)) => Some((number, poisoned.into_inner())),
+            Err(TryLockError::WouldBlock) => None,
+        });
+        let (number, mut plane) = free.next().unwrap_or_else(|| (0, lock(&self.planes[0])));
+        Filled::draw();
+        cover(self.made(number, &mut plane));
     }
 
-    fn plane(&self) -> Plane {
-        Plane::of_rows(self.picture, self.rows.clone())
+    /// Which pixels are covered all over.
+    pub(super) fn filled(&self) -> &Arc<Filled> {
+        &self.filled
+    }
+
+    /// A plane, made if it is not there yet.
+    fn made<'p>(&self, number: usize, plane: &'p mut Option<Plane>) -> &'p mut Plane {
+        plane.get_or_insert_with(|| {
+            let plane = Plane::of_rows(self.picture, self.rows.clone());
+            self.filled.add(number, plane.cells());
+            plane
+        })
     }
 
     /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
@@ -61,7 +74,8 @@ impl Planes {
         let Some(mut first) = planes.next() else {
             return;
         };
-        let first = first.get_or_insert_with(|| self.plane());
+        self.filled.end();
+        let first = self.made(0, &mut first);
         for mut other in planes {
             if let Some(other) = &mut *other {
                 first.take_over(other);

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::num::NonZero;
+use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
@@ -9,10 +10,11 @@ use crate::document::Document;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
+use crate::render::filled::Filled;
 use crate::render::layout::Layout;
 use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
 use crate::render::{Drawing, Options, Scene, Size};
-use crate::style::{Cap, Colour, Join, Style, Width};
+use crate::style::{Cap, ColorBy, Colour, Join, Style, Width};
 
 use super::Png;
 
@@ -133,39 +135,63 @@ fn long_paths_are_in_one_piece() {
     }
 }
 
-/// A picture on which every line is drawn by itself.
-struct Uncombed<'p, 't, 'w>(&'p mut Png<'t, 'w>);
+/// A picture on which every line is drawn by itself, and even what is hidden unless it is asked.
+struct Plain<'p, 't, 'w> {
+    png: &'p mut Png<'t, 'w>,
+    hides: bool,
+    /// The number of vertices.
+    drawn: usize,
+}
 
-impl Surface for Uncombed<'_, '_, '_> {
+impl<'p, 't, 'w> Plain<'p, 't, 'w> {
+    fn new(png: &'p mut Png<'t, 'w>, hides: bool) -> Self {
+        Self {
+            png,
+            hides,
+            drawn: 0,
+        }
+    }
+}
+
+impl Surface for Plain<'_, '_, '_> {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
-        self.0.begin(paint)
+        self.png.begin(paint)
     }
     fn move_to(&mut self, to: Position) {
-        self.0.move_to(to);
+        self.drawn += 1;
+        self.png.move_to(to);
     }
     fn line_to(&mut self, to: Position) {
-        self.0.line_to(to);
+        self.drawn += 1;
+        self.png.line_to(to);
     }
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        self.0.curve_to(a, b, to);
+        self.drawn += 1;
+        self.png.curve_to(a, b, to);
     }
     fn close(&mut self) {
-        self.0.close();
+        self.png.close();
     }
     fn hand_on(&mut self) -> io::Result<()> {
-        self.0.hand_on()
+        self.png.hand_on()
     }
     fn end(&mut self) -> io::Result<()> {
-        self.0.end()
+        self.png.end()
+    }
+    fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+        self.png.filled(paint).filter(|_| self.hides)
+    }
+    fn layer(&mut self, layer: u64) {
+        self.png.layer(layer);
     }
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
-        self.0.enter(corner, size)
+        self.png.enter(corner, size)
     }
     fn leave(&mut self) -> io::Result<()> {
-        self.0.leave()
+        self.png.leave()
     }
     fn label(&mut self, text: &str) {
-        self.0.label(text);
+        self.png.label(text);
     }
 }
 
@@ -222,7 +248,7 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
                 if is_combed {
                     scene.draw(&mut png, team).unwrap();
                 } else {
-                    scene.draw(&mut Uncombed(&mut png), team).unwrap();
+                    scene.draw(&mut Plain::new(&mut png, false), team).unwrap();
                 }
                 png.settle();
                 png.part.pixmap.data().to_vec()
@@ -233,5 +259,65 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
         let shades = combed.iter().zip(&every);
         let most = shades.map(|(one, other)| one.abs_diff(*other)).max();
         assert!(most <= Some(2), "{name} {steps} {width}: {most:?}");
+    }
+}
+
+/// Squares, each on another one like it.
+const TWICE: &str = "
+title: Twice
+initiator: segment
+base_element: square
+generator:
+  connected: false
+  elements:
+    - {from: [0, 0], to: [1/2, 0]}
+    - {from: [1/2, 0], to: [1, 0]}
+    - {from: [0, 1/2], to: [1/2, 1/2]}
+    - {from: [1/2, 1/2], to: [1, 1/2]}
+    - {from: [0, 0], to: [1/2, 0]}
+    - {from: [1/2, 0], to: [1, 0]}
+    - {from: [0, 1/2], to: [1/2, 1/2]}
+    - {from: [1/2, 1/2], to: [1, 1/2]}
+";
+
+/// Also where another colour comes next, and on several threads, some of which look while others
+/// draw.
+#[test]
+fn what_is_hidden_would_not_show() {
+    let catalogue = Catalogue::embedded();
+    let source = Source::new("twice.yaml", TWICE);
+    let document = Document::read(&source, &catalogue).unwrap();
+    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+    let graph = Graph::compile(&rule, 6).unwrap();
+    for color_by in [ColorBy::None, ColorBy::Index, ColorBy::Direction] {
+        let options = Options {
+            style: Style {
+                color_by,
+                ..Style::default()
+            },
+            size: Size::Long(150),
+            ..Options::default()
+        };
+        let growth = Growth::steps(6);
+        let layout = Layout::find(&graph, &growth, &options).unwrap();
+        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let drawn = |threads: usize, hides: bool| {
+            with_team(NonZero::new(threads).unwrap(), |team| {
+                let mut png = Png::begin(scene.size(), None, team).unwrap();
+                let mut plain = Plain::new(&mut png, hides);
+                scene.draw(&mut plain, team).unwrap();
+                let drawn = plain.drawn;
+                png.settle();
+                (drawn, png.part.pixmap.data().to_vec())
+            })
+        };
+        let (all, every) = drawn(1, false);
+        for threads in [1, 3] {
+            let (some, seen) = drawn(threads, true);
+            assert!(seen == every, "{color_by:?} on {threads} threads");
+            // How much is left out on several threads depends on who is faster.
+            let is_less = some < all * 3 / 4 || threads > 1 || color_by == ColorBy::Index;
+            assert!(is_less, "{color_by:?}: {some} of {all}");
+        }
     }
 }

@@ -6,38 +6,63 @@ const TOLERANCE: f64 = 1.0;
 /// and the most lines.
 const MOST_LINES: f64 = 1e4;
 
-/// Where the lines end which a cubic Bézier curve is drawn as.
-pub(crate) fn flattened([from, a, b, to]: [Position; 4]) -> impl Iterator<Item = Position> {
+/// A cubic Bézier curve.
+type Curve = [Position; 4];
+
+/// Where the lines end which a curve is drawn as.
+pub(crate) fn flattened(curve: Curve) -> impl Iterator<Item = Position> {
+    lines(curve, least_lines(curve), 1.0)
+}
+
+/// Where lines end which a curve is drawn as where it bounds a polygon: they are as close, and bound
+/// as much. There may be millions of polygons, so that what chords cut off each would be missed.
+pub(crate) fn bounding(curve: Curve) -> impl ExactSizeIterator<Item = Position> {
+    let count = least_lines(curve).max(2.0);
+    // Chords of a parabola, evenly spread, cut off one part in the square of their number.
+    lines(curve, count, 1.0 / (1.0 - 1.0 / (count * count)))
+}
+
+/// How many lines a curve is drawn as.
+fn least_lines([from, a, b, to]: Curve) -> f64 {
     let bend = |p: Position, q: Position, r: Position| {
         let [x, y] = [0, 1].map(|axis| (p[axis] - 2 * q[axis] + r[axis]) as f64);
         x * x + y * y
     };
     // Wang's bound of the distance between a curve and its chords (1984).
     let bend = bend(from, a, b).max(bend(a, b, to)).sqrt();
-    let lines = (0.75 * bend / TOLERANCE)
-        .sqrt()
-        .ceil()
-        .clamp(1.0, MOST_LINES);
-    let mut line = 0.0;
-    std::iter::from_fn(move || {
-        line += 1.0;
-        match line {
-            line if line < lines => Some(point([from, a, b, to], line / lines)),
-            line if line > lines => None,
-            _ => Some(to),
+    let lines = (0.75 * bend / TOLERANCE).sqrt().ceil();
+    lines.clamp(1.0, MOST_LINES)
+}
+
+/// Where a number of lines end which are so many times as far from the line between the curve's
+/// ends as it is.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small whole number"
+)]
+fn lines(curve: Curve, count: f64, swell: f64) -> impl ExactSizeIterator<Item = Position> {
+    let last = count as usize - 1;
+    (0..last + 1).map(move |line| {
+        if line == last {
+            curve[3]
+        } else {
+            point(curve, (line + 1) as f64 / count, swell)
         }
     })
 }
 
-/// A point of a curve.
+/// A point of a curve, moved away from the line between the ends.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "curves lie between their controls"
 )]
-fn point([p, q, r, s]: [Position; 4], t: f64) -> Position {
+fn point([p, q, r, s]: Curve, t: f64, swell: f64) -> Position {
     let u = 1.0 - t;
     [0, 1].map(|axis| {
         let [p, q, r, s] = [p, q, r, s].map(|control| control[axis] as f64);
-        (u * u * (u * p + 3.0 * t * q) + t * t * (3.0 * u * r + t * s)).round() as i64
+        let on_curve = u * u * (u * p + 3.0 * t * q) + t * t * (3.0 * u * r + t * s);
+        let on_line = u * p + t * s;
+        (on_line + swell * (on_curve - on_line)).round() as i64
     })
 }

@@ -13,13 +13,15 @@ mod polygon;
 mod tests;
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 
-pub(crate) use curve::flattened;
+pub(crate) use curve::{bounding, flattened};
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
-pub(crate) use polygon::{MOST_VERTICES, is_small};
+pub(crate) use polygon::{MOST_VERTICES, is_small, smoothed};
 
 /// A position in hundredths of a pixel.
 type Position = [i64; 2];
@@ -35,7 +37,7 @@ pub(crate) const WHOLE: u32 = SAMPLES << 8;
 
 /// Pixels around the picture that are drawn on and never seen, so that nothing that touches the
 /// picture needs to be cut.
-const MARGIN: i64 = 4;
+pub(crate) const MARGIN: i64 = 5;
 
 /// Where sample `number` lies in its pixel. The samples form a lattice; no two of them share a
 /// row or a column, so that edges that are nearly level, or upright, have 65 shades too.
@@ -61,8 +63,9 @@ pub(crate) struct Plane {
     /// The cells of a row, the margins' among them.
     stride: usize,
     /// By rows. Atomic so that the compiler does not join neighbours into wider stores: prints
-    /// overlap, and to load what was stored in other portions takes a processor long.
-    cells: Vec<AtomicU64>,
+    /// overlap, and to load what was stored in other portions takes a processor long. Shared so that
+    /// others see what is covered all over.
+    cells: Arc<[AtomicU64]>,
     /// What is thinner than that.
     hairs: Hairs,
     touched: Touched,
@@ -118,6 +121,11 @@ impl Plane {
         }
     }
 
+    /// The samples that are covered, by pixel, by rows, with a margin of [`MARGIN`] around the picture.
+    pub(crate) fn cells(&self) -> Arc<[AtomicU64]> {
+        Arc::clone(&self.cells)
+    }
+
     /// The rows and columns, the margins among them, where something may be covered, which is then
     /// forgotten.
     fn take_touched(&mut self) -> [Range<usize>; 2] {
@@ -143,9 +151,10 @@ impl Plane {
         for row in rows {
             let start = row * self.stride;
             let cells = start + columns.start..start + columns.end;
-            let others = &mut other.cells[cells.clone()];
-            for (cell, other) in self.cells[cells.clone()].iter_mut().zip(others) {
-                *cell.get_mut() |= std::mem::take(other.get_mut());
+            let others = &other.cells[cells.clone()];
+            for (cell, other) in self.cells[cells.clone()].iter().zip(others) {
+                cover(cell, other.load(Relaxed));
+                other.store(0, Relaxed);
             }
             self.hairs.take_over(&mut other.hairs, cells);
         }
@@ -163,8 +172,9 @@ impl Plane {
             let start = row * self.stride;
             let shown = (margin..margin + height).contains(&row);
             let cells = start + columns.start..start + columns.end;
-            for (column, cell) in columns.clone().zip(&mut self.cells[cells]) {
-                let samples = std::mem::take(cell.get_mut()).count_ones();
+            for (column, cell) in columns.clone().zip(&self.cells[cells]) {
+                let samples = cell.load(Relaxed).count_ones();
+                cell.store(0, Relaxed);
                 let hairs = self.hairs.take(start + column);
                 let covered = covered(samples, hairs);
                 if covered > 0 && shown && seen.contains(&column) {
@@ -174,6 +184,12 @@ impl Plane {
             }
         }
     }
+}
+
+/// Covers samples of a pixel, on a plane on which no other thread draws.
+#[inline(always)]
+fn cover(cell: &AtomicU64, samples: u64) {
+    cell.store(cell.load(Relaxed) | samples, Relaxed);
 }
 
 /// How much of a pixel is covered by samples and, of the rest, by a part.

@@ -1,6 +1,4 @@
-use std::sync::atomic::Ordering::Relaxed;
-
-use super::{FINE, MARGIN, Plane, Position, index, mask};
+use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// Where the pen can stand: steps to a pixel, as a power of two.
 const STEP_BITS: u32 = 4;
@@ -50,13 +48,14 @@ enum Prints {
     Two(Vec<Print<2>>),
     Three(Vec<Print<3>>),
     Four(Vec<Print<4>>),
+    Five(Vec<Print<5>>),
 }
 
 type Print<const SIDE: usize> = [[u64; SIDE]; SIDE];
 
 impl RoundPen {
     /// The widths that there are pens of, in pixels: what is thinner falls between the samples.
-    pub(crate) const WIDTHS: std::ops::RangeInclusive<f64> = 0.25..=3.0;
+    pub(crate) const WIDTHS: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 
     /// A pen of one of the [`WIDTHS`](Self::WIDTHS).
     #[expect(clippy::cast_possible_truncation, reason = "pens are small")]
@@ -71,8 +70,10 @@ impl RoundPen {
                 Prints::Two(prints(radius))
             } else if width <= 2.0 {
                 Prints::Three(prints(radius))
-            } else {
+            } else if width <= 3.0 {
                 Prints::Four(prints(radius))
+            } else {
+                Prints::Five(prints(radius))
             },
         }
     }
@@ -102,6 +103,7 @@ impl Plane {
                 Prints::Two(prints) => self.print(prints, corner(pen, at)),
                 Prints::Three(prints) => self.print(prints, corner(pen, at)),
                 Prints::Four(prints) => self.print(prints, corner(pen, at)),
+                Prints::Five(prints) => self.print(prints, corner(pen, at)),
             }
             self.touch(corner(pen, at));
         }
@@ -124,6 +126,7 @@ impl Plane {
             Prints::Two(prints) => self.line_of(prints, pen, from, to),
             Prints::Three(prints) => self.line_of(prints, pen, from, to),
             Prints::Four(prints) => self.line_of(prints, pen, from, to),
+            Prints::Five(prints) => self.line_of(prints, pen, from, to),
         }
     }
 
@@ -170,7 +173,7 @@ impl Plane {
         for (row, masks) in print.iter().enumerate() {
             let cells = &cells[row * self.stride..][..SIDE];
             for (cell, mask) in cells.iter().zip(masks) {
-                cell.store(cell.load(Relaxed) | mask, Relaxed);
+                cover(cell, *mask);
             }
         }
     }
@@ -178,8 +181,8 @@ impl Plane {
     #[inline]
     fn touch(&mut self, corner: [i64; 2]) {
         let [column, row] = corner.map(|corner| place(corner) >> STEP_BITS);
-        // The widest pen reaches into the third pixel after the first.
-        self.touched.add([column, column + 3], [row, row + 3]);
+        // The widest pen reaches into the fourth pixel after the first.
+        self.touched.add([column, column + 4], [row, row + 4]);
     }
 
     /// Whether a position lies near enough to be seen, which most often it does.

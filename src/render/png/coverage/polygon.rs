@@ -1,9 +1,13 @@
 use std::sync::LazyLock;
+use std::sync::atomic::Ordering::Relaxed;
 
-use super::{FINE, MARGIN, Plane, Position, index, mask};
+use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// The most vertices of a polygon that is drawn here.
-pub(crate) const MOST_VERTICES: usize = 8;
+pub(crate) const MOST_VERTICES: usize = 16;
+
+/// Most polygons have no more vertices than this.
+const FEW_VERTICES: usize = 4;
 
 /// The most pixels of its width and height.
 const MOST_PIXELS: i64 = 8;
@@ -116,12 +120,10 @@ fn bounds(vertices: &[Position]) -> [Position; 2] {
     })
 }
 
-type Sides = [[i64; 2]; MOST_VERTICES];
-
 /// The sides of a polygon, that to the first vertex first.
 #[inline]
-fn sides(vertices: &[Position]) -> Sides {
-    let mut sides = [[0; 2]; MOST_VERTICES];
+fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
+    let mut sides = [[0; 2]; MOST];
     let mut before = vertices.last().copied().unwrap_or_default();
     for (side, &vertex) in sides.iter_mut().zip(vertices) {
         *side = [vertex[0] - before[0], vertex[1] - before[1]];
@@ -132,13 +134,20 @@ fn sides(vertices: &[Position]) -> Sides {
 
 /// Whether a polygon is small and convex, so that [`Plane::polygon`] covers it.
 pub(crate) fn is_small(vertices: &[Position]) -> bool {
-    outline(vertices).is_some()
+    if vertices.len() <= FEW_VERTICES {
+        outline::<FEW_VERTICES>(vertices).is_some()
+    } else {
+        outline::<MOST_VERTICES>(vertices).is_some()
+    }
 }
 
-/// The box, the sides and the orientation of a polygon, if it is small and convex.
+/// The box, the sides and the orientation of a polygon.
+type Outline<const MOST: usize> = ([Position; 2], [[i64; 2]; MOST], i64);
+
+/// The outline of a polygon of a number of vertices at most, if it is small and convex.
 #[inline]
-fn outline(vertices: &[Position]) -> Option<([Position; 2], Sides, i64)> {
-    if vertices.is_empty() || vertices.len() > MOST_VERTICES {
+fn outline<const MOST: usize>(vertices: &[Position]) -> Option<Outline<MOST>> {
+    if vertices.is_empty() || vertices.len() > MOST {
         return None;
     }
     let [least, most] = bounds(vertices);
@@ -150,10 +159,43 @@ fn outline(vertices: &[Position]) -> Option<([Position; 2], Sides, i64)> {
     Some(([least, most], sides, orientation))
 }
 
+/// A polygon without the vertices that lie no farther than a hundredth of a pixel from the line
+/// between their neighbours. None of one that is larger than those that are drawn here.
+pub(crate) fn smoothed(vertices: &[Position]) -> Option<Vec<Position>> {
+    let (&last, true) = (vertices.last()?, vertices.len() <= MOST_VERTICES) else {
+        return None;
+    };
+    let [least, most] = bounds(vertices);
+    if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
+        return None;
+    }
+    let mut smooth = Vec::with_capacity(vertices.len());
+    let mut before = last;
+    let nexts = vertices.iter().cycle().skip(1);
+    for (&vertex, &next) in vertices.iter().zip(nexts) {
+        let [x, y] = [0, 1].map(|axis| next[axis] - before[axis]);
+        let area = x * (vertex[1] - before[1]) - y * (vertex[0] - before[0]);
+        if area * area > x * x + y * y {
+            smooth.push(vertex);
+            before = vertex;
+        }
+    }
+    Some(smooth)
+}
+
 impl Plane {
     /// Covers a polygon, if it is small and convex; otherwise nothing.
+    #[inline]
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
-        let Some(([least, most], sides, orientation)) = outline(vertices) else {
+        if vertices.len() <= FEW_VERTICES {
+            self.polygon_of::<FEW_VERTICES>(vertices)
+        } else {
+            self.polygon_of::<MOST_VERTICES>(vertices)
+        }
+    }
+
+    fn polygon_of<const MOST: usize>(&mut self, vertices: &[Position]) -> bool {
+        let Some(([least, most], sides, orientation)) = outline::<MOST>(vertices) else {
             return false;
         };
         let pixels = |axis: usize| {
@@ -166,8 +208,11 @@ impl Plane {
         if orientation == 0 || columns[0] > columns[1] || rows[0] > rows[1] {
             return true;
         }
+        if self.is_full(columns, rows) {
+            return true;
+        }
         let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
-        let mut edges = [HalfPlane::default(); MOST_VERTICES];
+        let mut edges = [HalfPlane::default(); MOST];
         let mut count = 0;
         for (&side, &to) in sides.iter().zip(vertices) {
             if side != [0, 0] {
@@ -181,16 +226,28 @@ impl Plane {
         true
     }
 
+    /// Whether all of a rectangle is covered, as is most of it where polygons overlap.
+    #[inline]
+    fn is_full(&self, columns: [i64; 2], rows: [i64; 2]) -> bool {
+        let width = index(columns[1] - columns[0] + 1);
+        (rows[0]..=rows[1]).all(|row| {
+            let start = index(row - self.top + MARGIN) * self.stride + index(columns[0] + MARGIN);
+            let mut cells = self.cells[start..start + width].iter();
+            cells.all(|cell| cell.load(Relaxed) == u64::MAX)
+        })
+    }
+
     /// Covers what all half planes cover in a rectangle.
     fn intersection(&mut self, edges: &mut [HalfPlane], columns: [i64; 2], rows: [i64; 2]) {
         let table = HALF_PLANES.as_slice();
         let width = index(columns[1] - columns[0] + 1);
         for row in rows[0]..=rows[1] {
             let start = index(row - self.top + MARGIN) * self.stride + index(columns[0] + MARGIN);
-            for (cell, column) in self.cells[start..start + width].iter_mut().zip(0..) {
-                *cell.get_mut() |= edges.iter().fold(u64::MAX, |mask, edge| {
-                    mask & edge.mask(table, edge.area + column * edge.right)
-                });
+            for (cell, column) in self.cells[start..start + width].iter().zip(0..) {
+                let masks = edges
+                    .iter()
+                    .map(|edge| edge.mask(table, edge.area + column * edge.right));
+                cover(cell, masks.fold(u64::MAX, |all, mask| all & mask));
             }
             for edge in &mut *edges {
                 edge.area += edge.down;
