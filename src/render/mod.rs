@@ -2,10 +2,13 @@
 //!
 //! A picture begins with a survey of what there is to draw and how large it is, which the graph
 //! tells where it can and a walk where it cannot. One walk for every class of colour follows, or one
-//! for all where no class comes after a later one, so that no element is held in memory. Spans of it are sketched by any thread; a painter puts the
-//! sketches together, in order, to paths in whole hundredths of a pixel, the same for every format.
+//! for all where no class comes after a later one, so that no element is held in memory. Spans of it
+//! are sketched by any thread; a painter puts the sketches together, in order, to paths in whole
+//! hundredths of a pixel, the same for every format.
+//!
 //! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
 //! bands.
+//!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
 //! what lies where all is covered in its colour already; and where colours tell steps, what nothing
 //! comes of in those that are painted.
