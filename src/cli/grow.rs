@@ -19,6 +19,7 @@ use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
+use super::zoom::ZoomArguments;
 use super::{Failure, chaos, format, help, output, steps, text};
 
 /// Grows a rule and draws it, or lists its elements
@@ -58,6 +59,8 @@ pub(super) struct Arguments {
     #[arg(help_heading = "Picture")]
     size: Size,
     #[command(flatten)]
+    zoom: ZoomArguments,
+    #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
     chaos: ChaosArguments,
@@ -81,6 +84,9 @@ Examples:
       Goes on until nothing more can be seen
   kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
       Does so in a small window; what lies outside is not grown
+  kfrac grow koch --zoom 1e1000 --at '0.1.(2)' -o deep.png
+      Draws what lies about a point as much larger; positions lead to the point, from that of an
+      element in the initiator to those in the generator, the last ones repeated for ever
   kfrac grow random-tree --seed 7
       Draws another tree of the same kind
   kfrac grow koch --steps 4 --format csv -o - | head
@@ -119,8 +125,16 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let message = "--detail is a size in pixels, and only pictures have pixels";
         return Err(Failure::Usage(message.into()));
     }
+    let look = arguments.zoom.look(arguments.picture.has_view())?;
+    if look.is_some() && !matches!(format, Format::Picture(_)) {
+        let message = "--zoom is of pictures: write a .png or a .svg";
+        return Err(Failure::Usage(message.into()));
+    }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
-    let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
+    let goal = match look {
+        None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
+        Some(_) => Goal::zoomed(arguments.steps, arguments.detail),
+    };
     let color_by = arguments.picture.style(loaded.model.heading()).color_by;
     let graph = loaded.compile_for(goal.steps(), color_by)?;
     arguments.check(goal, format, &graph, &loaded)?;
@@ -132,7 +146,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 let options = arguments.options(&loaded, goal, format);
                 goal.come_to(&loaded, graph, |graph, steps| {
                     let growth = arguments.growth.to(steps, progress);
-                    render::write(graph, &growth, &options, out).map(Wrote::from)
+                    let written = match &look {
+                        None => render::write(graph, &growth, &options, out),
+                        Some(look) => {
+                            let source = loaded.source();
+                            render::write_zoomed(&source, graph, &growth, &options, look, out)
+                        }
+                    };
+                    written.map(Wrote::from)
                 })
             }
             Format::Table(format) => {
@@ -176,7 +197,7 @@ impl Arguments {
             .as_ref()
             .is_some_and(|picture| picture.view.window.is_some());
         match goal {
-            Goal::Steps(steps, None) if !shows_a_part => {
+            Goal::Steps(steps, None) if !shows_a_part && !self.zoom.is_asked() => {
                 self.growth.check(steps, graph, loaded, picture.as_ref())
             }
             _ => Ok(()),
@@ -191,6 +212,7 @@ impl Arguments {
             options.push(("format", format.name().into()));
         }
         options.push(("size", self.size.to_string()));
+        options.extend(self.zoom.options());
         options.extend(self.picture.options());
         render::Options {
             format,

@@ -36,6 +36,7 @@ use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
 use crate::instancing::{Coat, Tint};
+use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Placement, Rule};
 
 /// An object: a kind of element in a state that decides what it becomes.
@@ -123,6 +124,19 @@ pub struct Production {
     pub seeds: Vec<Seed>,
 }
 
+/// What an element of the initiator descends from, where that is no beginning but a part of
+/// something that has been grown for a while.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Root {
+    /// The step of its birth.
+    pub(crate) level: u32,
+    pub(crate) path: Path,
+    /// Its length relative to the initiator element's that it descends from.
+    pub(crate) length: f64,
+    /// What it and all that it descends from are tinted with.
+    pub(crate) coat: Coat,
+}
+
 /// The instancing graph of a rule.
 ///
 /// Guarantees: all numbers of objects and base elements are in range; every object that is reached
@@ -136,6 +150,8 @@ pub struct Graph {
     pub(crate) origins: usize,
     pub(crate) objects: Vec<Object>,
     pub(crate) initiator: Chain,
+    /// What the initiator's elements descend from, by position; empty where they are a beginning.
+    pub(crate) roots: Arc<[Root]>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,

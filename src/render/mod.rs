@@ -22,6 +22,7 @@ mod surface;
 mod survey;
 mod svg;
 mod tracer;
+mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
@@ -29,6 +30,7 @@ pub use density::{Density, Shades, Tone, write_density};
 pub use layout::{Detail, NoDetail};
 pub use png::TooManyPixels;
 pub use survey::Survey;
+pub use zoomed::{Look, NoZoom, write_zoomed};
 
 pub(crate) use scene::Scene;
 pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
@@ -43,6 +45,7 @@ use crate::grow::{Growth, WalkError};
 use crate::heading::Heading;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
+use crate::zoom::ZoomError;
 
 use self::layout::Layout;
 use self::png::Png;
@@ -149,6 +152,12 @@ pub enum RenderError {
     /// The detail cannot be come to.
     #[error(transparent)]
     NoDetail(#[from] NoDetail),
+    /// There is nothing to zoom into.
+    #[error(transparent)]
+    Zoom(#[from] ZoomError),
+    /// What the picture is to show is not told so far down.
+    #[error(transparent)]
+    NoZoom(#[from] NoZoom),
     /// The picture is larger than memory may be.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
