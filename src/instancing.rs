@@ -33,6 +33,8 @@ pub struct Object {
     pub map: DAffine2,
     /// What it is made of.
     pub instances: Vec<Instance>,
+    /// Where it is written: the number of an object of the file, and its level.
+    pub(crate) origin: (usize, Option<f64>),
 }
 
 /// An instance of an object, or of a shape.

@@ -34,6 +34,9 @@
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
 //! `render` turns into pictures.
 //!
+//! What is as small as one likes is [`zoom`]ed into: a descent in long numbers, between `graph` and
+//! `grow`, finds what lies about a point, as a graph of its own that is drawn as any other.
+//!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other
 //! (what is measured beside graphs, pictures and tables of points, is read by [`import`]);
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
@@ -71,6 +74,7 @@ mod resolve;
 pub mod rule;
 pub mod style;
 mod wording;
+pub mod zoom;
 
 /// Random rules for the tests of several modules.
 #[cfg(test)]

@@ -27,6 +27,8 @@ use crate::expression::Scope;
 use crate::heading::Heading;
 use crate::model::Model;
 
+pub(crate) use parameters::order as order_of_parameters;
+
 /// Behind this many mistakes no more are looked for.
 const MOST_MISTAKES: usize = 1000;
 

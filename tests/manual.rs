@@ -52,7 +52,7 @@ fn examples_work() {
         for example in examples {
             let own = example.split(['|', '>']).next().unwrap();
             let words = own.split_whitespace().skip(1);
-            let words = words.map(|word| word.replace('*', "other"));
+            let words = words.map(|word| word.replace('*', "other").replace('\'', ""));
             let output = kfrac().args(words).current_dir(folder.path()).output();
             let output = output.unwrap();
             assert!(output.status.success(), "{example}: {output:?}");

@@ -10,6 +10,8 @@ use super::Failure;
 pub(super) struct Assignment {
     name: String,
     values: Values,
+    /// How it is written, if it is one.
+    written: Option<Expression>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +40,7 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     Ok(Assignment {
         name: name.trim().into(),
         values,
+        written: Expression::parse(written).ok(),
     })
 }
 
@@ -58,7 +61,10 @@ impl Assignment {
     /// The one value.
     pub(super) fn setting(&self) -> Result<Setting, Failure> {
         match self.values {
-            Values::One(value) => Ok(self.with(value)),
+            Values::One(value) => Ok(Setting {
+                written: self.written.clone(),
+                ..self.with(value)
+            }),
             _ => {
                 let message = format!(
                     "--set {}: several values are for `kfrac sheet`, which draws them side by side",
@@ -73,6 +79,7 @@ impl Assignment {
         Setting {
             name: self.name.clone(),
             value,
+            written: None,
         }
     }
 

@@ -6,6 +6,7 @@ use crate::ifs::Verdict;
 use crate::model::Model;
 use crate::render::{Detail, NoDetail, RenderError, Unit};
 use crate::wording;
+use crate::zoom::ZoomError;
 
 use super::length::Length;
 use super::rule::Loaded;
@@ -34,6 +35,16 @@ impl Goal {
         })
     }
 
+    /// What was asked for where a part is drawn that may be as small as one likes: everything that
+    /// can be seen.
+    pub(super) fn zoomed(steps: Option<u32>, detail: Option<f64>) -> Self {
+        let pixels = detail.unwrap_or(1.0);
+        match steps {
+            Some(steps) => Self::Steps(steps, Some(pixels)),
+            None => Self::Detail(pixels),
+        }
+    }
+
     /// The number of steps, or one to begin with.
     pub(super) fn steps(self) -> u32 {
         match self {
@@ -56,9 +67,14 @@ impl Goal {
         };
         loop {
             let drawn = draw(&graph, steps);
-            let Err(RenderError::NoDetail(NoDetail::TooFewSteps { .. })) = drawn else {
+            let is_too_few = matches!(
+                drawn,
+                Err(RenderError::NoDetail(NoDetail::TooFewSteps { .. })
+                    | RenderError::Zoom(ZoomError::TooShallow { .. }))
+            );
+            if !is_too_few {
                 return drawn;
-            };
+            }
             let more = (2 * steps).min(steps::MOST_STEPS);
             graph = loaded
                 .graph(more)

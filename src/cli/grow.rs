@@ -20,6 +20,7 @@ use super::labels::labels;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
+use super::zoom::ZoomArguments;
 use super::{Failure, chaos, format, help, output, steps, text};
 
 /// Grows a rule and draws it, or lists its elements
@@ -69,6 +70,8 @@ pub(super) struct Arguments {
     #[arg(long, help_heading = "Picture")]
     plot: bool,
     #[command(flatten)]
+    zoom: ZoomArguments,
+    #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
     chaos: ChaosArguments,
@@ -94,6 +97,9 @@ Examples:
       Draws a picture that is larger than memory
   kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
       Does so in a small window; what lies outside is not grown
+  kfrac grow koch --zoom 1e1000 --at '0.1.(2)' -o deep.png
+      Draws what lies about a point as much larger; positions lead to the point, from that of an
+      element in the initiator to those in the generator, the last ones repeated for ever
   kfrac grow random-tree --seed 7
       Draws another tree of the same kind
   kfrac grow levy --steps 10 --plot --size 200mm --stroke-width 0.3mm
@@ -143,9 +149,17 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(Failure::Usage(message.into()));
     }
     arguments.refuse_paper(format)?;
+    let look = arguments.zoom.look(arguments.picture.has_view())?;
+    if look.is_some() && !matches!(format, Format::Picture(_)) {
+        let message = "--zoom is of pictures: write a .png or a .svg";
+        return Err(Failure::Usage(message.into()));
+    }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
-    let goal = Goal::choose(arguments.steps, arguments.detail, &loaded)?;
+    let goal = match look {
+        None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
+        Some(_) => Goal::zoomed(arguments.steps, arguments.detail),
+    };
     let color_by = arguments.picture.style(loaded.model.heading()).color_by;
     let graph = loaded.compile_for(goal.steps(), color_by)?;
     arguments.check(goal, format, &graph, &loaded)?;
@@ -158,12 +172,19 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 let options = arguments.options(&loaded, goal, format);
                 goal.come_to(&loaded, graph, |graph, steps| {
                     let growth = match format {
-                        render::Format::Png if arguments.detail.is_some() => {
+                        render::Format::Png if arguments.detail.is_some() || look.is_some() => {
                             arguments.growth.to_detail(steps, progress)
                         }
                         _ => arguments.growth.to(steps, progress),
                     };
-                    render::write(graph, &growth, &options, out).map(Wrote::from)
+                    let written = match &look {
+                        None => render::write(graph, &growth, &options, out),
+                        Some(look) => {
+                            let source = loaded.source();
+                            render::write_zoomed(&source, graph, &growth, &options, look, out)
+                        }
+                    };
+                    written.map(Wrote::from)
                 })
             }
             Format::Table(format) => {
@@ -220,7 +241,7 @@ impl Arguments {
             .as_ref()
             .is_some_and(|picture| picture.view.window.is_some());
         match goal {
-            Goal::Steps(steps, None) if !shows_a_part => {
+            Goal::Steps(steps, None) if !shows_a_part && !self.zoom.is_asked() => {
                 self.growth.check(steps, graph, loaded, picture.as_ref())
             }
             _ => Ok(()),
@@ -267,6 +288,7 @@ impl Arguments {
         }
         options.extend(self.plot.then(|| ("plot", String::new())));
         options.push(("size", self.size.to_string()));
+        options.extend(self.zoom.options());
         options.extend(self.picture.options());
         let Paper { size, unit } = self.size;
         let heading = loaded.model.heading();

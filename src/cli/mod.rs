@@ -32,6 +32,7 @@ mod stop;
 mod structure;
 mod system;
 mod text;
+mod zoom;
 
 use std::io;
 use std::path::PathBuf;

@@ -90,6 +90,11 @@ impl PictureArguments {
         }
     }
 
+    /// Whether a window is asked for.
+    pub(super) fn has_view(&self) -> bool {
+        self.view.is_some()
+    }
+
     /// What is asked for of the way in which points are coloured.
     pub(super) fn asked_color_by(&self) -> Option<ColorBy> {
         self.color_by

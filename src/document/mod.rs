@@ -222,4 +222,6 @@ pub struct Setting {
     pub name: String,
     /// Its value.
     pub value: f64,
+    /// How the value is written, where that tells more of its digits.
+    pub written: Option<Expression>,
 }

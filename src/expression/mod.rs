@@ -21,6 +21,7 @@ mod interval;
 mod lex;
 mod operator;
 mod parse;
+mod precise;
 mod print;
 mod program;
 mod scope;
@@ -32,6 +33,7 @@ mod tests;
 use std::ops::Range;
 
 pub use interval::Interval;
+pub(crate) use precise::{Precise, Precision};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 

@@ -167,6 +167,7 @@ impl<'r> Compiler<'r> {
             origins: rule.generators().len(),
             objects: self.objects,
             initiators: vec![whole.body],
+            roots: Arc::new([]),
             depth: beyond.then_some(self.steps),
             regular: !self.depends.index_is_free,
             counts_index: self.depends.counts_index,

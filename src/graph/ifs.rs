@@ -224,6 +224,7 @@ impl<'s> Compiler<'s> {
                 instances: std::iter::once(root).chain(drawn).collect(),
                 meets_frame: [false; 2],
             }],
+            roots: Arc::new([]),
             depth: None,
             regular: true,
             counts_index: false,

@@ -39,6 +39,14 @@ impl Graph {
         graph
     }
 
+    /// For every object of the graph of a structure, the canonical object that it is; `None` for
+    /// shapes.
+    pub(crate) fn canonical_objects(structure: &Instancing) -> Vec<Option<usize>> {
+        let mut compiler = Compiler::new(structure);
+        compiler.reach();
+        compiler.of
+    }
+
     /// Draws every object as the box of its limit set.
     fn draw_boxes(&mut self) {
         // Only what is visible has a limit.
@@ -153,7 +161,8 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn run(mut self) -> Graph {
+    /// Makes the objects that are reached from the scene, which is the initiator.
+    fn reach(&mut self) -> Chain {
         let initiator = self.chain(&self.structure.scene);
         // The objects that are reached; those of one canonical object share what replaces them.
         let mut made: BTreeMap<usize, Arc<Production>> = BTreeMap::new();
@@ -181,6 +190,11 @@ impl<'s> Compiler<'s> {
             }
             done += 1;
         }
+        initiator
+    }
+
+    fn run(mut self) -> Graph {
+        let initiator = self.reach();
         let tints = self.objects.iter().any(|object| object.tint.is_some());
         Graph {
             evaluated: None,
@@ -188,6 +202,7 @@ impl<'s> Compiler<'s> {
             origins: 0,
             objects: self.objects,
             initiators: vec![initiator],
+            roots: Arc::new([]),
             depth: None,
             regular: true,
             counts_index: false,

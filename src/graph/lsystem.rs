@@ -12,6 +12,7 @@ mod words;
 pub(crate) use words::Words;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
 use crate::geometry::{Bounds, DVec2};
@@ -73,6 +74,7 @@ impl Graph {
             tints: system.has_colours(),
             objects: strings.objects,
             initiators: vec![initiator],
+            roots: Arc::new([]),
             widest: None,
             depth: None,
             regular: true,

@@ -39,6 +39,7 @@ use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
 use crate::instancing::{Coat, Thickness, Tint};
+use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
 
@@ -140,6 +141,19 @@ pub struct Production {
     pub seeds: Vec<Seed>,
 }
 
+/// What an element of the initiator descends from, where that is no beginning but a part of
+/// something that has been grown for a while.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Root {
+    /// The step of its birth.
+    pub(crate) level: u32,
+    pub(crate) path: Path,
+    /// Its length relative to the initiator element's that it descends from.
+    pub(crate) length: f64,
+    /// What it and all that it descends from are tinted with.
+    pub(crate) coat: Coat,
+}
+
 /// The instancing graph of a rule.
 ///
 /// Guarantees: all numbers of objects and base elements are in range; every object that is reached
@@ -154,6 +168,8 @@ pub struct Graph {
     pub(crate) objects: Vec<Object>,
     /// By the number of steps that are grown out of it; the last one for all others. One at least.
     pub(crate) initiators: Vec<Chain>,
+    /// What the initiator's elements descend from, by position; empty where they are a beginning.
+    pub(crate) roots: Arc<[Root]>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,

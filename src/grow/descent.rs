@@ -1,7 +1,7 @@
 //! One fractal at one step: its elements in order of traversal, depth-first.
 
 use crate::geometry::{DAffine2, Direction, Frame};
-use crate::graph::{Chain, CompileError, Graph, Instance, Production, Replacement, Seed};
+use crate::graph::{Chain, CompileError, Graph, Instance, Production, Replacement, Root, Seed};
 use crate::instancing::Coat;
 use crate::rule::Placement;
 use crate::rule::draw::Path;
@@ -13,20 +13,20 @@ use super::{Enter, Subtree};
 
 /// Where an element stands, and what its descendants need to know of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
-    pub(super) frame: Frame,
+pub(crate) struct Standing {
+    pub(crate) frame: Frame,
     /// Relative to the initiator element's that it descends from.
-    pub(super) length: f64,
+    pub(crate) length: f64,
     /// That initiator element, by position.
-    pub(super) root: u32,
-    pub(super) path: Path,
+    pub(crate) root: u32,
+    pub(crate) path: Path,
     /// What it and all that it descends from are tinted with.
-    pub(super) coat: Coat,
+    pub(crate) coat: Coat,
 }
 
 impl Standing {
     /// Where the initiator stands.
-    pub(super) fn whole(seed: u64) -> Self {
+    pub(crate) fn whole(seed: u64) -> Self {
         Self {
             frame: Frame::UNIT,
             length: 1.0,
@@ -38,17 +38,28 @@ impl Standing {
 
     /// Where an instance in the initiator stands.
     #[inline]
-    pub(super) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
-        Self {
+    pub(crate) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
+        let child = Self {
             length: 1.0,
             root: instance.position,
             ..self.child(graph, instance)
+        };
+        match graph.roots.get(instance.position as usize) {
+            None => child,
+            Some(&Root {
+                path, length, coat, ..
+            }) => Self {
+                path,
+                length,
+                coat,
+                ..child
+            },
         }
     }
 
     /// Where an instance in what replaces an element stands.
     #[inline]
-    pub(super) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
+    pub(crate) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
         Self {
             frame: self.frame.compose(&instance.frame),
             length: self.length * instance.length,
@@ -389,7 +400,12 @@ impl<'g> Descent<'g> {
             } else {
                 entry.standing.child(self.graph, instance)
             };
-            let level = entry.level;
+            let born = if is_root {
+                birth(self.graph, instance)
+            } else {
+                0
+            };
+            let level = entry.level + born;
             let object = instance.object;
             let last = entry.next == count;
             let meets_end = !last || entry.meets_end;
@@ -566,6 +582,12 @@ impl<'g> Descent<'g> {
             }
         }
     }
+}
+
+/// The step in which an element of the initiator was born.
+fn birth(graph: &Graph, instance: &Instance) -> u32 {
+    let root = graph.roots.get(instance.position as usize);
+    root.map_or(0, |root| root.level)
 }
 
 /// The standing of a part that an element seeds.

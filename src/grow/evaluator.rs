@@ -6,25 +6,38 @@ use super::descent::Standing;
 
 /// When an element is replaced.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
+pub(crate) struct Moment {
     /// The step in which its fractal was born,
-    pub(super) born: u32,
+    pub(crate) born: u32,
     /// and that in which it was.
-    pub(super) level: u32,
+    pub(crate) level: u32,
     /// Its rank in its fractal, where ranks are counted; else 0.
-    pub(super) rank: u64,
+    pub(crate) rank: u64,
+}
+
+impl Moment {
+    /// What the expressions of a rule see of it, where an element stands.
+    #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
+    pub(crate) fn seen(self, standing: &Standing) -> rule::Moment {
+        rule::Moment {
+            index: self.rank.max(1) as f64,
+            age: f64::from(self.level - self.born),
+            step: f64::from(self.level),
+            length: standing.length,
+        }
+    }
 }
 
 /// Works out productions where elements stand; memory is used again.
 #[derive(Default)]
-pub(super) struct Evaluator {
+pub(crate) struct Evaluator {
     slots: Vec<f64>,
     points: Vec<DVec2>,
 }
 
 impl Evaluator {
     /// Overwrites a production with that of an object that is [`Replacement::Evaluated`].
-    pub(super) fn evaluate(
+    pub(crate) fn evaluate(
         &mut self,
         graph: &Graph,
         standing: &Standing,
@@ -42,13 +55,7 @@ impl Evaluator {
                 return Ok(());
             }
         };
-        #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
-        let moment = rule::Moment {
-            index: moment.rank.max(1) as f64,
-            age: f64::from(moment.level - moment.born),
-            step: f64::from(moment.level),
-            length: standing.length,
-        };
+        let moment = moment.seen(standing);
         let alternative = if let [only] = &alternatives[..] {
             only
         } else {

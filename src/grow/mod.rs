@@ -30,6 +30,8 @@ pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
+pub(crate) use descent::Standing;
+pub(crate) use evaluator::{Evaluator, Moment};
 pub(crate) use spans::{Division, walk_with};
 
 use std::ops::Range;

@@ -35,6 +35,7 @@ mod survey;
 mod svg;
 mod tracer;
 mod unit;
+mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
@@ -44,6 +45,7 @@ pub use plot::Plotted;
 pub use png::TooManyPixels;
 pub use survey::Survey;
 pub use unit::Unit;
+pub use zoomed::{Look, NoZoom, write_zoomed};
 
 pub(crate) use scene::Scene;
 pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
@@ -59,6 +61,7 @@ use crate::grow::{Growth, WalkError};
 use crate::heading::Heading;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
+use crate::zoom::ZoomError;
 
 use self::bands::Bands;
 use self::layout::Layout;
@@ -209,6 +212,12 @@ pub enum RenderError {
     /// The detail cannot be come to.
     #[error(transparent)]
     NoDetail(#[from] NoDetail),
+    /// There is nothing to zoom into.
+    #[error(transparent)]
+    Zoom(#[from] ZoomError),
+    /// What the picture is to show is not told so far down.
+    #[error(transparent)]
+    NoZoom(#[from] NoZoom),
     /// The picture is larger than memory may be.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),

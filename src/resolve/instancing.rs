@@ -147,6 +147,7 @@ impl Resolver<OfInstancing> {
                 },
                 map: product(&union.transforms, level.as_slice()),
                 instances: self.instances(&union, level),
+                origin: (number, level),
             });
             self.kind.unions[number] = union;
             if self.kind.size > MOST_INSTANCES {

@@ -99,7 +99,7 @@ impl<K> Resolver<K> {
 
 /// The numbers of the parameters in an order in which each comes after those that its value and
 /// limits are computed from, and those that are computed from themselves.
-fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
+pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let names = params.iter().enumerate();
     let numbers: BTreeMap<&str, usize> = names
         .map(|(index, param)| (param.name.value.as_str(), index))

@@ -46,7 +46,7 @@ impl Resolver<OfRule> {
             moment.variable(name, slot);
         }
         let moment = Arc::new(moment);
-        let (points, initiator) = self.initiator(document);
+        let (origin, points, initiator) = self.initiator(document);
         let generators: Vec<_> = document
             .generators
             .iter()
@@ -56,6 +56,7 @@ impl Resolver<OfRule> {
         self.check_generators_are_selected(document);
         Rule {
             heading,
+            origin,
             points,
             initiator,
             generators,

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
+use crate::document::Point;
 use crate::expression::{Dependence, Program, degrees};
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
 
@@ -123,12 +124,13 @@ pub struct Part {
     pub meets_frame: [bool; 2],
 }
 
-/// Where a generator was written: for messages about what shows only when it is evaluated.
+/// How a generator or an initiator was written: for messages about what shows only when it is
+/// evaluated, and for what needs more digits than a double has.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) name: Place,
-    /// The coordinates of its points.
-    pub(crate) points: Vec<[Place; 2]>,
+    /// Its points.
+    pub(crate) points: Vec<Point>,
 }
 
 impl PartialEq for Origin {
@@ -173,7 +175,9 @@ impl Generator {
     ) -> Option<(&Place, Vec<(&'static str, f64)>)> {
         let slots = moment.slots();
         let written = self.points.iter().flatten();
-        let mut written = written.zip(self.origin.points.iter().flatten());
+        let places = self.origin.points.iter();
+        let places = places.flat_map(|point| [&point.x.place, &point.y.place]);
+        let mut written = written.zip(places);
         let (program, place) = written
             .find(|(program, _)| !program.eval(&slots).is_finite())
             .filter(|_| !self.is_random())?;
@@ -198,6 +202,15 @@ impl Generator {
     #[must_use]
     pub fn is_random(&self) -> bool {
         !self.variables.is_empty()
+    }
+
+    /// What the expressions of its points see: the moment, and what is drawn for a path.
+    pub(crate) fn slots(&self, moment: &Moment, path: Path) -> Vec<f64> {
+        let mut slots = moment.slots().to_vec();
+        for variable in &self.variables {
+            slots.push(variable.draw(path, &slots));
+        }
+        slots
     }
 
     /// All expressions of the generator.

@@ -25,6 +25,8 @@ use crate::style::{Style, View};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     pub(crate) heading: Heading,
+    /// How the initiator was written.
+    pub(crate) origin: Origin,
     pub(crate) points: Vec<DVec2>,
     pub(crate) initiator: Part,
     pub(crate) generators: Vec<Generator>,

@@ -97,6 +97,7 @@ impl Entry {
         let settings = self.set.iter().map(|(name, &value)| Setting {
             name: name.clone(),
             value,
+            written: None,
         });
         common::resolved(&common::document(&self.rule), &settings.collect::<Vec<_>>())
     }

@@ -56,6 +56,7 @@ fn a_random_tree_that_does_not_sway_is_the_simple_tree() {
     let still = ["sway", "spread"].map(|name| Setting {
         name: name.into(),
         value: 0.0,
+        written: None,
     });
     let graph = compiled(&resolved(&document("random-tree"), &still), 4);
     for n in 0..=4 {

@@ -79,8 +79,8 @@ pub(super) fn generator(
     };
     let varying: Vec<_> = (0..generator.points.len()).filter(varies).collect();
     for &number in varying.iter().take(MOST_POINTS) {
-        let [x, y] = &generator.origin.points[number];
-        let (x, y) = (written(x), written(y));
+        let point = &generator.origin.points[number];
+        let (x, y) = (written(&point.x.place), written(&point.y.place));
         said.lines.push(format!("p{number} = ({x}, {y})"));
         said.named.push(number);
     }

@@ -342,6 +342,7 @@ impl Leveller<'_> {
             origins: 0,
             objects,
             initiators,
+            roots: Arc::new([]),
             depth: Some(steps),
             regular: true,
             counts_index: false,

@@ -356,6 +356,7 @@ impl Edges {
             origins: 0,
             objects: made,
             initiators: vec![start.chain(&objects)?],
+            roots: Arc::new([]),
             depth: None,
             regular: true,
             counts_index: false,

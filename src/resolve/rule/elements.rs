@@ -5,7 +5,7 @@ use crate::geometry::{DVec2, Direction};
 
 use super::OfRule;
 use crate::resolve::{Resolver, whole_number};
-use crate::rule::{ListedElement, Part, Placement};
+use crate::rule::{ListedElement, Origin, Part, Placement};
 
 /// A point of a list, and its number.
 struct ListedPoint {
@@ -137,7 +137,7 @@ impl Resolver<OfRule> {
         element
     }
 
-    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<DVec2>, Part) {
+    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Origin, Vec<DVec2>, Part) {
         let initiator = &document.initiator;
         let mut written = Vec::new();
         let elements = self.elements(
@@ -166,6 +166,10 @@ impl Resolver<OfRule> {
             elements,
             meets_frame: [false; 2],
         };
-        (points, part)
+        let origin = Origin {
+            name: initiator.place.clone(),
+            points: written,
+        };
+        (origin, points, part)
     }
 }

@@ -89,10 +89,7 @@ impl Resolver<OfRule> {
         Generator {
             origin: Origin {
                 name: name.place.clone(),
-                points: written
-                    .iter()
-                    .map(|point| [point.x.place.clone(), point.y.place.clone()])
-                    .collect(),
+                points: written,
             },
             name: name.value.clone(),
             variables,

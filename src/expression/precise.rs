@@ -1,0 +1,332 @@
+//! Values of expressions to any number of bits, for what doubles cannot tell apart.
+
+use std::str::FromStr;
+
+use dashu_float::round::mode::HalfEven;
+use dashu_float::{ConstCache, Context, DBig, FBig, FpError, Repr};
+use dashu_int::IBig;
+
+use super::functions::Meaning;
+use super::operator::{One, Two};
+use super::scope::constant;
+use super::{Expression, Node};
+
+type Float = FBig<HalfEven, 2>;
+type Computed = Result<dashu_float::round::Rounded<Float>, FpError>;
+
+/// A number, and the double that stands for it everywhere else.
+///
+/// What a condition, a rounding or a remainder decides, the double decides, so that it is decided
+/// alike everywhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Precise {
+    near: f64,
+    exact: Float,
+}
+
+impl Precise {
+    /// A double, which is what it is.
+    pub(crate) fn of(near: f64) -> Self {
+        let exact = Float::try_from(near).unwrap_or(Float::ZERO);
+        Self { near, exact }
+    }
+
+    /// The number times a power of two, to a whole number.
+    pub(crate) fn fixed(&self, bits: usize) -> IBig {
+        let shift = isize::try_from(bits).unwrap_or(isize::MAX);
+        (self.exact.clone() << shift).to_int().value()
+    }
+}
+
+/// Evaluates expressions to a number of bits.
+pub(crate) struct Precision {
+    bits: usize,
+    context: Context<HalfEven>,
+    cache: ConstCache,
+}
+
+/// Bits beyond those that are asked for, which differences of nearly equal numbers may cost.
+const GUARD: usize = 64;
+
+impl Precision {
+    pub(crate) fn new(bits: usize) -> Self {
+        Self {
+            bits,
+            context: Context::new(bits + GUARD),
+            cache: ConstCache::new(),
+        }
+    }
+
+    /// Makes do with so many bits from here on, if they are fewer than have been asked for.
+    pub(crate) fn make_do_with(&mut self, bits: usize) {
+        self.context = Context::new(bits.min(self.bits) + GUARD);
+    }
+
+    /// The bits that have been asked for.
+    pub(crate) fn bits(&self) -> usize {
+        self.bits
+    }
+
+    /// A double as the shortest decimal that it stands for: 0.1 is a tenth.
+    pub(crate) fn written(&self, near: f64) -> Precise {
+        let decimal = DBig::from_str(&near.to_string());
+        let precision = self.context.precision();
+        let exact = decimal.map(|decimal| {
+            let binary = decimal.with_base_and_precision::<2>(precision).value();
+            binary.with_rounding::<HalfEven>()
+        });
+        match exact {
+            Ok(exact) if near.is_finite() => Precise { near, exact },
+            _ => Precise::of(near),
+        }
+    }
+
+    /// The value of an expression that is right in its scope, of which `names` knows all names but
+    /// those of constants.
+    pub(crate) fn value(
+        &mut self,
+        expression: &Expression,
+        names: &dyn Fn(&str) -> Option<Precise>,
+    ) -> Precise {
+        match &expression.node {
+            Node::Number(value) => self.written(*value),
+            Node::Truth(value) => Precise::of(f64::from(u8::from(*value))),
+            Node::Name(name) => self
+                .constant(name)
+                .or_else(|| names(name))
+                .unwrap_or_else(|| Precise::of(f64::NAN)),
+            Node::Prefix(operator, operand) => {
+                let operand = self.value(operand, names);
+                self.one(*operator, &operand)
+            }
+            Node::Infix(operator, operands) => {
+                let [left, right] = &**operands;
+                let (left, right) = (self.value(left, names), self.value(right, names));
+                self.two(*operator, &left, &right)
+            }
+            Node::Call(function, arguments) => match (function.meaning, arguments.as_slice()) {
+                (Meaning::One(operation), [x]) => {
+                    let x = self.value(x, names);
+                    self.one(operation, &x)
+                }
+                (Meaning::Two(operation), [x, y]) => {
+                    let (x, y) = (self.value(x, names), self.value(y, names));
+                    self.two(operation, &x, &y)
+                }
+                (Meaning::Fold(operation), [first, rest @ ..]) => {
+                    let mut value = self.value(first, names);
+                    for next in rest {
+                        let next = self.value(next, names);
+                        value = self.two(operation, &value, &next);
+                    }
+                    value
+                }
+                (Meaning::If, [condition, then, otherwise]) => {
+                    let holds = self.value(condition, names).near != 0.0;
+                    self.value(if holds { then } else { otherwise }, names)
+                }
+                _ => Precise::of(f64::NAN),
+            },
+            Node::Unknown => Precise::of(f64::NAN),
+        }
+    }
+
+    fn constant(&mut self, name: &str) -> Option<Precise> {
+        let near = constant(name)?;
+        let exact = match name {
+            "pi" => self.context.pi(Some(&mut self.cache)).value(),
+            "e" => {
+                return Some(self.known(near, |context, cache| {
+                    context.exp(Float::ONE.repr(), Some(cache))
+                }));
+            }
+            _ => {
+                let root = self.two(Two::Power, &Precise::of(5.0), &Precise::of(0.5));
+                let sum = self.two(Two::Add, &root, &Precise::of(1.0));
+                self.two(Two::Divide, &sum, &Precise::of(2.0)).exact
+            }
+        };
+        Some(Precise { near, exact })
+    }
+
+    /// What comes of a computation; the double where it has no value, as next to the end of a range.
+    fn known(
+        &mut self,
+        near: f64,
+        compute: impl FnOnce(&Context<HalfEven>, &mut ConstCache) -> Computed,
+    ) -> Precise {
+        if !near.is_finite() {
+            return Precise::of(near);
+        }
+        match compute(&self.context, &mut self.cache).map(|value| value.value()) {
+            Ok(exact) if !exact.repr().is_infinite() => Precise { near, exact },
+            _ => Precise::of(near),
+        }
+    }
+
+    /// Sine and cosine of an angle in degrees.
+    pub(crate) fn sine_cosine(&mut self, angle: &Precise) -> [Precise; 2] {
+        [One::Sin, One::Cos].map(|function| self.one(function, angle))
+    }
+
+    pub(super) fn one(&mut self, operation: One, x: &Precise) -> Precise {
+        let near = operation.apply(x.near);
+        let of: &Repr<2> = x.exact.repr();
+        match operation {
+            One::Negate => Precise {
+                near,
+                exact: -x.exact.clone(),
+            },
+            One::Abs if x.near < 0.0 => Precise {
+                near,
+                exact: -x.exact.clone(),
+            },
+            One::Abs => x.clone(),
+            One::Sqrt => self.known(near, |context, _| context.sqrt(of)),
+            One::Cbrt => self.known(near, |context, _| context.cbrt(of)),
+            One::Exp => self.known(near, |context, cache| context.exp(of, Some(cache))),
+            One::Ln => self.known(near, |context, cache| context.ln(of, Some(cache))),
+            One::Log2 => self.known(near, |context, cache| context.log2(of, Some(cache))),
+            One::Log10 => self.known(near, |context, cache| context.log10(of, Some(cache))),
+            One::Sin => self.known(near, |context, cache| {
+                context.sin_unit(of, 360, Some(cache))
+            }),
+            One::Cos => self.known(near, |context, cache| {
+                context.cos_unit(of, 360, Some(cache))
+            }),
+            One::Tan => self.known(near, |context, cache| {
+                context.tan_unit(of, 360, Some(cache))
+            }),
+            One::Asin => self.known(near, |context, cache| {
+                context.asin_unit(of, 360, Some(cache))
+            }),
+            One::Acos => self.known(near, |context, cache| {
+                context.acos_unit(of, 360, Some(cache))
+            }),
+            One::Atan => self.known(near, |context, cache| {
+                context.atan_unit(of, 360, Some(cache))
+            }),
+            One::Not | One::Sign | One::Floor | One::Ceil | One::Round | One::Odd | One::Even => {
+                Precise::of(near)
+            }
+        }
+    }
+
+    pub(super) fn two(&mut self, operation: Two, a: &Precise, b: &Precise) -> Precise {
+        let near = operation.apply(a.near, b.near);
+        let (left, right) = (a.exact.repr(), b.exact.repr());
+        match operation {
+            Two::Add => self.known(near, |context, _| context.add(left, right)),
+            Two::Subtract => self.known(near, |context, _| context.sub(left, right)),
+            Two::Multiply => self.known(near, |context, _| context.mul(left, right)),
+            Two::Divide => self.known(near, |context, _| context.div(left, right)),
+            Two::Modulo => {
+                let times = Precise::of(((a.near - near) / b.near).round());
+                let whole = self.two(Two::Multiply, &times, b);
+                let rest = self.two(Two::Subtract, a, &whole);
+                Precise { near, ..rest }
+            }
+            Two::Power => self.power(near, a, b),
+            Two::Min | Two::Max if near.to_bits() == a.near.to_bits() => a.clone(),
+            Two::Min | Two::Max => b.clone(),
+            Two::Hypot => self.known(near, |context, _| context.hypot(left, right)),
+            Two::Atan2 => self.known(near, |context, cache| {
+                context.atan2_unit(left, right, 360, Some(cache))
+            }),
+            Two::Or
+            | Two::And
+            | Two::Less
+            | Two::LessEqual
+            | Two::Greater
+            | Two::GreaterEqual
+            | Two::Equal
+            | Two::NotEqual => Precise::of(near),
+        }
+    }
+
+    fn power(&mut self, near: f64, a: &Precise, b: &Precise) -> Precise {
+        const MOST: f64 = 1e6;
+        let (base, exponent) = (a.exact.repr(), b.exact.repr());
+        if b.near.fract() == 0.0 && b.near.abs() <= MOST {
+            let whole = Precise::of(b.near).fixed(0);
+            return self.known(near, |context, _| context.powi(base, whole));
+        }
+        if b.near == 0.5 {
+            return self.known(near, |context, _| context.sqrt(base));
+        }
+        self.known(near, |context, cache| {
+            context.powf(base, exponent, Some(cache))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dashu_int::ops::BitTest;
+
+    use super::{Precise, Precision};
+    use crate::expression::{Expression, Scope};
+
+    fn value(text: &str) -> Precise {
+        let expression = Expression::parse(text).unwrap();
+        let x = |name: &str| (name == "x").then(|| Precise::of(0.1));
+        Precision::new(300).value(&expression, &x)
+    }
+
+    #[test]
+    fn what_is_nothing_is_nothing_to_all_bits() {
+        for text in [
+            "1/3*3 - 1",
+            "0.1*3 - 0.3",
+            "sqrt(3)^2 - 3",
+            "5^0.5 - sqrt(5)",
+            "2^(1/3) - cbrt(2)",
+            "phi^2 - phi - 1",
+            "ln(e) - 1",
+            "exp(ln(7)) - 7",
+            "log2(8) - 3 + log10(100) - 2",
+            "sin(10)^2 + cos(10)^2 - 1",
+            "sin(60) - sqrt(3)/2",
+            "tan(45) - 1",
+            "atan(tan(33)) - 33",
+            "asin(sin(17)) + acos(cos(19)) - 36",
+            "atan2(1, sqrt(3)) - 30",
+            "hypot(3, 4) - 5",
+            "cos(36) - phi/2",
+            "7/3 % 1 - 1/3",
+            "min(1/3, 1/2) - abs(-1/3)",
+            "if(1/3 < 0.34, 1/3, 1) - 1/3",
+            "sin(30) - 1/2 + pi - 180*pi/180",
+        ] {
+            let left = value(text).fixed(300).bit_len();
+            assert!(left < 24, "{text}: {left} bits");
+        }
+        // A double is the double, not the decimal that it is written as.
+        assert!(value("x - 0.1").fixed(300).bit_len() > 200);
+    }
+
+    #[test]
+    fn what_doubles_say_is_said_to_all_bits() {
+        for text in [
+            "sqrt(2) + ln(3) - pi/e",
+            "floor(7.5) + ceil(1/3) + round(2.5) + sign(-3)",
+            "if(odd(3) and not even(3), 2^-0.3, 0)",
+            "-2^2 + 3 % -2 + max(1, 2, 3)",
+            "acos(1/3)*asin(-1/3)*exp(-1/2)",
+        ] {
+            let program = Expression::parse(text).unwrap();
+            let double = program.compile(&Scope::new()).unwrap().eval(&[]);
+            let exact = value(text);
+            assert_eq!(exact.near.to_bits(), double.to_bits(), "{text}");
+            let apart = (exact.exact.to_f64().value() - double).abs();
+            assert!(apart <= 1e-14 * double.abs(), "{text}: {apart}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_value_is_what_doubles_say() {
+        for text in ["1/(x - x)", "ln(x - x)", "10^(10^300)", "sqrt(0 - x)"] {
+            assert!(!value(text).near.is_finite(), "{text}");
+        }
+    }
+}

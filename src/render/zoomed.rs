@@ -1,0 +1,135 @@
+//! Pictures of small parts, as much larger as one likes.
+
+use std::io::Write;
+
+use crate::graph::Graph;
+use crate::grow::Growth;
+use crate::style::{ColorBy, Style, View, Width};
+use crate::zoom::{self, Address, Factor, Source, Window};
+
+use super::layout::Layout;
+use super::survey::{overhang, relative_overhang};
+use super::{Canvas, Detail, Options, Picture, RenderError, Size};
+
+/// What a zoomed picture shows.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// How much larger than the whole picture it is.
+    pub factor: Factor,
+    /// The point in its middle.
+    pub at: Address,
+}
+
+/// Why a picture cannot be zoomed beyond what every picture may be refused for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoZoom {
+    /// Elements far from the window are not counted.
+    #[error(
+        "elements and fractals far from the window are not counted, so that colours cannot tell their \
+         numbers; --color-by none draws them in one colour"
+    )]
+    Numbers,
+}
+
+/// Writes what lies about a point as a picture of the same size, and as much larger as is asked for,
+/// as the picture of everything. The file's own window, if it has one, is everything.
+///
+/// The options' detail is what elements are replaced down to; one that is not given is a pixel. The
+/// cost does not grow with the factor, but for the length of the numbers (see [`zoom`](crate::zoom)).
+///
+/// # Errors
+///
+/// As for [`write`](super::write), and if there is no such point.
+pub fn write_zoomed(
+    source: &Source<'_>,
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    look: &Look,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
+    let style = &options.style;
+    zoom::check(source, graph)?;
+    check(style)?;
+    let canvas = whole(graph, growth, options)?;
+    let (stroke, relative_stroke) = match style.width {
+        Width::Pixels(width) => (width * overhang(style), 0.0),
+        Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
+    };
+    let window = Window {
+        size: canvas.size(),
+        scale: canvas.scale(),
+        margin: stroke + 2.0,
+        relative_stroke,
+        areas: style.fill.is_some() && graph.initiator(0).is_ring() && graph.draws_closed_paths(),
+        factor: look.factor.clone(),
+        at: look.at.clone(),
+    };
+    let steps = options.detail.filter(|detail| !detail.decides_steps);
+    let zoom_growth = zoom::Growth {
+        seed: growth.seed,
+        steps: steps.map(|_| growth.steps),
+        cancel: growth.cancel,
+    };
+    let found = zoom::zoom(source, graph, &zoom_growth, &window)?;
+    let steps = match (steps, graph.depth()) {
+        (Some(_), _) => growth.steps,
+        (None, Some(depth)) => depth,
+        (None, None) => found.deepest.saturating_add(growth.steps),
+    };
+    let [width, height] = window.size.map(f64::from);
+    let options = Options {
+        view: View {
+            window: Some([-width / 2.0, -height / 2.0, width, height]),
+            margin: 0.0,
+        },
+        size: Size::Exactly(window.size[0], window.size[1]),
+        detail: Some(options.detail.unwrap_or(Detail {
+            pixels: 1.0,
+            decides_steps: true,
+        })),
+        ..options.clone()
+    };
+    let growth = Growth { steps, ..*growth };
+    super::write(&found.graph, &growth, &options, out)
+}
+
+/// The canvas of everything: of the limit set where the graph tells its box, or else of what a rough
+/// look shows.
+fn whole(graph: &Graph, growth: &Growth<'_>, options: &Options) -> Result<Canvas, RenderError> {
+    let Options {
+        style, view, size, ..
+    } = options;
+    if let Some(window) = view.window {
+        return Ok(Canvas::of_window(window, view, *size)?);
+    }
+    if let (Some(bounds), Width::Pixels(width)) = (graph.limit_bounds(), style.width) {
+        let pad = view.margin + width * overhang(style);
+        return Ok(Canvas::fit(&bounds, *size, pad)?);
+    }
+    let rough = Options {
+        detail: Some(Detail {
+            pixels: ROUGH * longest(*size),
+            decides_steps: true,
+        }),
+        ..options.clone()
+    };
+    Ok(Layout::find(graph, growth, &rough)?.canvas)
+}
+
+/// Elements smaller than this part of a picture tell little about the size of it all.
+const ROUGH: f64 = 1.0 / 256.0;
+
+fn longest(size: Size) -> f64 {
+    match size {
+        Size::Long(side) => side.into(),
+        Size::Exactly(width, height) => width.max(height).into(),
+    }
+}
+
+fn check(style: &Style) -> Result<(), RenderError> {
+    if matches!(style.color_by, ColorBy::Index | ColorBy::Fractal) {
+        return Err(NoZoom::Numbers.into());
+    }
+    Ok(())
+}

@@ -1,0 +1,131 @@
+use std::fmt;
+use std::str::FromStr;
+
+use crate::geometry::DVec2;
+
+/// A point of a limit set: the one that all elements on a way into it have in common, or one that
+/// is told by its coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Address {
+    /// The position in the initiator, then at each replacement the position in the generator as
+    /// listed: first some, then others over and over.
+    Path {
+        /// What comes once.
+        first: Vec<u32>,
+        /// What is repeated for ever; not empty.
+        repeated: Vec<u32>,
+    },
+    /// A point of the plane.
+    Point(DVec2),
+}
+
+/// What is wrong with an address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AddressError {
+    /// It is none.
+    #[error(
+        "an address is a way of positions that goes on for ever, such as 0.2.(1), or a point x,y"
+    )]
+    Unreadable,
+    /// It ends.
+    #[error(
+        "this way ends at an element, which is no point yet: what is repeated for ever stands in \
+         brackets at its end, as in 0.2.(1)"
+    )]
+    Ends,
+    /// It is longer than anyone writes.
+    #[error("an address has {MOST_POSITIONS} positions at most")]
+    TooLong,
+}
+
+const MOST_POSITIONS: usize = 1_000_000;
+
+impl FromStr for Address {
+    type Err = AddressError;
+
+    fn from_str(text: &str) -> Result<Self, AddressError> {
+        let text = text.trim();
+        if let Some((x, y)) = text.split_once(',') {
+            let number = |text: &str| match text.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => Ok(number),
+                _ => Err(AddressError::Unreadable),
+            };
+            return Ok(Self::Point(DVec2::new(number(x)?, number(y)?)));
+        }
+        let Some((first, repeated)) = text.split_once('(') else {
+            positions(text)?;
+            return Err(AddressError::Ends);
+        };
+        let repeated = repeated.strip_suffix(')').ok_or(AddressError::Unreadable)?;
+        let first = match first {
+            "" => Vec::new(),
+            _ => positions(first.strip_suffix('.').unwrap_or(first))?,
+        };
+        let repeated = positions(repeated)?;
+        if first.len() + repeated.len() > MOST_POSITIONS {
+            return Err(AddressError::TooLong);
+        }
+        Ok(Self::Path { first, repeated })
+    }
+}
+
+/// Positions between full stops.
+fn positions(text: &str) -> Result<Vec<u32>, AddressError> {
+    let read = |position: &str| match position.trim() {
+        digits if digits.starts_with('+') => Err(AddressError::Unreadable),
+        digits => digits.parse().map_err(|_| AddressError::Unreadable),
+    };
+    text.split('.').map(read).collect()
+}
+
+/// As it is written.
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, repeated) = match self {
+            Self::Point(point) => return write!(f, "{},{}", point.x, point.y),
+            Self::Path { first, repeated } => (first, repeated),
+        };
+        let joined = |positions: &[u32]| {
+            let all: Vec<String> = positions.iter().map(u32::to_string).collect();
+            all.join(".")
+        };
+        if !first.is_empty() {
+            write!(f, "{}.", joined(first))?;
+        }
+        write!(f, "({})", joined(repeated))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Address, AddressError};
+
+    #[test]
+    fn addresses_are_printed_as_they_are_written() {
+        for text in ["0.2.(1)", "(0)", "3.(0.12.7)", "0.5,-2"] {
+            assert_eq!(text.parse::<Address>().unwrap().to_string(), text);
+        }
+        assert_eq!("0(1)".parse::<Address>(), "0.(1)".parse());
+        for text in ["0", "0.1.2"] {
+            assert_eq!(text.parse::<Address>(), Err(AddressError::Ends), "{text}");
+        }
+        for text in [
+            "",
+            "x",
+            "0.(1",
+            "0.(1).2",
+            "()",
+            "0..(1)",
+            "-1.(0)",
+            "1,",
+            "1,inf",
+            "99999999999.(0)",
+        ] {
+            assert_eq!(
+                text.parse::<Address>(),
+                Err(AddressError::Unreadable),
+                "{text}"
+            );
+        }
+    }
+}

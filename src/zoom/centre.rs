@@ -1,0 +1,140 @@
+//! The point that an address names.
+
+use std::sync::Arc;
+
+use crate::expression::Precise;
+use crate::geometry::DMat2;
+use crate::graph::{Graph, Instance, Production, Replacement};
+use crate::grow::{Evaluator, Moment, Standing};
+
+use super::constants::{Constants, Parent};
+use super::fixed::{Fixed, Vector};
+use super::{Address, GRAIN, Growth, SPARE, Window, ZoomError};
+
+/// An address that has not come to a point after so many steps never does.
+const MOST_STEPS: u32 = 1_000_000;
+
+/// The point in the middle of a window, in multiples of 2^-`bits`.
+pub(super) fn centre(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    window: &Window,
+    constants: &mut Constants<'_>,
+) -> Result<Vector, ZoomError> {
+    let (first, repeated) = match &window.at {
+        Address::Point(point) => return Ok([point.x, point.y].map(|it| constants.written(it))),
+        Address::Path { first, repeated } => (first, repeated),
+    };
+    let address = || window.at.clone();
+    let mut positions = first.iter().chain(repeated.iter().cycle()).copied();
+    let found = |instances: &mut dyn Iterator<Item = &Instance>, position, depth| {
+        let all: Vec<&Instance> = instances.collect();
+        let instance = all.iter().find(|instance| instance.position == position);
+        instance
+            .map(|&it| it.clone())
+            .ok_or(ZoomError::NoSuchPosition {
+                address: address(),
+                position,
+                depth,
+                count: all.len(),
+            })
+    };
+    let Some(position) = positions.next() else {
+        unreachable!("something is repeated");
+    };
+    let root = found(&mut graph.initiator(0).instances.iter(), position, 0)?;
+    let mut standing = Standing::whole(growth.seed).root(graph, &root);
+    let mut object = root.object;
+    let mut maps = vec![constants.root(&root)];
+    let mut product = Product::new(root.frame.map.matrix2);
+    // What is left of the whole is less than any part of a pixel that is counted.
+    #[expect(clippy::cast_precision_loss, reason = "a small number")]
+    let enough = -(window.factor.log2() + window.scale.log2()).max(0.0) - GRAIN as f64;
+    let mut evaluator = Evaluator::default();
+    for (position, level) in positions.zip(0..) {
+        if product.log2 < enough {
+            break;
+        }
+        if level == MOST_STEPS {
+            return Err(ZoomError::NoPoint { address: address() });
+        }
+        super::descent::check(growth, level)?;
+        let moment = Moment {
+            born: 0,
+            level,
+            rank: 0,
+        };
+        let depth = level;
+        let evaluated: Production;
+        let production = match &graph.objects()[object].replacement {
+            Replacement::Kept => {
+                return Err(ZoomError::Infertile {
+                    address: address(),
+                    depth,
+                });
+            }
+            Replacement::Beyond => return Err(ZoomError::TooShallow { depth: level }),
+            Replacement::Fixed(production) => Arc::as_ref(production),
+            Replacement::Evaluated(_) => {
+                let mut made = Production::default();
+                evaluator.evaluate(graph, &standing, object, moment, &mut made)?;
+                evaluated = made;
+                &evaluated
+            }
+        };
+        let mut instances = production.placed_instances().map(|(_, instance)| instance);
+        let child = found(&mut instances, position, depth + 1)?;
+        let parent = Parent {
+            standing: &standing,
+            object,
+            moment,
+            bits: left(product.log2 - enough) + SPARE,
+        };
+        maps.extend(constants.children(parent, &[&child]));
+        product.multiply(child.frame.map.matrix2);
+        standing = standing.child(graph, &child);
+        object = child.object;
+    }
+    let bits = constants.bits();
+    let middle = graph.middle();
+    let start = [middle.x, middle.y].map(|it| Precise::of(it).fixed(bits));
+    let image = |point: Vector, map: &Arc<Fixed>| map.image(&point, bits);
+    Ok(maps.iter().rev().fold(start, image))
+}
+
+/// A number of bits.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn left(bits: f64) -> usize {
+    bits.ceil() as usize
+}
+
+/// How much shorter things become on a way.
+struct Product {
+    matrix: DMat2,
+    log2: f64,
+}
+
+impl Product {
+    fn new(matrix: DMat2) -> Self {
+        let mut product = Self {
+            matrix: DMat2::IDENTITY,
+            log2: 0.0,
+        };
+        product.multiply(matrix);
+        product
+    }
+
+    fn multiply(&mut self, matrix: DMat2) {
+        self.matrix *= matrix;
+        let columns = [self.matrix.x_axis, self.matrix.y_axis];
+        let size = columns[0].length().max(columns[1].length());
+        self.log2 += libm::log2(size);
+        if size > 0.0 {
+            self.matrix *= 1.0 / size;
+        }
+    }
+}

@@ -1,0 +1,164 @@
+use std::fmt;
+use std::str::FromStr;
+
+use dashu_float::round::mode::HalfEven;
+use dashu_float::{DBig, FBig};
+use dashu_int::IBig;
+
+/// How much larger than as a whole something is drawn: a positive number, to 192 bits.
+///
+/// It is written as a decimal, with an exponent or without, or as a power of one: `1e1000`, `3^5000`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    value: FBig<HalfEven, 2>,
+    text: String,
+}
+
+/// What is wrong with a factor.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FactorError {
+    /// It is none.
+    #[error("a zoom is a number above 0, such as 250, 1e1000 or 3^5000")]
+    Unreadable,
+    /// It leads too far.
+    #[error("the zoom goes to 1e{MOST_DIGITS} at most, and to 1e-{LEAST_DIGITS} at least")]
+    Beyond,
+}
+
+const BITS: usize = 192;
+
+/// Pictures below this take too long.
+const MOST_DIGITS: u32 = 10_000;
+
+/// Pictures above this show a point.
+const LEAST_DIGITS: u32 = 6;
+
+impl FromStr for Factor {
+    type Err = FactorError;
+
+    fn from_str(text: &str) -> Result<Self, FactorError> {
+        let written = text.trim();
+        let value = match written.split_once('^') {
+            Some((base, exponent)) => {
+                let base = decimal(base.trim())?;
+                let exponent: i32 = exponent
+                    .trim()
+                    .parse()
+                    .map_err(|_| FactorError::Unreadable)?;
+                let digits = log10(&base) * f64::from(exponent);
+                check(digits)?;
+                base.powi(IBig::from(exponent))
+            }
+            None => decimal(written)?,
+        };
+        check(log10(&value))?;
+        Ok(Self {
+            value,
+            text: written.to_owned(),
+        })
+    }
+}
+
+/// As it is written.
+impl fmt::Display for Factor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl Factor {
+    /// Nothing is magnified.
+    #[must_use]
+    pub fn one() -> Self {
+        Self {
+            value: FBig::ONE,
+            text: "1".into(),
+        }
+    }
+
+    /// The power of two that it is.
+    #[must_use]
+    pub fn log2(&self) -> f64 {
+        log10(&self.value) * std::f64::consts::LOG2_10
+    }
+
+    /// A number times the factor, to a whole number of parts of 2^-`bits`.
+    pub(super) fn times(&self, number: f64, bits: usize) -> IBig {
+        let number = FBig::<HalfEven, 2>::try_from(number).unwrap_or(FBig::ZERO);
+        let product = number.with_precision(BITS).value() * &self.value;
+        (product << isize::try_from(bits).unwrap_or(isize::MAX))
+            .to_int()
+            .value()
+    }
+}
+
+fn check(digits: f64) -> Result<(), FactorError> {
+    if digits > f64::from(MOST_DIGITS) || digits < -f64::from(LEAST_DIGITS) {
+        return Err(FactorError::Beyond);
+    }
+    Ok(())
+}
+
+/// Reads a number above zero.
+fn decimal(text: &str) -> Result<FBig<HalfEven, 2>, FactorError> {
+    let is_plain = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-');
+    if !text.chars().all(is_plain) || !text.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        return Err(FactorError::Unreadable);
+    }
+    // An exponent of many digits is not worked out.
+    let exponent = text.split_once(['e', 'E']).map(|(_, exponent)| exponent);
+    if exponent.is_some_and(|exponent| exponent.len() > 8) {
+        let is_number = exponent.is_some_and(|text| text.parse::<f64>().is_ok());
+        return Err(if is_number {
+            FactorError::Beyond
+        } else {
+            FactorError::Unreadable
+        });
+    }
+    if let Some(exponent) = exponent {
+        let exponent: i32 = exponent.parse().map_err(|_| FactorError::Unreadable)?;
+        check(f64::from(exponent))?;
+    }
+    let decimal = DBig::from_str(text).map_err(|_| FactorError::Unreadable)?;
+    if decimal <= DBig::ZERO {
+        return Err(FactorError::Unreadable);
+    }
+    let binary = decimal.with_base_and_precision::<2>(BITS).value();
+    Ok(binary.with_rounding())
+}
+
+fn log10(value: &FBig<HalfEven, 2>) -> f64 {
+    let value = value.clone().with_precision(64).value();
+    value.log10().to_f64().value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Factor, FactorError};
+
+    #[test]
+    fn factors_are_decimals_and_powers() {
+        let read = |text: &str| text.parse::<Factor>();
+        for (text, same) in [
+            ("3^4", "81"),
+            ("1e3", "1000"),
+            ("2.5e1", "25"),
+            (".5", "0.5"),
+            ("2^-2", "0.25"),
+        ] {
+            let (read, same) = (read(text).unwrap(), read(same).unwrap());
+            assert_eq!(read.times(3.0, 100), same.times(3.0, 100), "{text}");
+            assert_eq!(read.to_string(), text);
+        }
+        let log = read("3^5000").unwrap().log2();
+        assert!((log - 5000.0 * libm::log2(3.0)).abs() < 1e-9, "{log}");
+        for text in [
+            "", "x", "-1", "0", "1e", "^2", "2^", "2^x", "2^0.5", "1e5x", "inf", "NaN",
+        ] {
+            assert_eq!(read(text), Err(FactorError::Unreadable), "{text}");
+        }
+        for text in ["1e10001", "1e999999999999", "7^99999999", "1e-9", "0.1^99"] {
+            assert_eq!(read(text), Err(FactorError::Beyond), "{text}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! `--zoom` and `--at`.
+
+use assert_cmd::Command;
+
+fn said(arguments: &[&str]) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::cargo_bin("kfrac")
+        .unwrap()
+        .current_dir(&folder)
+        .arg("grow")
+        .args(arguments)
+        .output()
+        .unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+#[test]
+fn mistakes_are_told() {
+    for (arguments, status, part) in [
+        (
+            &["koch", "--zoom", "-3", "--at", "0.(1)"][..],
+            2,
+            "a zoom is a number above 0",
+        ),
+        (
+            &["koch", "--zoom", "0", "--at", "0.(1)"],
+            2,
+            "a zoom is a number above 0",
+        ),
+        (
+            &["koch", "--zoom", "1e", "--at", "0.(1)"],
+            2,
+            "a zoom is a number above 0",
+        ),
+        (
+            &["koch", "--zoom", "1e99999999999999", "--at", "0.(1)"],
+            2,
+            "1e10000 at most",
+        ),
+        (
+            &["koch", "--zoom", "9^999999999", "--at", "0.(1)"],
+            2,
+            "1e10000 at most",
+        ),
+        (
+            &["koch", "--zoom", "10", "--at", "0.1"],
+            2,
+            "stands in brackets",
+        ),
+        (
+            &["koch", "--zoom", "10", "--at", "0.(1"],
+            2,
+            "goes on for ever",
+        ),
+        (
+            &["koch", "--zoom", "10", "--at", "0.()"],
+            2,
+            "goes on for ever",
+        ),
+        (&["koch", "--zoom", "10"], 2, "--zoom needs --at"),
+        (
+            &["koch", "--zoom", "10", "--at", "0.(1)", "--view", "0,0,1,1"],
+            2,
+            "give one of them",
+        ),
+        (
+            &["koch", "--zoom", "10", "--at", "0.(1)", "-o", "x.csv"],
+            2,
+            "--zoom is of pictures",
+        ),
+        (
+            &["koch", "--zoom", "10", "--at", "0.(7)"],
+            1,
+            "no position 7 at depth 1, where there are 4",
+        ),
+        (
+            &["pythagoras", "--zoom", "10", "--at", "0.(0)"],
+            1,
+            "ends at depth 1",
+        ),
+        (
+            &["koch", "--zoom", "1e40", "--at", "0.5,0.25"],
+            1,
+            "some 16 digits",
+        ),
+        (
+            &[
+                "dragon",
+                "--zoom",
+                "10",
+                "--at",
+                "0.(0)",
+                "--color-by",
+                "index",
+            ],
+            1,
+            "--color-by none",
+        ),
+        (
+            &["vegetation", "--zoom", "10", "--at", "0.(0)"],
+            1,
+            "zoom into",
+        ),
+    ] {
+        let (code, text) = said(arguments);
+        assert!(text.contains(part), "{arguments:?}: {text}");
+        assert_eq!(code, Some(status), "{arguments:?}: {text}");
+    }
+}
+
+#[test]
+fn a_zoom_writes_pictures_of_both_formats() {
+    for file in ["deep.png", "deep.svg"] {
+        let (code, text) = said(&["koch", "--zoom", "1e50", "--at", "0.(1.2)", "-o", file]);
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.contains("koch to a detail of 1 pixel, 1"), "{text}");
+    }
+}

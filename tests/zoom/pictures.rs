@@ -1,0 +1,178 @@
+//! Zoomed pictures.
+
+use std::io::Cursor;
+
+use kfrac::document::Document;
+use kfrac::geometry::DVec2;
+use kfrac::grow::Growth;
+use kfrac::model::Model;
+use kfrac::render::{self, Detail, Format, Look, Options, Size};
+use kfrac::style::{ColorBy, Colour, Style, View, Width};
+use kfrac::zoom::Source;
+use png::Transformations;
+
+use super::{library, point, read};
+
+type Rule = (Document, Model);
+
+/// Black lines on white.
+fn options(rule: &Rule) -> Options {
+    let style = Style {
+        width: Width::Pixels(1.5),
+        color_by: ColorBy::None,
+        stroke: Some(Colour::BLACK),
+        background: Some(Colour::grey(255)),
+        ..rule.1.heading().style.clone()
+    };
+    Options {
+        format: Format::Png,
+        size: Size::Exactly(200, 200),
+        style,
+        detail: Some(Detail {
+            pixels: 1.0,
+            decides_steps: true,
+        }),
+        ..Options::default()
+    }
+}
+
+/// The values of a picture's pixels, of one channel.
+fn values(picture: Vec<u8>) -> Vec<u8> {
+    let mut decoder = png::Decoder::new(Cursor::new(picture));
+    decoder.set_transformations(Transformations::EXPAND | Transformations::STRIP_16);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut pixels).unwrap();
+    let samples = frame.color_type.samples();
+    pixels.chunks(samples).map(|pixel| pixel[0]).collect()
+}
+
+fn zoomed(rule: &Rule, options: &Options, factor: &str, at: &str) -> Vec<u8> {
+    let graph = rule.1.compile(64).unwrap();
+    let source = Source {
+        document: &rule.0,
+        settings: &[],
+        model: &rule.1,
+        omitted: &[],
+    };
+    let look = Look {
+        factor: factor.parse().unwrap(),
+        at: at.parse().unwrap(),
+    };
+    let mut bytes = Vec::new();
+    let growth = Growth::steps(1_000_000);
+    render::write_zoomed(&source, &graph, &growth, options, &look, &mut bytes).unwrap();
+    values(bytes)
+}
+
+fn drawn(rule: &Rule, factor: &str, at: &str) -> Vec<u8> {
+    zoomed(rule, &options(rule), factor, at)
+}
+
+/// Pixels of one picture that differ by more than a sixteenth from those of another.
+fn apart(a: &[u8], b: &[u8]) -> usize {
+    assert_eq!(a.len(), b.len());
+    a.iter()
+        .zip(b)
+        .filter(|(a, b)| a.abs_diff(**b) > 16)
+        .count()
+}
+
+#[test]
+fn a_zoom_by_a_power_of_the_ratio_shows_the_same_picture() {
+    for (name, ratio, at, steps) in [
+        ("koch", "3", "0.(0)", [3, 4, 2004]),
+        // Eight turns by 45 degrees are a whole one.
+        (
+            "dragon",
+            "1.4142135623730950488016887242096980785696718753769480731766797379907",
+            "0.(0)",
+            [9, 17, 2009],
+        ),
+    ] {
+        let rule = library(name);
+        let [first, next, deep] = steps.map(|power| drawn(&rule, &format!("{ratio}^{power}"), at));
+        let ink = first.iter().filter(|pixel| **pixel < 128).count();
+        assert!(ink > 200, "{name}: {ink}");
+        assert_eq!(apart(&first, &next), 0, "{name}");
+        assert_eq!(apart(&first, &deep), 0, "{name}");
+    }
+}
+
+/// What is infertile, and ever so much larger than the window, is drawn as it is seen in it.
+#[test]
+fn large_infertile_elements_are_clipped() {
+    let line = "initiator: segment\ngenerator:\n  - [0, 0]\n  - [1/3, 0]\n  \
+                - {from: [-1, -1], to: [1, 1], fertile: false}\n  - {from: [-1/2, 1/3], to: [1/7, 1/3], fertile: false}\n";
+    for factor in ["10", "1e6", "1e12", "1e300"] {
+        let pixels = drawn(&read(line), factor, "0.(0)");
+        // A diagonal through the middle.
+        for place in [5, 60, 99, 140, 190] {
+            assert!(
+                pixels[(199 - place) * 200 + place] < 160,
+                "{factor} at {place}"
+            );
+            assert!(
+                pixels[(199 - place) * 200 + (place + 100) % 200] > 200,
+                "{factor} at {place}"
+            );
+        }
+    }
+    // The middle lies inside of the filled half of one square, on its lower side.
+    let square = "initiator: segment\nstyle: {fill: black}\ngenerator:\n  - [0, 0]\n  - [1/3, 0]\n  \
+                  - {from: [-1, 0], to: [1, 0], fertile: false, base_element: square}\n";
+    for factor in ["10", "1e6", "1e300"] {
+        let pixels = drawn(&read(square), factor, "0.(0)");
+        assert!(
+            pixels[50 * 200 + 20] < 60 && pixels[50 * 200 + 180] < 60,
+            "{factor}"
+        );
+        assert!(
+            pixels[150 * 200 + 20] > 200 && pixels[150 * 200 + 180] > 200,
+            "{factor}"
+        );
+    }
+}
+
+/// A closed chain encloses in a zoom what it does in a window of the whole.
+#[test]
+fn areas_are_those_of_the_whole() {
+    let rule = library("koch-snowflake");
+    let graph = rule.1.compile(64).unwrap();
+    let p = point(&graph, &[0, 1, 2]);
+    let base = Options {
+        style: Style {
+            fill: Some(Colour::BLACK),
+            ..options(&rule).style
+        },
+        ..options(&rule)
+    };
+    let view = |[x, y, side]: [f64; 3]| Options {
+        view: View {
+            window: Some([x - side / 2.0, y - side / 2.0, side, side]),
+            margin: 0.0,
+        },
+        ..base.clone()
+    };
+    for (factor, at) in [
+        ("5", p),
+        ("1e3", p),
+        ("1e7", p),
+        ("30", DVec2::new(0.5, 0.1)),
+    ] {
+        let side = 2.0 / factor.parse::<f64>().unwrap();
+        let mut plain = Vec::new();
+        let window = view([at.x, at.y, side]);
+        render::write(&graph, &Growth::steps(1_000), &window, &mut plain).unwrap();
+        let address = format!("{},{}", at.x, at.y);
+        let shown = zoomed(&rule, &view([0.0, 0.0, 2.0]), factor, &address);
+        let plain = values(plain);
+        let filled = plain.iter().filter(|value| **value < 128).count();
+        assert!(filled > 8_000, "{factor}: {filled}");
+        assert!(
+            apart(&shown, &plain) <= 4,
+            "{factor}: {}",
+            apart(&shown, &plain)
+        );
+    }
+}
