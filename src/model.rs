@@ -107,8 +107,8 @@ impl Model {
     /// So many elements are drawn unless somebody allows more.
     pub const MOST_ELEMENTS: u64 = 50_000_000;
 
-    /// The model's graph, resolved for at least `steps` steps. The words of L-systems are written for
-    /// exactly as many, by the draws of a seed, if they draw no more elements than are allowed.
+    /// The model's graph, resolved for at least `steps` steps. Where an L-system is not compiled, its words are
+    /// written for exactly as many, by the draws of a seed, if they draw no more elements than are allowed.
     ///
     /// # Errors
     ///

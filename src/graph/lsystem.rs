@@ -1,4 +1,13 @@
 //! From an L-system to its graph.
+//!
+//! What a module comes to in some steps does the same to the turtle wherever it stands: it leads it somewhere,
+//! turns, reflects and scales it, changes the look of its lines, and draws. These *effects* follow from the
+//! bottom up: those of a module with n steps left from those of the modules in its word with n - 1. Headings
+//! stay whole parts of a turn, and lengths have exponents of their own.
+//!
+//! Objects are modules with the number of steps that are left ([levels]); where all levels look alike, one
+//! object stands for them ([similar], edge rewriting). Where productions are drawn, what stands in a word is
+//! found by its path ([words]). Contexts, and systems that would become too large, are left to strings.
 
 mod effects;
 mod far;

@@ -8,6 +8,9 @@
 //! [`Replacement::Evaluated`], and its instances are worked out where it stands. A rule in which the
 //! choice of a generator hangs on such an index is *irregular*.
 //!
+//! What every number of steps is grown out of is the initiator, the same for all but in *levelled* graphs, whose
+//! objects know how many steps are still to come.
+//!
 //! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
 //! ([`Placement::SeedsAsInitiator`]) keeps the position only.
 
