@@ -398,3 +398,58 @@ fn l_systems_become_what_they_draw() {
         }
     }
 }
+
+/// The strings that the literature has for these curves.
+#[test]
+fn chains_of_equal_lines_become_plain_strings() {
+    let strings = |name: &str| {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let own = model(&Document::read(&source, &catalogue).unwrap());
+        let written = convert(&own, Kind::LSystem, Keeps::Limit)
+            .unwrap()
+            .to_yaml();
+        let kept = ["angle:", "heading:", "axiom:", "productions:", "symbols:"];
+        let kept = written
+            .lines()
+            .filter(|line| kept.iter().any(|key| line.starts_with(key)));
+        kept.collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(
+        strings("koch"),
+        "angle: 360/6\naxiom: F\nproductions: {F: F+F--F+F}"
+    );
+    assert_eq!(
+        strings("terdragon"),
+        "angle: 360/3\naxiom: F\nproductions: {F: F-F+F}"
+    );
+    // A is F traversed from its end.
+    assert_eq!(
+        strings("gosper"),
+        "angle: 360/6\naxiom: F\nproductions: {F: F-A--A+F++FF+A-, A: +F-AA--A-F++F+A}\nsymbols: {A: draw}"
+    );
+    // A lies on the other side.
+    assert_eq!(
+        strings("dragon"),
+        "angle: 360/8\naxiom: F\nproductions: {F: +F--A+, A: -F++A-}\nsymbols: {A: draw}"
+    );
+    assert_eq!(
+        strings("koch-snowflake"),
+        "angle: 360/6\nheading: 60\naxiom: F--F--F\nproductions: {F: F+F--F+F}"
+    );
+}
+
+/// Trunks stay, and everything stands in brackets.
+#[test]
+fn other_rules_become_strings_with_ways() {
+    let written = converted(TREE, Kind::LSystem, Keeps::Approximants).unwrap();
+    assert!(written.contains("scale: s"), "{written}");
+    assert!(written.contains("reflect"), "{written}");
+    let (rule, other) = (model(&document_of(TREE)), model(&document_of(&written)));
+    let graphs = [&rule, &other].map(|model| model.compile(8).unwrap());
+    for steps in 0..6 {
+        let set = Set::Approximant(Growth::steps(steps));
+        assert_same("a tree", [&graphs[0], &graphs[1]], set);
+    }
+    assert_same("a tree", [&graphs[0], &graphs[1]], Set::Limit);
+}

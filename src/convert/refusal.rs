@@ -7,6 +7,11 @@ pub enum Refusal {
     /// It is of that kind already.
     #[error("it is of the kind '{}' already: `kfrac cat --inline` shows all of it", .0.name())]
     SameKind(Kind),
+    /// What stays has other shapes than lines.
+    #[error(
+        "its infertile elements are not all lines, and of others the limit set of an L-system is not told"
+    )]
+    NoLines,
     /// It has tints.
     #[error("its instances have tints, and a turtle draws in colours of a palette")]
     Tint,

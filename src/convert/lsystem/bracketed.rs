@@ -147,6 +147,7 @@ impl Writer<'_> {
             Some(_) if self.keeps == Keeps::Limit => Look::Line,
             _ if !placed.visible => Look::Nothing,
             _ if is_line => Look::Line,
+            _ if self.keeps == Keeps::Limit => return Err(Refusal::NoLines),
             _ => Look::Shape(placed.shape),
         };
         let symbol = Symbol {
