@@ -41,6 +41,9 @@ pub(super) struct Drawn {
     pub(super) last: Look,
 }
 
+/// No more are worked out.
+const MOST_EFFECTS: usize = 1 << 18;
+
 /// The effects of all kinds, from the bottom up.
 #[derive(Debug)]
 pub(super) struct Effects {
@@ -65,6 +68,11 @@ impl Effects {
     }
 
     fn of_kinds(system: &LSystem, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
+        let fertile = { &kinds.all }.iter().filter(|kind| kind.is_fertile());
+        let levels = fertile.map(|kind| steps.saturating_sub(kind.born) as usize);
+        if levels.fold(0, usize::saturating_add) > MOST_EFFECTS {
+            return Err(NotCompiled);
+        }
         let mut effects = Self {
             system: Arc::new(system.clone()),
             compass: Compass::of(system),
