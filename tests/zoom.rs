@@ -395,6 +395,35 @@ fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
     frame.map.translation
 }
 
+/// Copies that stand in each other's place are one, however many there are.
+#[test]
+fn exact_overlaps_are_met_once() {
+    let map = |x: u32, y: u32| format!("  - {{scale: 1/3, shift: [{x}/3, {y}/3]}}\n");
+    let maps: String = (0..3)
+        .flat_map(|x| (0..3).map(move |y| (x, y)))
+        .map(|(x, y)| map(x, y))
+        .collect();
+    let rule = read(&format!(
+        "kind: ifs\nmaps:\n{maps}{maps}{maps}initial: {{polygon: [[0, 0], [1, 0], [1, 1]]}}\n"
+    ));
+    let graph = rule.1.compile(1).unwrap();
+    let source = Source {
+        document: &rule.0,
+        settings: &[],
+        model: &rule.1,
+        omitted: &[],
+    };
+    let found = zoom(
+        &source,
+        &graph,
+        &Growth::default(),
+        &window("1e200", "0.(4.2)"),
+    )
+    .unwrap();
+    let roots = &found.graph.initiator().instances;
+    assert!((1..2_000).contains(&roots.len()), "{}", roots.len());
+}
+
 #[test]
 fn what_has_no_point_is_refused() {
     let said = |rule: &(Document, Model), factor: &str, at: &str| -> ZoomError {

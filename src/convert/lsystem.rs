@@ -9,6 +9,7 @@ mod chain;
 
 use crate::build::written::Entries;
 
+use super::rule::similarity;
 use super::structure::Structure;
 use super::{Keeps, Refusal};
 
@@ -16,6 +17,12 @@ use super::{Keeps, Refusal};
 const LETTERS: &str = "FABCDEHIJKLMNOPQRSTUVWXYZabcdeghijklmnopqrstuvwxyz";
 
 pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
+    let objects = (0..structure.objects.len()).map(Some);
+    for object in objects.chain([None]) {
+        for (number, placed) in structure.placed(object).iter().enumerate() {
+            similarity(&placed.map, &|| structure.called(object, number))?;
+        }
+    }
     match chain::write(structure) {
         Some(entries) => Ok(entries),
         None => bracketed::write(structure, keeps),

@@ -54,10 +54,7 @@ impl Writer<'_> {
 
     /// The elements of a generator, or of the initiator.
     fn elements(&self, object: Option<usize>) -> Result<Value, Refusal> {
-        let all = match object {
-            Some(object) => &self.structure.objects[object],
-            None => &self.structure.scene,
-        };
+        let all = self.structure.placed(object);
         let elements: Result<Vec<_>, _> = all
             .iter()
             .enumerate()

@@ -185,6 +185,11 @@ impl Structure {
         }
     }
 
+    /// What stands in the place of an object, or in the scene.
+    pub(super) fn placed(&self, object: Option<usize>) -> &[Placed] {
+        object.map_or(&self.scene, |object| &self.objects[object])
+    }
+
     /// All instances, those of the scene first.
     pub(super) fn instances(&self) -> impl Iterator<Item = &Placed> {
         self.scene.iter().chain(self.objects.iter().flatten())

@@ -34,7 +34,7 @@ pub(super) struct Node {
     /// Its map, in parts of a pixel from the middle of the window.
     pub(super) map: Fixed,
     /// Whether it joins the one before it.
-    joined: bool,
+    pub(super) joined: bool,
 }
 
 /// What has come of it.
@@ -49,7 +49,7 @@ pub(super) struct Found {
     object: usize,
     frame: Frame,
     root: Root,
-    joined: bool,
+    pub(super) joined: bool,
     drawn: Drawn,
 }
 
@@ -153,7 +153,8 @@ impl<'a, 'c> Descent<'a, 'c> {
                 break;
             }
             self.go_down()?;
-            if !self.graph.draws() && !self.graph.tints() {
+            // Draws and tints tell apart what stands in one place, and areas need all of their chain.
+            if !self.graph.draws() && !self.graph.tints() && !self.window.areas {
                 merge::merge(&mut self.items);
             }
             if self.items.len() > MOST_INSTANCES {

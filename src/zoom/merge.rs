@@ -20,12 +20,19 @@ pub(super) fn merge(items: &mut Vec<Item>) {
         return;
     }
     let mut known = HashSet::new();
-    items.retain(|item| match item {
-        Item::Node(node) => {
-            let direction = node.standing.frame.direction;
-            known.insert((node.object, node.level, direction, key(&node.map)))
-        }
-        Item::Root(_) => true,
+    let mut is_gap = false;
+    items.retain_mut(|item| {
+        let (stays, joined) = match item {
+            Item::Node(node) => {
+                let direction = node.standing.frame.direction;
+                let key = (node.object, node.level, direction, key(&node.map));
+                (known.insert(key), &mut node.joined)
+            }
+            Item::Root(found) => (true, &mut found.joined),
+        };
+        // Nothing goes on from where something is left out.
+        *joined &= !std::mem::replace(&mut is_gap, !stays);
+        stays
     });
 }
 

@@ -12,7 +12,6 @@ use crate::geometry::DVec2;
 use crate::rule::{BaseElement, Piece};
 
 use super::super::number;
-use super::super::rule::similarity;
 use super::super::structure::{Placed, Structure};
 use super::super::{Keeps, Refusal};
 use super::{degrees, letter};
@@ -85,21 +84,20 @@ impl Writer<'_> {
     /// The string of an object, or of the scene.
     fn string(&mut self, object: Option<usize>) -> Result<String, Refusal> {
         let structure = self.structure;
-        let all = match object {
-            Some(object) => &structure.objects[object],
-            None => &structure.scene,
-        };
+        let all = structure.placed(object);
         let mut string = String::new();
-        for (number, placed) in all.iter().enumerate() {
+        for placed in all {
             if placed.tint.is_some() {
                 return Err(Refusal::Tint);
             }
-            similarity(&placed.map, &|| structure.called(object, number))?;
             let symbol = self.letter(placed)?;
             let way = self.way(placed);
-            let written = match way.as_str() {
-                "" => write!(string, "{symbol}"),
-                way => write!(string, "[{way}{symbol}]"),
+            // What stands alone needs no way back.
+            let is_alone = all.len() == 1 && object.is_none();
+            let written = if is_alone {
+                write!(string, "{way}{symbol}")
+            } else {
+                write!(string, "[{way}{symbol}]")
             };
             debug_assert!(written.is_ok(), "a string takes everything");
         }

@@ -34,9 +34,7 @@ impl<'a> OfSystem<'a> {
                 };
                 points.iter().map(toward).collect()
             }
-            Some(MapsDocument::Interpolated(document)) => {
-                numbers.interpolated(document, system, omitted)
-            }
+            Some(MapsDocument::Interpolated(document)) => numbers.interpolated(document, system),
             None => Vec::new(),
         };
         let stays = |number: &u32| !omitted.contains(number);
@@ -119,12 +117,7 @@ impl Numbers {
 
     /// As [`interpolate`](crate::ifs::interpolate). A factor that follows from a dimension is the
     /// double that was found.
-    fn interpolated(
-        &mut self,
-        document: &InterpolationDocument,
-        system: &System,
-        omitted: &[u32],
-    ) -> Vec<Fixed> {
+    fn interpolated(&mut self, document: &InterpolationDocument, system: &System) -> Vec<Fixed> {
         let bits = self.bits();
         let points = document.points.iter();
         let points: Vec<Vector> = points.map(|it| self.point(it, &[])).collect();
@@ -137,7 +130,6 @@ impl Numbers {
                 vec![Precise::of(scale).fixed(bits)]
             }
         };
-        debug_assert!(omitted.is_empty() || !system.ifs().maps().is_empty());
         let (first, last) = (&points[0], &points[points.len() - 1]);
         let whole = [&last[0] - &first[0], &last[1] - &first[1]];
         let maps = points.windows(2).zip(scales.iter().cycle());
