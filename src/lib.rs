@@ -38,7 +38,8 @@
 //! `grow`, finds what lies about a point, as a graph of its own that is drawn as any other.
 //!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other
-//! (what is measured beside graphs, pictures and tables of points, is read by [`import`]);
+//! (what is measured beside graphs, pictures and tables of points, is read by [`import`], and so are
+//! files of other programs, which become files of ours);
 //! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
 //! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
 //! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in

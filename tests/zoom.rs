@@ -230,7 +230,7 @@ fn fixed_points_look_the_same_at_any_depth() {
     ];
     for (name, rule, child, ratio, first) in cases {
         let graph = rule.1.compile(64).unwrap();
-        let root = &graph.initiator().instances[0];
+        let root = &graph.initiator(0).instances[0];
         let production = production(&graph, root.object);
         let linear = production.body.instances[child].frame.map.matrix2;
         let child = production.body.instances[child].position;
@@ -262,7 +262,7 @@ fn fixed_points_look_the_same_at_any_depth() {
 
 /// The point that a way leads to, in doubles, and the seed's part in it.
 fn point(graph: &Graph, positions: &[usize]) -> DVec2 {
-    let root = &graph.initiator().instances[positions[0]];
+    let root = &graph.initiator(0).instances[positions[0]];
     let (mut map, mut object) = (root.frame.map, root.object);
     for &position in positions[1..].iter().cycle().take(190) {
         let instances = &production(graph, object).body.instances;
@@ -420,7 +420,7 @@ fn exact_overlaps_are_met_once() {
         &window("1e200", "0.(4.2)"),
     )
     .unwrap();
-    let roots = &found.graph.initiator().instances;
+    let roots = &found.graph.initiator(0).instances;
     assert!((1..2_000).contains(&roots.len()), "{}", roots.len());
 }
 

@@ -26,7 +26,7 @@ use super::{Failure, help, output, text};
 pub(super) struct Arguments {
     /// Files of Fractint, whose names end in .l or .ifs
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
-    files: Vec<PathBuf>,
+    sources: Vec<PathBuf>,
     /// The folder to write to; it is made if it is not there
     #[arg(long, short, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut all_told = true;
     let mut rows = Vec::new();
-    for path in &arguments.files {
+    for path in &arguments.sources {
         let (source, kind) = open(path)?;
         let (entries, stray) = read_fractint(&source, kind);
         if entries.is_empty() {

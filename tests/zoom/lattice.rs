@@ -140,7 +140,7 @@ fn limit(repeated: &[usize], element: Element, pixel: f64) -> [f64; 2] {
 
 /// On which side the first element is replaced.
 fn is_left(graph: &kfrac::graph::Graph) -> bool {
-    let root = graph.initiator().instances[0].object;
+    let root = graph.initiator(0).instances[0].object;
     super::production(graph, root).body.instances[0]
         .frame
         .map
