@@ -44,6 +44,11 @@ fn examples_work() {
     for path in [folder.path().join("mine.yaml"), rules.join("other.yaml")] {
         fs::write(path, &rule).unwrap();
     }
+    let curve = "Koch { Angle 6 Axiom F F=F+F--F+F }";
+    let maps = "Dust { .5 0 0 .5 0 0 1 .3 0 0 .3 1 0 1 }";
+    for (name, text) in [("fractint.l", curve), ("other.ifs", maps)] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
     let mut pages = vec![printed(&["--help"])];
     pages.extend(commands().iter().map(|name| printed(&[name, "--help"])));
     for page in &pages {
@@ -53,6 +58,8 @@ fn examples_work() {
             let own = example.split(['|', '>']).next().unwrap();
             let words = own.split_whitespace().skip(1);
             let words = words.map(|word| word.replace('*', "other").replace('\'', ""));
+            // Large enough to be drawn in bands; a wall's worth of pixels takes minutes without optimisation.
+            let words = words.map(|word| word.replace("60000", "9000"));
             let output = kfrac().args(words).current_dir(folder.path()).output();
             let output = output.unwrap();
             assert!(output.status.success(), "{example}: {output:?}");
