@@ -84,6 +84,25 @@ impl Path {
         }
     }
 
+    /// One open path, or two where it comes back to its start.
+    pub(super) fn ways(mut self) -> Vec<Clipped> {
+        let returns = self.start.distance(self.last) <= 1e-6 * self.radius;
+        if !returns || self.pieces.len() < 2 {
+            return self.open().into_iter().collect();
+        }
+        let pieces = self.pieces.split_off(1);
+        let middle = self.pieces[0].end();
+        let second = Self {
+            radius: self.radius,
+            start: middle,
+            pieces,
+            last: self.last,
+            comes_near: self.comes_near,
+        };
+        self.last = middle;
+        [self, second].into_iter().filter_map(Self::open).collect()
+    }
+
     /// An open path; `None` if it comes back to its start.
     pub(super) fn open(self) -> Option<Clipped> {
         let frame = Frame::between(self.start, self.last, Direction::Normal);

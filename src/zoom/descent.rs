@@ -395,41 +395,39 @@ impl<'a, 'c> Descent<'a, 'c> {
         let position = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
         for item in self.items {
             let Item::Root(found) = item else { continue };
-            let (mut object, mut frame) = (found.object, found.frame);
-            let drawn = match found.drawn {
-                Drawn::Object => None,
-                Drawn::Clipped(outline) => Some(outline),
-                Drawn::Around(path) => match path.open() {
-                    Some(clipped) => {
-                        frame = clipped.frame;
-                        Some(clipped.outline)
-                    }
-                    // A way that ends where it starts leads nowhere.
-                    None => continue,
-                },
-            };
-            if let Some(outline) = drawn {
-                if self.window.relative_stroke > 0.0 {
-                    return Err(ZoomError::WideStroke);
+            let parts = match found.drawn {
+                Drawn::Object => vec![(found.frame, None)],
+                Drawn::Clipped(outline) => vec![(found.frame, Some(outline))],
+                Drawn::Around(path) => {
+                    let ways = path.ways().into_iter();
+                    ways.map(|way| (way.frame, Some(way.outline))).collect()
                 }
-                let mut of = graph.objects()[object].clone();
-                of.base_element = base_elements.len();
-                of.behaviour = behaviour;
-                of.replacement = Replacement::Kept;
-                base_elements.push(outline);
-                behaviour += 1;
-                object = graph.objects().len();
-                graph.objects.push(of);
+            };
+            for (number, (frame, drawn)) in parts.into_iter().enumerate() {
+                let mut object = found.object;
+                if let Some(outline) = drawn {
+                    if self.window.relative_stroke > 0.0 {
+                        return Err(ZoomError::WideStroke);
+                    }
+                    let mut of = graph.objects()[object].clone();
+                    of.base_element = base_elements.len();
+                    of.behaviour = behaviour;
+                    of.replacement = Replacement::Kept;
+                    base_elements.push(outline);
+                    behaviour += 1;
+                    object = graph.objects().len();
+                    graph.objects.push(of);
+                }
+                chain.instances.push(Instance {
+                    frame,
+                    length: frame.stretch(),
+                    joined: found.joined || number > 0,
+                    position: position(roots.len()),
+                    object,
+                });
+                deepest = deepest.max(found.root.level);
+                roots.push(found.root);
             }
-            chain.instances.push(Instance {
-                frame,
-                length: frame.stretch(),
-                joined: found.joined,
-                position: position(roots.len()),
-                object,
-            });
-            deepest = deepest.max(found.root.level);
-            roots.push(found.root);
         }
         graph.base_elements = base_elements.into();
         graph.initiators = vec![chain];
