@@ -79,6 +79,9 @@ impl Default for Density {
     }
 }
 
+/// Levels of fewer hits than this are worked out once.
+const FEW_HITS: u64 = 4096;
+
 /// Writes a histogram as a PNG.
 ///
 /// # Errors
@@ -104,9 +107,13 @@ pub fn write_density(
     let pixels = pixmap.pixels_mut();
     let most = (0..pixels.len()).map(hits).max().unwrap_or(0);
     let scale = Scale::new(density);
+    let levels: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
+        .map(|all| level(density.tone.of(all, most)))
+        .collect();
     for (place, pixel) in pixels.iter_mut().enumerate() {
         let all = hits(place);
-        let level = level(density.tone.of(all, most));
+        let known = usize::try_from(all).ok().and_then(|all| levels.get(all));
+        let level = known.map_or_else(|| level(density.tone.of(all, most)), |&level| level);
         let colour = match &density.shades {
             Shades::Classes(inks) if all > 0 && !inks.is_empty() => {
                 let shares = classes.iter().map(|counts| u64::from(counts[place]));

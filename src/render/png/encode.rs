@@ -5,6 +5,9 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use crate::render::Labels;
 
+/// Edges of one colour have no more tones than this. What has more is continuous: palettes, densities.
+const TONES: usize = 128;
+
 /// Writes pixels as PNG, with no more bits a pixel than they need: indexed where there are 256
 /// colours at most, grey where there is nothing else, without opacity where all is opaque.
 pub(in crate::render) fn encode(
@@ -28,7 +31,7 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
 ) -> Result<(), E> {
     let mut encoder = Encoder::new(out, width, height);
     let layout = colours.layout();
-    if matches!(layout.colour, ColorType::Rgb | ColorType::Rgba) {
+    if colours.few.colours.len() > TONES {
         // Half the time of what is usual, for a tenth more bytes: these pictures take longest.
         encoder.set_deflate_compression(DeflateCompression::Level(2));
     } else {
