@@ -461,6 +461,21 @@ fn a_detail_that_cannot_be_had_is_refused() {
     }
 }
 
+/// Where every step starts anew, the detail cannot tell how many there are: the file does.
+#[test]
+fn steps_that_start_anew_are_those_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, said) in [
+        ("plant-f", "step 5 of plant-f to a detail of 0.5 pixels, "),
+        ("signals-e", "step 26 of signals-e to a detail of 0.5 pixels, 824 elements"),
+        ("koch-lsystem", "koch-lsystem to a detail of 0.5 pixels, 7 steps, "),
+    ] {
+        let arguments = ["grow", name, "--detail", "0.5", "-o", "x.png"];
+        let (success, told) = run(folder.path(), &arguments);
+        assert!(success && told.contains(said), "{told}");
+    }
+}
+
 /// Where all elements of a step are equally long, a detail is a number of steps.
 #[test]
 fn a_detail_of_even_elements_is_a_number_of_steps() {

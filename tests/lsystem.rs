@@ -170,6 +170,35 @@ fn what_cannot_be_told_before_ends_at_the_limit() {
     assert_eq!(error.to_string(), said);
 }
 
+/// What is read module by module is the word that is written step by step, and ends at the same step.
+#[test]
+fn words_are_read_as_they_are_written() {
+    for text in [
+        "axiom: FX\nproductions: {X: X+YF+, Y: -FX-Y}\n",
+        "axiom: F\nproductions: {F: [{to: 'F[+F]F', weight: 2}, 'F[-F]F', {to: FF, weight: 0.5}]}\n",
+        "axiom: 'A(1)F(2)'\nproductions: ['A(l) : l < 40 -> F(l)[+A(l * 1.7)]A(l + 3)', 'F(l) : l > 5 -> F(l / 2)']\n",
+        "axiom: AB\nproductions: {A: B, B: AB}\nsymbols: {A: draw, B: draw}\n",
+        "axiom: 'F(3)'\nproductions: ['F(x) -> F(x / 2)F(1 / (x - 0.75))']\n",
+        "axiom: baaa\nproductions: ['b < a -> b', 'b -> aa']\nsymbols: {a: draw, b: draw}\n",
+    ] {
+        let system = system(text);
+        for (step, seed) in (0..14).zip([0, 1].into_iter().cycle()) {
+            let mut modules = Vec::new();
+            let read = system.read(step, seed, 2_000, |symbol, arguments| {
+                modules.push((symbol, arguments.to_vec()));
+            });
+            match system.word(step, seed, 2_000) {
+                Ok(word) => {
+                    let written = word.modules(&system);
+                    let written = written.map(|(symbol, arguments)| (symbol, arguments.to_vec()));
+                    assert!(modules.into_iter().eq(written), "{text} at step {step}");
+                }
+                Err(error) => assert_eq!(read.unwrap_err(), error, "{text} at step {step}"),
+            }
+        }
+    }
+}
+
 #[test]
 fn what_changes_no_more_is_written_soon() {
     let kept = system("axiom: F\nproductions: {F: F}\n");

@@ -29,7 +29,7 @@ impl Goal {
         loaded: &Loaded,
     ) -> Result<Self, Failure> {
         Ok(match (steps, detail) {
-            (None, Some(pixels)) => Self::Detail(pixels),
+            (None, Some(pixels)) if !starts_anew(loaded) => Self::Detail(pixels),
             (None, None) if goes_on_to_a_detail(loaded) => Self::Detail(1.0),
             (asked, pixels) => Self::Steps(steps::choose(asked, loaded)?, pixels),
         })
@@ -154,6 +154,12 @@ fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
         }
         Model::Rule(_) | Model::LSystem(_) => false,
     }
+}
+
+/// Whether every step is grown out of an initiator of its own, so that a detail cannot tell how many there
+/// are.
+fn starts_anew(loaded: &Loaded) -> bool {
+    matches!(&loaded.model, Model::LSystem(system) if !Graph::rewrites_edges(system))
 }
 
 /// A number of pixels as words have it.

@@ -40,7 +40,8 @@ pub(super) struct Arguments {
     steps: Option<u32>,
     /// Elements smaller than so many pixels are not replaced
     ///
-    /// Without --steps, growth goes on until all are smaller. Only of pictures.
+    /// Without --steps, growth goes on until all are smaller, but for L-systems that start anew at
+    /// every step: those are grown by the file's steps. Only of pictures.
     #[arg(long, value_name = "PX", value_parser = picture::pixels, allow_negative_numbers = true)]
     detail: Option<f64>,
     /// The file to write, or - for standard output [default: NAME.svg]

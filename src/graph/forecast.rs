@@ -337,7 +337,8 @@ impl<'g> Forecast<'g> {
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
             length: (plain && self.graph.is_similar())
-                .then(|| all().map(|(_, tally)| tally.sums.length).sum()),
+                // Not a sum: that of nothing is -0.
+                .then(|| all().fold(0.0, |length, (_, tally)| length + tally.sums.length)),
             area: match self.outlines {
                 Outlines::ClosedElements if plain => {
                     Some(all().map(|(_, tally)| tally.sums.area).sum())

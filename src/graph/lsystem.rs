@@ -26,7 +26,7 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::geometry::{Bounds, DVec2};
 use crate::instancing::Thickness;
-use crate::lsystem::{Drawing, LSystem, Placed, RewriteError};
+use crate::lsystem::{LSystem, Placed, RewriteError, Turtle};
 use crate::rule::BaseElement;
 
 use self::effects::Effects;
@@ -67,10 +67,25 @@ impl Graph {
         seed: u64,
         most_elements: u64,
     ) -> Result<Self, CompileError> {
-        let word = system.word(steps, seed, most_elements)?;
-        let drawing = system.draw(&word);
+        let mut turtle = Turtle::new(system);
         let mut strings = Strings::new(system);
-        let initiator = strings.of_string(&drawing)?;
+        let mut instances = Vec::new();
+        system.read(steps, seed, most_elements, |symbol, arguments| {
+            turtle.read(symbol, arguments);
+            let drawn = turtle.drawing.elements.drain(..);
+            instances.extend(drawn.map(|placed| strings.instance(&placed)));
+        })?;
+        for (position, instance) in (0..).zip(&mut instances) {
+            instance.position = position;
+            if !instance.frame.map.is_finite() {
+                return Err(CompileError::TooFar);
+            }
+        }
+        strings.base_elements.extend(turtle.drawing.polygons);
+        let initiator = Chain {
+            instances,
+            meets_frame: [false; 2],
+        };
         let mut bounds = Bounds::EMPTY;
         for instance in &initiator.instances {
             let base_element = strings.objects[instance.object].base_element;
@@ -137,28 +152,17 @@ impl<'s> Strings<'s> {
         }
     }
 
-    /// What a turtle drew, as elements that are kept.
-    fn of_string(&mut self, drawing: &Drawing) -> Result<Chain, CompileError> {
-        let first = self.base_elements.len();
-        self.base_elements.extend(drawing.polygons.iter().cloned());
-        let mut instances = Vec::with_capacity(drawing.elements.len());
-        for (position, placed) in (0..).zip(&drawing.elements) {
-            if !placed.frame.map.is_finite() {
-                return Err(CompileError::TooFar);
-            }
-            let base_element = placed.polygon.map_or(0, |number| first + number);
-            instances.push(Instance {
-                frame: placed.frame,
-                length: placed.frame.length(),
-                joined: placed.joined,
-                position,
-                object: self.object(placed, base_element),
-            });
+    /// What a turtle drew, as an element that is kept.
+    fn instance(&mut self, placed: &Placed) -> Instance {
+        // The line comes before all polygons.
+        let base_element = placed.polygon.map_or(0, |number| number + 1);
+        Instance {
+            frame: placed.frame,
+            length: placed.frame.length(),
+            joined: placed.joined,
+            position: 0,
+            object: self.object(placed, base_element),
         }
-        Ok(Chain {
-            instances,
-            meets_frame: [false; 2],
-        })
     }
 
     fn object(&mut self, placed: &Placed, base_element: usize) -> usize {

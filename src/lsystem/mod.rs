@@ -27,6 +27,7 @@
 //! back, or the other way round, or equally often. Constant numbers in actions are finite.
 
 mod compass;
+mod expand;
 mod lengths;
 mod rewrite;
 mod surroundings;
@@ -35,6 +36,7 @@ mod word;
 
 pub use compass::Compass;
 pub use rewrite::RewriteError;
+pub(crate) use turtle::Turtle;
 pub use turtle::{Drawing, Placed};
 pub use word::Word;
 

@@ -12,7 +12,7 @@ use super::{LSystem, Word};
 const MOST_MODULES: u64 = 25_000_000;
 
 /// So often at most modules, productions and contexts are looked at in all steps together.
-const MOST_WORK: u64 = 1_000_000_000;
+pub(super) const MOST_WORK: u64 = 1_000_000_000;
 
 /// A forecast that looks at more modules of successors than this is given up.
 const MOST_FORECAST: usize = 100_000_000;
@@ -63,7 +63,7 @@ impl LSystem {
     /// some ten million modules, or if an argument is not finite. Where the lengths of words can be told
     /// beforehand, nothing is rewritten then.
     pub fn word(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Word, RewriteError> {
-        if let Some(error) = self.too_long(steps, most_elements) {
+        if let Some(error) = self.too_long(steps, MOST_MODULES, most_elements) {
             return Err(error);
         }
         self.rewritten(steps, seed, most_elements, MOST_WORK)
@@ -77,15 +77,10 @@ impl LSystem {
         most_work: u64,
     ) -> Result<Word, RewriteError> {
         let mut word = Word::axiom(self, seed);
-        let mut rewriter = Rewriter {
-            system: self,
-            slots: Vec::new(),
-            work: 0,
-            most_work,
-        };
+        let mut rewriter = Rewriter::new(self);
         for step in 1..=steps {
             let mut next = Word::default();
-            rewriter.step(&word, &mut next, step, most_elements)?;
+            rewriter.step(&word, &mut next, step, most_elements, most_work)?;
             // What stays the same stays the same.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
@@ -112,7 +107,12 @@ impl LSystem {
     }
 
     /// The first of the steps whose word is too long, as far as that can be told without rewriting.
-    fn too_long(&self, steps: u32, most_elements: u64) -> Option<RewriteError> {
+    pub(super) fn too_long(
+        &self,
+        steps: u32,
+        most_modules: u64,
+        most_elements: u64,
+    ) -> Option<RewriteError> {
         let mut lengths = self.lengths()?;
         let successors = self.productions.iter().map(|p| p.successor.len());
         let work = self.symbols.len() + successors.sum::<usize>();
@@ -120,7 +120,7 @@ impl LSystem {
         for step in 0..=steps.min(soon) {
             let (modules, elements) = lengths.count();
             let too_long = [
-                (modules, MOST_MODULES, "modules"),
+                (modules, most_modules, "modules"),
                 (elements, most_elements, "elements"),
             ];
             let found = too_long.into_iter().find(|(count, most, _)| count > most);
@@ -168,78 +168,117 @@ impl LSystem {
     }
 }
 
-struct Rewriter<'s> {
-    system: &'s LSystem,
-    /// The arguments that a production sees.
-    slots: Vec<f64>,
-    /// How many modules and productions have been looked at.
-    work: u64,
-    most_work: u64,
+impl LSystem {
+    /// Adds the arguments that a module of a production's successor gets in a step, of those that the
+    /// production sees.
+    pub(super) fn evaluate(
+        &self,
+        (production, position): (usize, usize),
+        slots: &[f64],
+        step: u32,
+        arguments: &mut Vec<f64>,
+    ) -> Result<(), RewriteError> {
+        let template = &self.productions[production].successor[position];
+        for argument in &template.arguments {
+            let value = argument.eval(slots);
+            if !value.is_finite() {
+                return Err(RewriteError::NotFinite {
+                    step,
+                    character: self.symbols[template.symbol].character,
+                    production,
+                });
+            }
+            arguments.push(value);
+        }
+        Ok(())
+    }
 }
 
-impl Rewriter<'_> {
+/// Finds what replaces modules.
+pub(super) struct Rewriter<'s> {
+    system: &'s LSystem,
+    /// The arguments that the production sees that was chosen last.
+    pub(super) slots: Vec<f64>,
+    /// How many modules and productions have been looked at.
+    pub(super) work: u64,
+}
+
+impl<'s> Rewriter<'s> {
+    pub(super) fn new(system: &'s LSystem) -> Self {
+        Self {
+            system,
+            slots: Vec::new(),
+            work: 0,
+        }
+    }
+
+    /// The production that replaces a module, if one does, by what stands around its position.
+    pub(super) fn choose(
+        &mut self,
+        (symbol, arguments): (usize, &[f64]),
+        path: Option<Path>,
+        around: Option<(&Surroundings<'_>, u32)>,
+    ) -> Option<usize> {
+        let system = self.system;
+        let (slots, work) = (&mut self.slots, &mut self.work);
+        *work += 1;
+        let mut fits = |number: usize| {
+            *work += 1;
+            let production = &system.productions[number];
+            slots.clear();
+            match around {
+                None => slots.extend(arguments),
+                Some((around, at)) => {
+                    let fits = around.fits_left(at, &production.left, slots) && {
+                        slots.extend(arguments);
+                        around.fits_right(at, &production.right, slots)
+                    };
+                    if !fits {
+                        return None;
+                    }
+                }
+            }
+            let condition = production.condition.as_ref();
+            let holds = condition.is_none_or(|condition| condition.holds(slots));
+            let weight = production.weight.as_ref();
+            holds.then(|| weight.map_or(1.0, |weight| weight.eval(slots)))
+        };
+        let chosen = system.chosen(symbol, path, &mut fits)?;
+        // The arguments are those that the production that was chosen sees.
+        fits(chosen);
+        Some(chosen)
+    }
+
     fn step(
         &mut self,
         word: &Word,
         next: &mut Word,
         step: u32,
         most_elements: u64,
+        most_work: u64,
     ) -> Result<(), RewriteError> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
         let mut elements = 0;
-        for (at, (symbol, arguments)) in (0u32..).zip(word.modules(system)) {
+        for (at, module) in (0u32..).zip(word.modules(system)) {
             let path = word.paths.get(at as usize).copied();
-            let (slots, work) = (&mut self.slots, &mut self.work);
-            *work += 1;
-            let mut fits = |number: usize| {
-                *work += 1;
-                let production = &system.productions[number];
-                slots.clear();
-                match &surroundings {
-                    None => slots.extend(arguments),
-                    Some(around) => {
-                        let fits = around.fits_left(at, &production.left, slots) && {
-                            slots.extend(arguments);
-                            around.fits_right(at, &production.right, slots)
-                        };
-                        if !fits {
-                            return None;
-                        }
-                    }
-                }
-                let condition = production.condition.as_ref();
-                let holds = condition.is_none_or(|condition| condition.holds(slots));
-                let weight = production.weight.as_ref();
-                holds.then(|| weight.map_or(1.0, |weight| weight.eval(slots)))
-            };
+            let around = surroundings.as_ref().map(|around| (around, at));
             let from = next.len();
-            if let Some(chosen) = system.chosen(symbol, path, &mut fits) {
-                // The arguments are those that the production that was chosen sees.
-                fits(chosen);
+            if let Some(chosen) = self.choose(module, path, around) {
                 let successor = &system.productions[chosen].successor;
-                for (position, template) in (0..).zip(successor) {
+                for (position, template) in successor.iter().enumerate() {
                     next.symbols.push(number(template.symbol));
-                    for argument in &template.arguments {
-                        let value = argument.eval(&self.slots);
-                        if !value.is_finite() {
-                            let character = system.symbols[template.symbol].character;
-                            return Err(RewriteError::NotFinite {
-                                step,
-                                character,
-                                production: chosen,
-                            });
-                        }
-                        next.arguments.push(value);
-                    }
-                    next.paths.extend(path.map(|path| path.child(position)));
+                    let arguments = &mut next.arguments;
+                    system.evaluate((chosen, position), &self.slots, step, arguments)?;
+                    next.paths.extend(path.map(|path| path.child(number(position))));
                 }
             } else {
+                let (symbol, arguments) = module;
                 next.symbols.push(number(symbol));
                 next.arguments.extend(arguments);
                 next.paths.extend(path);
             }
-            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > self.most_work {
+            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > most_work {
                 return Err(RewriteError::TooMuchWork { step });
             }
             let new = &next.symbols[from..];

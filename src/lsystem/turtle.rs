@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::geometry::{DVec2, Direction, Frame, placement};
 use crate::rule::{BaseElement, Piece};
 
+use super::word::number;
 use super::{Action, Compass, LSystem, Word};
 
 /// What the turtle draws: a line of one step, or a polygon.
@@ -60,19 +61,24 @@ impl State {
 struct Open {
     state: State,
     vertices: Vec<DVec2>,
-    /// Where it begins in the word: modules and arguments.
-    from: [usize; 2],
     /// How many states were saved when it began, and the fewest that were since.
     depth: usize,
     least_depth: usize,
 }
 
-struct Turtle {
+/// Reads modules one by one, and draws.
+pub(crate) struct Turtle<'s> {
+    system: &'s LSystem,
     compass: Compass,
     state: State,
     saved: Vec<State>,
     open: Vec<Open>,
-    drawing: Drawing,
+    /// The modules since the outermost polygon was opened: symbols, and the bits of arguments.
+    inside: (Vec<u32>, Vec<u64>),
+    /// What has been drawn and not been taken yet, and all polygons.
+    pub(crate) drawing: Drawing,
+    /// The width and the colour of what was drawn last.
+    last: Option<(f64, i64)>,
     /// Whether the pen is where the last line ends.
     is_down: bool,
     /// The polygons by what they are made of.
@@ -84,29 +90,9 @@ impl LSystem {
     /// less than three vertices.
     #[must_use]
     pub fn draw(&self, word: &Word) -> Drawing {
-        let compass = Compass::of(self);
-        let mut turtle = Turtle {
-            compass,
-            state: State {
-                place: DVec2::ZERO,
-                heading: compass.of_degrees(self.start),
-                mirrored: false,
-                step: self.length,
-                width: 1.0,
-                colour: 0,
-            },
-            saved: Vec::new(),
-            open: Vec::new(),
-            drawing: Drawing::default(),
-            is_down: false,
-            known: BTreeMap::new(),
-        };
-        let mut argument = 0;
-        for (at, (symbol, arguments)) in word.modules(self).enumerate() {
-            for action in &self.symbols[symbol].meaning {
-                turtle.act(action, symbol, arguments, word, [at, argument]);
-            }
-            argument += arguments.len();
+        let mut turtle = Turtle::new(self);
+        for (symbol, arguments) in word.modules(self) {
+            turtle.read(symbol, arguments);
         }
         turtle.drawing
     }
@@ -123,15 +109,47 @@ impl LSystem {
     }
 }
 
-impl Turtle {
-    fn act(
-        &mut self,
-        action: &Action,
-        symbol: usize,
-        arguments: &[f64],
-        word: &Word,
-        at: [usize; 2],
-    ) {
+impl<'s> Turtle<'s> {
+    pub(crate) fn new(system: &'s LSystem) -> Self {
+        let compass = Compass::of(system);
+        Self {
+            system,
+            compass,
+            state: State {
+                place: DVec2::ZERO,
+                heading: compass.of_degrees(system.start),
+                mirrored: false,
+                step: system.length,
+                width: 1.0,
+                colour: 0,
+            },
+            saved: Vec::new(),
+            open: Vec::new(),
+            inside: (Vec::new(), Vec::new()),
+            drawing: Drawing::default(),
+            last: None,
+            is_down: false,
+            known: BTreeMap::new(),
+        }
+    }
+
+    /// Does what the next module of a word says.
+    pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
+        for action in &self.system.symbols[symbol].meaning {
+            self.act(action, symbol, arguments);
+        }
+        if !self.open.is_empty() {
+            self.remember(symbol, arguments);
+        }
+    }
+
+    fn remember(&mut self, symbol: usize, arguments: &[f64]) {
+        self.inside.0.push(number(symbol));
+        let bits = arguments.iter().map(|value| value.to_bits());
+        self.inside.1.extend(bits);
+    }
+
+    fn act(&mut self, action: &Action, symbol: usize, arguments: &[f64]) {
         let state = &mut self.state;
         match action {
             Action::Draw(steps) => self.draw(steps.eval(arguments), symbol),
@@ -174,14 +192,19 @@ impl Turtle {
                     .colour
                     .saturating_add(LSystem::colour(by.eval(arguments)));
             }
-            Action::Open => self.open.push(Open {
-                state: *state,
-                vertices: Vec::new(),
-                from: at,
-                depth: self.saved.len(),
-                least_depth: self.saved.len(),
-            }),
-            Action::Close => self.close(symbol, word, at),
+            Action::Open => {
+                if self.open.is_empty() {
+                    self.inside.0.clear();
+                    self.inside.1.clear();
+                }
+                self.open.push(Open {
+                    state: *state,
+                    vertices: Vec::new(),
+                    depth: self.saved.len(),
+                    least_depth: self.saved.len(),
+                });
+            }
+            Action::Close => self.close(symbol, arguments),
             Action::Vertex => self.vertex(),
         }
     }
@@ -208,8 +231,8 @@ impl Turtle {
             return;
         }
         let State { width, colour, .. } = self.state;
-        let last = self.drawing.elements.last();
-        let alike = last.is_some_and(|last| last.width == width && last.colour == colour);
+        let alike = self.last == Some((width, colour));
+        self.last = Some((width, colour));
         let direction = self.state.direction();
         self.drawing.elements.push(Placed {
             frame: Frame::between(from, self.state.place, direction),
@@ -223,7 +246,7 @@ impl Turtle {
     }
 
     /// Ends the polygon that was begun last.
-    fn close(&mut self, symbol: usize, word: &Word, at: [usize; 2]) {
+    fn close(&mut self, symbol: usize, arguments: &[f64]) {
         let Some(open) = self.open.pop() else {
             return;
         };
@@ -244,10 +267,8 @@ impl Turtle {
         let mut made = number;
         // Where brackets end that it did not begin with, more than its own modules decides.
         if self.open.is_empty() && open.least_depth == open.depth {
-            let symbols = word.symbols[open.from[0]..at[0]].to_vec();
-            let arguments = &word.arguments[open.from[1]..at[1]];
-            let arguments = arguments.iter().map(|value| value.to_bits()).collect();
-            made = *self.known.entry((symbols, arguments)).or_insert(number);
+            self.remember(symbol, arguments);
+            made = *self.known.entry(self.inside.clone()).or_insert(number);
         }
         if made == number {
             let inverse = frame.map.inverse();
@@ -259,12 +280,14 @@ impl Turtle {
             let outline = outline.unwrap_or_else(BaseElement::line);
             self.drawing.polygons.push(outline);
         }
+        let State { width, colour, .. } = open.state;
+        self.last = Some((width, colour));
         self.drawing.elements.push(Placed {
             frame,
             joined: false,
             symbol,
-            width: open.state.width,
-            colour: open.state.colour,
+            width,
+            colour,
             polygon: Some(made),
         });
         self.is_down = false;

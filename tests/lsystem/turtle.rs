@@ -187,3 +187,17 @@ fn colours_are_those_of_the_palette() {
         Palette::named("viridis").unwrap().at(1.0 / 7.0).to_string()
     );
 }
+
+/// A symbol that means a whole polygon is another one than the next.
+#[test]
+fn polygons_of_one_symbol_are_told_apart() {
+    let outline = |corners: u16| {
+        let sides = format!("draw, {{turn: {}}}, ", 360 / corners).repeat(corners.into());
+        format!("[open, {sides}close]")
+    };
+    let symbols = format!("symbols: {{P: {}, Q: {}}}\n", outline(3), outline(4));
+    let drawing = drawn("PQP", &symbols);
+    let numbers = drawing.elements.iter().map(|element| element.polygon);
+    assert_eq!(numbers.collect::<Vec<_>>(), [Some(0), Some(1), Some(0)]);
+    assert_eq!(drawing.polygons.len(), 2);
+}

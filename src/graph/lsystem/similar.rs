@@ -116,6 +116,12 @@ impl Graph {
         }
         edges.run()
     }
+
+    /// Whether an L-system rewrites edges: its graph is one for all numbers of steps.
+    #[must_use]
+    pub fn rewrites_edges(system: &LSystem) -> bool {
+        Self::of_edges(system).is_ok()
+    }
 }
 
 struct Edges {

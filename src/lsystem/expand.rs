@@ -1,0 +1,169 @@
+//! Words that are read and never held: where nothing depends on what stands around a module, what it comes to
+//! follows from the modules alone that it came of.
+
+use crate::rule::draw::Path;
+
+use super::rewrite::{MOST_WORK, RewriteError, Rewriter};
+use super::word::number;
+use super::{LSystem, Word};
+
+/// Words of more modules than this are not read.
+const MOST_MODULES: u64 = 200_000_000;
+
+impl LSystem {
+    /// Reads the modules of the word after a number of steps, one after the other: the symbol by number, and
+    /// the arguments. Without contexts the word is not held.
+    ///
+    /// # Errors
+    ///
+    /// As for [`LSystem::word`], but without contexts words may have some hundred million modules.
+    pub fn read(
+        &self,
+        steps: u32,
+        seed: u64,
+        most_elements: u64,
+        mut read: impl FnMut(usize, &[f64]),
+    ) -> Result<(), RewriteError> {
+        if !self.is_context_free() {
+            let word = self.word(steps, seed, most_elements)?;
+            for (symbol, arguments) in word.modules(self) {
+                read(symbol, arguments);
+            }
+            return Ok(());
+        }
+        if let Some(error) = self.too_long(steps, MOST_MODULES, most_elements) {
+            return Err(error);
+        }
+        let axiom = Word::axiom(self, seed);
+        let mut expander = Expander::new(self, most_elements);
+        expander.expand(&axiom, steps, read).or_else(|error| {
+            // The first step whose word cannot be read.
+            expander.rewriter.work = 0;
+            (0..steps).try_for_each(|step| expander.expand(&axiom, step, |_, _| {}))?;
+            Err(error)
+        })
+    }
+}
+
+struct Expander<'s> {
+    system: &'s LSystem,
+    rewriter: Rewriter<'s>,
+    most_elements: u64,
+    /// The modules that the next one comes of, from the axiom's.
+    ancestors: Vec<Ancestor>,
+    /// The arguments that their productions see.
+    slots: Vec<f64>,
+    modules: u64,
+    elements: u64,
+}
+
+/// A module that is being replaced.
+struct Ancestor {
+    production: usize,
+    /// How much of the successor has been read.
+    position: usize,
+    path: Option<Path>,
+    /// Where its arguments begin.
+    slots: usize,
+}
+
+impl<'s> Expander<'s> {
+    fn new(system: &'s LSystem, most_elements: u64) -> Self {
+        Self {
+            system,
+            rewriter: Rewriter::new(system),
+            most_elements,
+            ancestors: Vec::new(),
+            slots: Vec::new(),
+            modules: 0,
+            elements: 0,
+        }
+    }
+
+    /// Reads the word that an axiom comes to.
+    fn expand(
+        &mut self,
+        axiom: &Word,
+        steps: u32,
+        mut read: impl FnMut(usize, &[f64]),
+    ) -> Result<(), RewriteError> {
+        self.ancestors.clear();
+        self.slots.clear();
+        (self.modules, self.elements) = (0, 0);
+        let mut own = Vec::new();
+        for (at, (symbol, arguments)) in axiom.modules(self.system).enumerate() {
+            own.clear();
+            own.extend(arguments);
+            let mut next = Some((symbol, axiom.paths.get(at).copied()));
+            while let Some((symbol, path)) = next {
+                self.module(symbol, &own, path, steps, &mut read)?;
+                next = self.next(&mut own)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a module if it stays, or else remembers what replaces it.
+    fn module(
+        &mut self,
+        symbol: usize,
+        arguments: &[f64],
+        path: Option<Path>,
+        steps: u32,
+        read: &mut impl FnMut(usize, &[f64]),
+    ) -> Result<(), RewriteError> {
+        let is_last = self.ancestors.len() == steps as usize;
+        let fits = (!is_last).then(|| self.rewriter.choose((symbol, arguments), path, None));
+        if let Some(production) = fits.flatten() {
+            self.ancestors.push(Ancestor {
+                production,
+                position: 0,
+                path,
+                slots: self.slots.len(),
+            });
+            self.slots.extend(&self.rewriter.slots);
+        } else {
+            self.modules += 1;
+            self.elements += self.system.symbols[symbol].draws();
+            read(symbol, arguments);
+        }
+        let step = steps;
+        for (count, most, what) in [
+            (self.modules, MOST_MODULES, "modules"),
+            (self.elements, self.most_elements, "elements"),
+        ] {
+            if count > most {
+                return Err(RewriteError::TooLong { step, most, what });
+            }
+        }
+        if self.rewriter.work > MOST_WORK {
+            return Err(RewriteError::TooMuchWork { step });
+        }
+        Ok(())
+    }
+
+    /// The next module of a successor, if there is one, and its arguments.
+    fn next(
+        &mut self,
+        arguments: &mut Vec<f64>,
+    ) -> Result<Option<(usize, Option<Path>)>, RewriteError> {
+        let system = self.system;
+        loop {
+            let step = number(self.ancestors.len());
+            let Some(last) = self.ancestors.last_mut() else {
+                return Ok(None);
+            };
+            let (production, position) = (last.production, last.position);
+            last.position += 1;
+            if let Some(template) = system.productions[production].successor.get(position) {
+                arguments.clear();
+                let slots = &self.slots[last.slots..];
+                system.evaluate((production, position), slots, step, arguments)?;
+                let path = last.path.map(|path| path.child(number(position)));
+                return Ok(Some((template.symbol, path)));
+            }
+            self.slots.truncate(last.slots);
+            self.ancestors.pop();
+        }
+    }
+}
