@@ -467,8 +467,14 @@ fn steps_that_start_anew_are_those_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     for (name, said) in [
         ("plant-f", "step 5 of plant-f to a detail of 0.5 pixels, "),
-        ("signals-e", "step 26 of signals-e to a detail of 0.5 pixels, 824 elements"),
-        ("koch-lsystem", "koch-lsystem to a detail of 0.5 pixels, 7 steps, "),
+        (
+            "signals-e",
+            "step 26 of signals-e to a detail of 0.5 pixels, 824 elements",
+        ),
+        (
+            "koch-lsystem",
+            "koch-lsystem to a detail of 0.5 pixels, 7 steps, ",
+        ),
     ] {
         let arguments = ["grow", name, "--detail", "0.5", "-o", "x.png"];
         let (success, told) = run(folder.path(), &arguments);

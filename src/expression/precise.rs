@@ -164,6 +164,17 @@ impl Precision {
         }
     }
 
+    /// Cosine and sine of a fraction of a turn, in multiples of 2^-bits.
+    pub(crate) fn direction(&mut self, [numerator, denominator]: [u128; 2]) -> [IBig; 2] {
+        let [above, below] = [numerator * 360, denominator].map(Float::from);
+        let angle = self.context.div(above.repr(), below.repr());
+        let exact = angle.map_or(Float::ZERO, |angle| angle.value());
+        #[expect(clippy::cast_precision_loss, reason = "it stands for the exact one")]
+        let near = (numerator * 360) as f64 / denominator as f64;
+        let [sine, cosine] = self.sine_cosine(&Precise { near, exact });
+        [cosine, sine].map(|number| number.fixed(self.bits))
+    }
+
     /// Sine and cosine of an angle in degrees.
     pub(crate) fn sine_cosine(&mut self, angle: &Precise) -> [Precise; 2] {
         [One::Sin, One::Cos].map(|function| self.one(function, angle))

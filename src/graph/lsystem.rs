@@ -13,6 +13,7 @@ mod effects;
 mod far;
 mod kinds;
 mod levels;
+mod long;
 mod reader;
 mod similar;
 mod state;

@@ -100,6 +100,16 @@ impl Compass {
         }
     }
 
+    /// A heading as parts of a turn: how many of how many.
+    pub(crate) fn fraction(self, heading: u64) -> [u128; 2] {
+        let parts = if self.parts == 0 {
+            1 << 64
+        } else {
+            self.parts.into()
+        };
+        [heading.into(), parts]
+    }
+
     /// The direction of a heading, of length 1.
     #[must_use]
     pub fn direction(self, heading: u64) -> DVec2 {

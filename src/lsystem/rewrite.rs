@@ -270,7 +270,8 @@ impl<'s> Rewriter<'s> {
                     next.symbols.push(number(template.symbol));
                     let arguments = &mut next.arguments;
                     system.evaluate((chosen, position), &self.slots, step, arguments)?;
-                    next.paths.extend(path.map(|path| path.child(number(position))));
+                    next.paths
+                        .extend(path.map(|path| path.child(number(position))));
                 }
             } else {
                 let (symbol, arguments) = module;

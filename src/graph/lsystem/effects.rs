@@ -7,8 +7,9 @@ use crate::rule::draw::Path;
 use super::NotCompiled;
 use super::far::Far;
 use super::kinds::Kinds;
+use super::long::Ways;
 use super::reader::Reader;
-use super::state::{Look, State};
+use super::state::{Look, Pose, State};
 
 /// What a module comes to in some steps, told from where the turtle meets it.
 #[derive(Clone, Debug)]
@@ -39,6 +40,16 @@ pub(super) struct Drawn {
     /// How the first and the last line look.
     pub(super) first: Look,
     pub(super) last: Look,
+}
+
+/// What leads the turtle no farther than this share of how far it may reach is as long as that.
+const SHARE: f64 = 0.25;
+
+impl Drawn {
+    /// How long it counts, if it leads the turtle from where it was to a pose.
+    pub(super) fn size_of(&self, pose: &Pose) -> Far {
+        self.reach.times(SHARE).longer(pose.away())
+    }
 }
 
 /// No more are worked out.
@@ -79,13 +90,23 @@ impl Effects {
             kinds,
             levels: Vec::new(),
         };
-        for left in 1..=steps {
-            let known: Result<Vec<_>, _> = (0..effects.kinds.all.len())
-                .map(|kind| effects.of_level(kind, left, steps))
-                .collect();
-            effects.levels.push(known?);
+        let mut bits = None;
+        loop {
+            let mut ways = Ways::new(effects.compass, bits);
+            effects.levels.clear();
+            for left in 1..=steps {
+                let known: Result<Vec<_>, _> = (0..effects.kinds.all.len())
+                    .map(|kind| effects.of_level(kind, left, steps))
+                    .collect();
+                let mut known = known?;
+                ways.advance(&effects, left, &mut known);
+                effects.levels.push(known);
+            }
+            bits = ways.too_few();
+            if bits.is_none() {
+                return Ok(effects);
+            }
         }
-        Ok(effects)
     }
 
     /// What a kind comes to in a number of steps, if it is met with so many left.

@@ -111,6 +111,24 @@ impl Far {
         if key(self) < key(other) { other } else { self }
     }
 
+    /// A multiple by a power of two.
+    pub(super) fn shifted(self, by: i32) -> Self {
+        Self {
+            exponent: self.exponent.saturating_add(by),
+            ..self
+        }
+    }
+
+    /// About how many bits longer a length is than another; 0 if it is nothing.
+    pub(super) fn bits_beyond(self, other: Self) -> i32 {
+        let longer = !self.is_zero() && !other.is_zero();
+        if longer {
+            self.exponent.saturating_sub(other.exponent)
+        } else {
+            0
+        }
+    }
+
     /// As a multiple of a length.
     pub(super) fn over(self, unit: Self) -> DVec2 {
         let by = self.exponent.saturating_sub(unit.exponent);

@@ -67,9 +67,6 @@ const MOST_VERTICES: usize = 1 << 16;
 /// Nor are words looked into deeper for them.
 const DEEPEST: u32 = 1000;
 
-/// What leads the turtle no farther than this share of how far it may reach is as long as that.
-const SHARE: f64 = 0.25;
-
 /// Reads a word.
 pub(super) struct Reader<'e> {
     effects: &'e Effects,
@@ -320,15 +317,19 @@ impl<'e> Reader<'e> {
             (part.pose.away().plus(reach), part)
         });
         let farthest = reached.reduce(|a, b| if a.0.longer(b.0) == a.0 { a } else { b });
-        let drawn = farthest
-            .zip(self.first)
-            .map(|((reach, part), first)| Drawn {
+        let drawn = farthest.zip(self.first).map(|((reach, part), first)| {
+            let drawn = Drawn {
                 reach,
-                size: reach.times(SHARE).longer(self.state.pose.away()),
+                size: reach,
                 tip: part.pose.place,
                 first,
                 last: self.last,
-            });
+            };
+            Drawn {
+                size: drawn.size_of(&self.state.pose),
+                ..drawn
+            }
+        });
         let pose = &self.state.pose;
         let finite = |reach: Far| reach.is_finite() && !reach.is_zero();
         let is_known = pose.place.is_finite()

@@ -307,3 +307,26 @@ fn a_thousand_steps_are_exact() {
         assert_eq!(pose.heading, heading * (parts / 7));
     }
 }
+
+/// The ways of Penrose's tiling nearly cancel, and doubles would lose all of them by step 60.
+#[test]
+fn deep_steps_look_as_shallow_ones() {
+    let productions = "{1: '', 6: '81++91----71[-81----61]++', 7: '+81--91[---61--71]+', \
+                       8: '-61++71[+++81++91]-', 9: '--81++++61[+91++++71]--71'}";
+    let system = system(&format!(
+        "angle: 36\naxiom: '[7]++[7]++[7]++[7]++[7]'\nsymbols: {{1: draw}}\nproductions: {productions}\n"
+    ));
+    let proportions = |steps| {
+        let graph = Graph::of_lsystem(&system, steps, 0, 1_000_000).unwrap();
+        let size = graph.bounds(steps).unwrap().size();
+        size.y / size.x
+    };
+    let shallow = proportions(24);
+    for steps in [60, 100, 400, 1000] {
+        let deep = proportions(steps);
+        assert!(
+            (deep - shallow).abs() < 1e-4,
+            "{deep} at step {steps}, not {shallow}"
+        );
+    }
+}

@@ -1,0 +1,218 @@
+//! Where words lead the turtle, in long whole numbers.
+//!
+//! The way that a word leads is the sum of the ways of what is in it, and may be much shorter than those: what
+//! doubles lose then grows with every step. Where it grows too large, ways are summed again in whole
+//! multiples of 2^-bits, and every effect gets the place that is nearest to the exact one.
+
+use std::collections::BTreeMap;
+
+use dashu_int::IBig;
+use dashu_int::ops::BitTest;
+
+use crate::expression::Precision;
+use crate::geometry::DVec2;
+use crate::lsystem::{Action, Compass};
+
+use super::effects::{Effect, Effects};
+use super::far::Far;
+use super::state::{Pose, State};
+
+/// So many bits may be lost of a double.
+const MOST_LOST: i32 = 20;
+
+/// So many are right of a long number.
+const RIGHT: i32 = 64;
+
+type Vector = [IBig; 2];
+
+/// Where a kind leads after some steps.
+#[derive(Clone)]
+struct Way {
+    /// In multiples of 2^-bits.
+    place: Vector,
+    /// The lengths that it is the sum of,
+    sum: Far,
+    /// and about how often it has been rounded, each as a length of 1 when that was done.
+    rounded: Far,
+}
+
+/// The ways of all kinds after as many steps as have been gone.
+pub(super) struct Ways {
+    compass: Compass,
+    /// The ways of single steps, in as many bits as are asked for; nothing if doubles will do.
+    precision: Option<Precision>,
+    directions: BTreeMap<u64, Vector>,
+    known: Vec<Option<Way>>,
+    /// How many bits are lost, of doubles and of long numbers.
+    lost: [i32; 2],
+}
+
+impl Ways {
+    /// No steps have been gone; places are summed in so many bits, if any.
+    pub(super) fn new(compass: Compass, bits: Option<usize>) -> Self {
+        Self {
+            compass,
+            precision: bits.map(Precision::new),
+            directions: BTreeMap::new(),
+            known: Vec::new(),
+            lost: [0; 2],
+        }
+    }
+
+    /// How many bits it takes instead, if too many have been lost.
+    pub(super) fn too_few(&self) -> Option<usize> {
+        let [double, long] = self.lost;
+        let enough = match &self.precision {
+            None => double <= MOST_LOST,
+            Some(precision) => {
+                i64::try_from(precision.bits()).is_ok_and(|bits| i64::from(long + RIGHT) <= bits)
+            }
+        };
+        let bits = usize::try_from(long.saturating_add(2 * RIGHT)).unwrap_or_default();
+        (!enough).then_some(bits)
+    }
+
+    /// Goes on to the effects of the next number of steps, and mends their places.
+    pub(super) fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Effect>]) {
+        let mut next = Vec::with_capacity(level.len());
+        for (kind, effect) in level.iter_mut().enumerate() {
+            let exact = effect.as_mut().filter(|effect| effect.is_exact);
+            next.push(exact.and_then(|effect| {
+                let way = self.follow(effects, kind, left)?;
+                self.mend(effect, &way);
+                Some(way)
+            }));
+        }
+        self.known = next;
+    }
+
+    fn mend(&mut self, effect: &mut Effect, way: &Way) {
+        if let Some(precision) = &self.precision {
+            effect.state.pose.place = Far::of_long(&way.place, precision.bits());
+        }
+        let Some(drawn) = &mut effect.drawn else {
+            return;
+        };
+        drawn.size = drawn.size_of(&effect.state.pose);
+        let longest = way.sum.plus(way.rounded);
+        for (lost, sum) in self.lost.iter_mut().zip([way.sum, longest]) {
+            *lost = (*lost).max(sum.bits_beyond(drawn.reach));
+        }
+    }
+
+    /// Where the word of a kind leads.
+    fn follow(&mut self, effects: &Effects, kind: usize, left: u32) -> Option<Way> {
+        let [only] = effects.kinds.all[kind].alternatives.as_slice() else {
+            return None;
+        };
+        let mut pose = State::SAME.pose;
+        let mut way = Way {
+            place: [IBig::ZERO, IBig::ZERO],
+            sum: Far::ZERO,
+            rounded: Far::ZERO,
+        };
+        let mut saved = Vec::new();
+        for &kind in &only.word {
+            let of = &effects.kinds.all[kind];
+            if left > 1 && of.is_fertile() {
+                let child = self.known.get(kind)?.clone()?;
+                self.go(&mut way, &pose, &child);
+                let effect = effects.of(kind, left - 1).ok()?;
+                pose = pose.then(self.compass, &effect.state.pose);
+                continue;
+            }
+            for action in &effects.system.symbols()[of.symbol].meaning {
+                match action {
+                    Action::Draw(steps) | Action::Move(steps) | Action::Glide(steps) => {
+                        let step = self.step(steps.eval(&of.arguments));
+                        self.go(&mut way, &pose, &step);
+                    }
+                    Action::Turn(angle) => {
+                        let turn = self.compass.of_degrees(angle.eval(&of.arguments));
+                        pose.turn(self.compass, turn);
+                    }
+                    Action::Push => saved.push((pose, way.clone())),
+                    Action::Pop => (pose, way) = saved.pop()?,
+                    Action::Reflect => pose.mirrored ^= true,
+                    Action::Scale(factor) => pose.scale *= factor.eval(&of.arguments),
+                    _ => {}
+                }
+            }
+        }
+        Some(way)
+    }
+
+    /// So many steps ahead.
+    fn step(&self, steps: f64) -> Way {
+        let bits = self.precision.as_ref().map_or(0, Precision::bits);
+        let length = Far::of_length(steps);
+        Way {
+            place: [times(&(IBig::ONE << bits), steps), IBig::ZERO],
+            sum: length,
+            rounded: Far::of_length(1.0),
+        }
+    }
+
+    /// Goes on from a pose as another way tells.
+    fn go(&mut self, way: &mut Way, pose: &Pose, next: &Way) {
+        let scaled = |far: Far| far.times(pose.scale).length();
+        way.sum = way.sum.plus(scaled(next.sum));
+        let rounded = scaled(next.rounded).plus(Far::of_length(1.0));
+        way.rounded = way.rounded.plus(rounded);
+        let Some(precision) = &mut self.precision else {
+            return;
+        };
+        let (compass, bits) = (self.compass, precision.bits());
+        let [cosine, sine] = &*self
+            .directions
+            .entry(pose.heading)
+            .or_insert_with(|| precision.direction(compass.fraction(pose.heading)));
+        let [x, y] = &next.place;
+        let y = if pose.mirrored { -y } else { y.clone() };
+        let turned = [x * cosine - &y * sine, x * sine + y * cosine];
+        for (sum, along) in way.place.iter_mut().zip(turned) {
+            *sum += times(&(along >> bits), pose.scale);
+        }
+    }
+}
+
+/// A whole number times a double.
+fn times(number: &IBig, factor: f64) -> IBig {
+    /// The bits of a double's mantissa.
+    const DIGITS: i32 = 53;
+    if factor == 1.0 {
+        return number.clone();
+    }
+    let (mantissa, exponent) = libm::frexp(factor);
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "it is a whole number of 53 bits"
+    )]
+    let mantissa = libm::ldexp(mantissa, DIGITS) as i64;
+    let (product, shift) = (number * mantissa, exponent - DIGITS);
+    let by = shift.unsigned_abs() as usize;
+    if shift < 0 {
+        product >> by
+    } else {
+        product << by
+    }
+}
+
+impl Far {
+    /// A vector in multiples of 2^-`bits`.
+    fn of_long(vector: &Vector, bits: usize) -> Self {
+        /// Bits that are looked at for a double.
+        const DIGITS: usize = 96;
+        let longest = vector
+            .iter()
+            .map(|number| number.bit_len())
+            .max()
+            .unwrap_or_default();
+        let dropped = longest.saturating_sub(DIGITS);
+        let [x, y] = vector
+            .each_ref()
+            .map(|number| (number >> dropped).to_f64().value());
+        let power = |by: usize| i32::try_from(by).unwrap_or(i32::MAX);
+        Self::new(DVec2::new(x, y)).shifted(power(dropped) - power(bits))
+    }
+}
