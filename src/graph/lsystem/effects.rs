@@ -6,7 +6,7 @@ use crate::rule::draw::Path;
 
 use super::NotCompiled;
 use super::far::Far;
-use super::kinds::Kinds;
+use super::kinds::{Kinds, MOST_CLOSED, MOST_KINDS};
 use super::long::Ways;
 use super::reader::Reader;
 use super::state::{Look, Pose, State};
@@ -68,12 +68,12 @@ pub(super) struct Effects {
 impl Effects {
     /// Those in all numbers of steps up to one, of all kinds that are met within it.
     pub(super) fn of_system(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        Self::of_kinds(system, Kinds::of(system, steps)?, steps)
+        Self::of_kinds(system, Kinds::of(system, steps, MOST_KINDS)?, steps)
     }
 
     /// Those of all kinds that are ever met.
     pub(super) fn closed(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        let mut kinds = Kinds::of(system, u32::MAX)?;
+        let mut kinds = Kinds::of(system, u32::MAX, MOST_CLOSED)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
         Self::of_kinds(system, kinds, steps)
     }

@@ -5,8 +5,11 @@ use crate::rule::draw::{Path, pick_by_weight};
 
 use super::NotCompiled;
 
-/// No more kinds of modules than this are told apart.
-const MOST_KINDS: usize = 1 << 14;
+/// No more kinds of modules than this are told apart,
+pub(super) const MOST_KINDS: usize = 1 << 14;
+
+/// nor than this where all that are ever met must come back.
+pub(super) const MOST_CLOSED: usize = 1 << 8;
 
 /// Words are no longer than this, all together.
 const MOST_MODULES: usize = 1 << 18;
@@ -40,18 +43,20 @@ pub(super) struct Kinds {
 
 struct Finder<'s> {
     system: &'s LSystem,
+    most: usize,
     all: Vec<Kind>,
     numbers: BTreeMap<(usize, Vec<u64>), usize>,
     modules: usize,
 }
 
 impl Kinds {
-    pub(super) fn of(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
+    pub(super) fn of(system: &LSystem, steps: u32, most: usize) -> Result<Self, NotCompiled> {
         if !system.is_context_free() {
             return Err(NotCompiled);
         }
         let mut finder = Finder {
             system,
+            most,
             all: Vec::new(),
             numbers: BTreeMap::new(),
             modules: 0,
@@ -91,7 +96,7 @@ impl Finder<'_> {
                 born,
             });
         }
-        if made >= MOST_KINDS || self.modules > MOST_MODULES {
+        if made >= self.most || self.modules > MOST_MODULES {
             return Err(NotCompiled);
         }
         Ok(number)
