@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free, flam3 and numba, on the same fractals: ratios of time, peak memory, and the targets.
+"""kfrac beside Context Free, flam3, numba and l-system-fractals: ratios of time, peak memory, and the targets.
 
 On a fresh Debian:
 
@@ -8,6 +8,7 @@ On a fresh Debian:
     python3 benches/peers.py            # some ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; only what is small
     python3 -m pip install numba        # for the chaos game beside numba
+    cargo install l-system-fractals     # for the Koch curve as an L-system
 
 Whole commands are run in turn, ours and theirs, and the medians compared: on a machine that does
 other things beside, only the ratios mean something. Outputs are files in a temporary folder (TMPDIR
@@ -16,12 +17,13 @@ not less than this script's own, some 15 MiB.
 
 The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
 Colours are switched off: cfdg draws black bars, and so does kfrac. Both
-kfrac and flam3 get one thread, then two; flam3 is left out where it is not installed, and so is numba
-(that of the Python that runs this). Of numba only the loop counts, of kfrac the whole command.
+kfrac and flam3 get one thread, then two. All but cfdg are left out where they are not installed (numba:
+for the Python that runs this). Of numba only the loop counts, of kfrac the whole command.
 """
 
 import argparse
 import importlib.util
+import json
 import os
 import shutil
 import statistics
@@ -49,6 +51,9 @@ RANDOM = [(1, 10), (2, 20)]
 
 # Points, and the least ratio of times beside numba, on one thread.
 NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
+
+# The least ratio of times beside l-system-fractals.
+STRINGS = 18
 
 # What is done, the command, and the most milliseconds.
 ALONE = [
@@ -165,6 +170,27 @@ def beside_numba(kfrac, folder, quick):
         )
 
 
+def beside_strings(kfrac, folder, quick):
+    """The Koch curve as an L-system to SVG, beside a program that writes the word."""
+    print()
+    row("beside l-system-fractals", "kfrac", "theirs", "ratio", "target", "", "memory")
+    system = json.loads((HERE / "peers/koch.json").read_text())
+    system["filename"] = str(folder / "theirs.svg")
+    (folder / "koch.json").write_text(json.dumps(system))
+    ours = [kfrac, "grow", "koch-lsystem", "--steps", 10, "-o", folder / "ours.svg", *PLAIN]
+    theirs = ["l-system-fractals", folder / "koch.json"]
+    (seconds, memory), (peer, _) = in_turn([ours, theirs], 1 if quick else 5)
+    row(
+        "Koch 4^10 as an L-system to SVG",
+        f"{seconds:.3f} s",
+        f"{peer:.2f} s",
+        f"{peer / seconds:.1f} x",
+        f"{STRINGS} x",
+        verdict(peer / seconds >= STRINGS),
+        f"{memory:.0f} MiB",
+    )
+
+
 def streamed(kfrac, folder, quick):
     """Segments a second to a file, and memory that does not grow with the steps."""
     steps, fewer = (22, 18) if quick else (26, 22)
@@ -213,6 +239,8 @@ def main():
             beside_flam3(kfrac, Path(folder), arguments.quick)
         if importlib.util.find_spec("numba") is not None:
             beside_numba(kfrac, Path(folder), arguments.quick)
+        if shutil.which("l-system-fractals") is not None:
+            beside_strings(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)
         alone(kfrac, arguments.quick)
 
