@@ -19,6 +19,7 @@ mod similar;
 mod state;
 mod words;
 
+pub(crate) use similar::Chords;
 pub(crate) use words::Words;
 
 use std::collections::BTreeMap;

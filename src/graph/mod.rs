@@ -36,7 +36,7 @@ pub use limit::TooLarge;
 pub use no_limit::NoLimit;
 
 pub(crate) use ifs::{filling, outline as base_element};
-pub(crate) use lsystem::Words;
+pub(crate) use lsystem::{Chords, Words};
 
 use std::sync::Arc;
 

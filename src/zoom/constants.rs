@@ -3,6 +3,7 @@
 mod rule;
 mod structure;
 mod system;
+mod turtle;
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -16,8 +17,8 @@ use crate::grow::{Moment, Standing};
 use crate::model::Model;
 use crate::resolve::order_of_parameters;
 
-use super::Source;
 use super::fixed::{Fixed, Vector};
+use super::{Source, ZoomError};
 
 /// No more maps than this are remembered.
 const MOST_KNOWN: usize = 1 << 12;
@@ -45,6 +46,7 @@ enum Kind<'a> {
     Rule(rule::OfRule<'a>),
     System(system::OfSystem<'a>),
     Structure(structure::OfStructure<'a>),
+    Turtle(turtle::OfTurtle),
 }
 
 /// Evaluates numbers as written.
@@ -58,7 +60,14 @@ struct Numbers {
 type Names<'n> = &'n [(&'n str, Precise)];
 
 impl<'a> Constants<'a> {
-    pub(super) fn new(source: &Source<'a>, graph: &'a Graph, bits: usize) -> Self {
+    /// # Errors
+    ///
+    /// If every step of an L-system starts anew.
+    pub(super) fn new(
+        source: &Source<'a>,
+        graph: &'a Graph,
+        bits: usize,
+    ) -> Result<Self, ZoomError> {
         let document = source.document.kind();
         let mut numbers = Numbers {
             precision: Precision::new(bits),
@@ -81,14 +90,18 @@ impl<'a> Constants<'a> {
             (KindDocument::Instancing(document), Model::Instancing(structure)) => {
                 Kind::Structure(structure::OfStructure::new(document, structure))
             }
-            _ => unreachable!("a model is of the kind of its document, and no L-system"),
+            (KindDocument::LSystem(_), Model::LSystem(system)) => {
+                let turtle = turtle::OfTurtle::new(system, bits);
+                Kind::Turtle(turtle.ok_or(ZoomError::StartsAnew)?)
+            }
+            _ => unreachable!("a model is of the kind of its document"),
         };
-        Self {
+        Ok(Self {
             graph,
             numbers,
             kind,
             known: HashMap::new(),
-        }
+        })
     }
 
     pub(super) fn bits(&self) -> usize {
@@ -106,6 +119,7 @@ impl<'a> Constants<'a> {
             Kind::Rule(rule) => rule.root(instance),
             Kind::System(_) => Fixed::identity(self.numbers.bits()),
             Kind::Structure(structure) => structure.child(None, instance, &mut self.numbers),
+            Kind::Turtle(turtle) => turtle.child(None, instance),
         })
     }
 
@@ -134,6 +148,10 @@ impl<'a> Constants<'a> {
                 let mut child = |instance: &&Instance| {
                     structure.child(Some(parent.object), instance, &mut self.numbers)
                 };
+                wanted.iter().map(|it| Arc::new(child(it))).collect()
+            }
+            Kind::Turtle(turtle) => {
+                let child = |it: &&Instance| turtle.child(Some(parent.object), it);
                 wanted.iter().map(|it| Arc::new(child(it))).collect()
             }
         };

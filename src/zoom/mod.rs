@@ -16,7 +16,8 @@
 //! the doubles that were drawn, and what conditions decide is decided in doubles, as everywhere. Maps
 //! of instances are whole multiples of 2⁻⁶⁴ pixels, and constants have as many bits as it takes to
 //! keep products that exact; errors of rounding add up to some such multiples a step, far below a
-//! thousandth of a pixel.
+//! thousandth of a pixel. Lines of an L-system that rewrites edges are sums of exact turns; the factors of
+//! its steps are the doubles that they come to.
 //!
 //! # What is the same as everywhere
 //!
@@ -113,12 +114,9 @@ pub enum ZoomError {
          the window are not grown"
     )]
     CountsIndex,
-    /// What turtles do is not told to any number of digits.
-    #[error(
-        "what the turtle of an L-system does is told to some 16 digits only: `kfrac convert` writes it as \
-         a rule where it is one, and that can be zoomed into"
-    )]
-    Turtle,
+    /// Every number of steps of an L-system is grown out of an initiator of its own.
+    #[error("there is nothing to zoom into without end: every step of it starts anew")]
+    StartsAnew,
     /// Points depend on the index of what is replaced.
     #[error("where its elements stand depends on their index, which is not told far down")]
     Index,
@@ -231,7 +229,7 @@ pub fn zoom(
         reason = "factors are limited"
     )]
     let bits = lead as usize + GRAIN + SPARE;
-    let mut constants = constants::Constants::new(source, graph, bits);
+    let mut constants = constants::Constants::new(source, graph, bits)?;
     let centre = centre::centre(graph, growth, window, &mut constants)?;
     let mut descent = descent::Descent::new(graph, growth, window, &reaches, &mut constants);
     descent.run(&centre)?;
@@ -240,8 +238,8 @@ pub fn zoom(
 
 /// Whether there may be points to zoom into.
 pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError> {
-    if matches!(source.model, Model::LSystem(_)) {
-        return Err(ZoomError::Turtle);
+    if matches!(source.model, Model::LSystem(system) if !Graph::rewrites_edges(system)) {
+        return Err(ZoomError::StartsAnew);
     }
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);

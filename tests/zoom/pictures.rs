@@ -99,6 +99,19 @@ fn a_zoom_by_a_power_of_the_ratio_shows_the_same_picture() {
     }
 }
 
+/// An L-system that rewrites edges is the rule that it is, as deep as one likes.
+#[test]
+fn a_rule_and_its_l_system_are_zoomed_alike() {
+    let [rule, system] = ["koch", "koch-lsystem"].map(library);
+    let options = options(&rule);
+    for factor in ["3^4", "1e1000"] {
+        let pictures = [&rule, &system].map(|it| zoomed(it, &options, factor, "0.1.(0)"));
+        let ink = pictures[0].iter().filter(|pixel| **pixel < 128).count();
+        assert!(ink > 200, "{ink}");
+        assert_eq!(apart(&pictures[0], &pictures[1]), 0, "{factor}");
+    }
+}
+
 /// What is infertile, and ever so much larger than the window, is drawn as it is seen in it.
 #[test]
 fn large_infertile_elements_are_clipped() {

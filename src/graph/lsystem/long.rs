@@ -23,7 +23,8 @@ const MOST_LOST: i32 = 20;
 /// So many are right of a long number.
 const RIGHT: i32 = 64;
 
-type Vector = [IBig; 2];
+/// A vector in whole multiples of a unit.
+pub(super) type Vector = [IBig; 2];
 
 /// Where a kind leads after some steps.
 #[derive(Clone)]
@@ -34,6 +35,28 @@ struct Way {
     sum: Far,
     /// and about how often it has been rounded, each as a length of 1 when that was done.
     rounded: Far,
+}
+
+/// A turtle on its way.
+struct Turtle {
+    pose: Pose,
+    way: Way,
+    saved: Vec<(Pose, Way)>,
+}
+
+impl Turtle {
+    fn new(pose: Pose) -> Self {
+        let way = Way {
+            place: [IBig::ZERO, IBig::ZERO],
+            sum: Far::ZERO,
+            rounded: Far::ZERO,
+        };
+        Self {
+            pose,
+            way,
+            saved: Vec::new(),
+        }
+    }
 }
 
 /// The ways of all kinds after as many steps as have been gone.
@@ -105,41 +128,63 @@ impl Ways {
         let [only] = effects.kinds.all[kind].alternatives.as_slice() else {
             return None;
         };
-        let mut pose = State::SAME.pose;
-        let mut way = Way {
-            place: [IBig::ZERO, IBig::ZERO],
-            sum: Far::ZERO,
-            rounded: Far::ZERO,
-        };
-        let mut saved = Vec::new();
+        let mut turtle = Turtle::new(State::SAME.pose);
         for &kind in &only.word {
             let of = &effects.kinds.all[kind];
             if left > 1 && of.is_fertile() {
                 let child = self.known.get(kind)?.clone()?;
-                self.go(&mut way, &pose, &child);
+                self.go(&mut turtle, &child);
                 let effect = effects.of(kind, left - 1).ok()?;
-                pose = pose.then(self.compass, &effect.state.pose);
+                turtle.pose = turtle.pose.then(self.compass, &effect.state.pose);
                 continue;
             }
             for action in &effects.system.symbols()[of.symbol].meaning {
-                match action {
-                    Action::Draw(steps) | Action::Move(steps) | Action::Glide(steps) => {
-                        let step = self.step(steps.eval(&of.arguments));
-                        self.go(&mut way, &pose, &step);
-                    }
-                    Action::Turn(angle) => {
-                        let turn = self.compass.of_degrees(angle.eval(&of.arguments));
-                        pose.turn(self.compass, turn);
-                    }
-                    Action::Push => saved.push((pose, way.clone())),
-                    Action::Pop => (pose, way) = saved.pop()?,
-                    Action::Reflect => pose.mirrored ^= true,
-                    Action::Scale(factor) => pose.scale *= factor.eval(&of.arguments),
-                    _ => {}
+                self.act(&mut turtle, action, &of.arguments)?;
+            }
+        }
+        Some(turtle.way)
+    }
+
+    /// The ends of the lines of a word that is not replaced, from a pose, and where it leads.
+    pub(super) fn lines(
+        &mut self,
+        effects: &Effects,
+        word: &[usize],
+        start: Pose,
+    ) -> Option<(Vec<[Vector; 2]>, Vector)> {
+        let mut turtle = Turtle::new(start);
+        let mut lines = Vec::new();
+        for &kind in word {
+            let of = &effects.kinds.all[kind];
+            for action in &effects.system.symbols()[of.symbol].meaning {
+                let from = turtle.way.place.clone();
+                self.act(&mut turtle, action, &of.arguments)?;
+                if matches!(action, Action::Draw(_)) && turtle.way.place != from {
+                    lines.push([from, turtle.way.place.clone()]);
                 }
             }
         }
-        Some(way)
+        Some((lines, turtle.way.place))
+    }
+
+    /// Does what matters to where the turtle is.
+    fn act(&mut self, turtle: &mut Turtle, action: &Action, arguments: &[f64]) -> Option<()> {
+        match action {
+            Action::Draw(steps) | Action::Move(steps) | Action::Glide(steps) => {
+                let step = self.step(steps.eval(arguments));
+                self.go(turtle, &step);
+            }
+            Action::Turn(angle) => {
+                let turn = self.compass.of_degrees(angle.eval(arguments));
+                turtle.pose.turn(self.compass, turn);
+            }
+            Action::Push => turtle.saved.push((turtle.pose, turtle.way.clone())),
+            Action::Pop => (turtle.pose, turtle.way) = turtle.saved.pop()?,
+            Action::Reflect => turtle.pose.mirrored ^= true,
+            Action::Scale(factor) => turtle.pose.scale *= factor.eval(arguments),
+            _ => {}
+        }
+        Some(())
     }
 
     /// So many steps ahead.
@@ -153,8 +198,8 @@ impl Ways {
         }
     }
 
-    /// Goes on from a pose as another way tells.
-    fn go(&mut self, way: &mut Way, pose: &Pose, next: &Way) {
+    /// Goes on as another way tells, from where it begins.
+    fn go(&mut self, Turtle { pose, way, .. }: &mut Turtle, next: &Way) {
         let scaled = |far: Far| far.times(pose.scale).length();
         way.sum = way.sum.plus(scaled(next.sum));
         let rounded = scaled(next.rounded).plus(Far::of_length(1.0));

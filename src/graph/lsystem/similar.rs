@@ -12,6 +12,7 @@ use crate::rule::draw::Path;
 use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
+use super::long::{Vector, Ways};
 use super::reader::{Of, Reader};
 use super::state::{Look, Pose, State};
 
@@ -34,6 +35,7 @@ struct Link {
     ends: [DVec2; 2],
     mirrored: bool,
     joined: bool,
+    /// Among the lines of the word.
     position: u32,
 }
 
@@ -122,6 +124,48 @@ impl Graph {
     pub fn rewrites_edges(system: &LSystem) -> bool {
         Self::of_edges(system).is_ok()
     }
+}
+
+/// The ends of the lines of a word, by position, in multiples of 2^-bits.
+type Lines = Vec<[Vector; 2]>;
+
+/// The lines that an L-system which rewrites edges is made of, to any number of bits.
+#[derive(Debug)]
+pub(crate) struct Chords {
+    /// Those of the axiom.
+    pub(crate) initiator: Lines,
+    /// Those that replace the objects of the graph, each in multiples of the way from where they begin to where
+    /// they end.
+    pub(crate) objects: Vec<Lines>,
+}
+
+impl Chords {
+    /// Those of a system; nothing if it does not rewrite edges.
+    pub(crate) fn of(system: &LSystem, bits: usize) -> Option<Self> {
+        let effects = Effects::closed(system, 1).ok()?;
+        let edges = Edges { effects };
+        let draws = edges.draws().ok()?;
+        let effects = &edges.effects;
+        let mut ways = Ways::new(effects.compass, Some(bits));
+        let (initiator, _) = ways.lines(effects, &effects.kinds.axiom, edges.start().pose)?;
+        let mut objects = Vec::new();
+        for (kind, _) in { effects.kinds.all.iter().zip(draws) }.filter(|(_, draws)| *draws) {
+            let word = kind.alternatives.first().map(|only| &only.word[..]);
+            let (lines, chord) = ways.lines(effects, word.unwrap_or_default(), State::SAME.pose)?;
+            let seen = |line: [Vector; 2]| line.map(|end| quotient(&end, &chord, bits));
+            objects.push(lines.into_iter().map(seen).collect());
+        }
+        Some(Self { initiator, objects })
+    }
+}
+
+/// The quotient of vectors as complex numbers, in multiples of 2^-`bits`; of none, 0.
+fn quotient([a, b]: &Vector, [c, d]: &Vector, bits: usize) -> Vector {
+    let below = c * c + d * d;
+    if below.is_zero() {
+        return [below.clone(), below];
+    }
+    [a * c + b * d, b * c - a * d].map(|above| (above << bits) / &below)
 }
 
 struct Edges {
@@ -238,12 +282,13 @@ impl Edges {
         let along = chord.over(length);
         let back = DVec2::new(along.x, -along.y);
         let seen = |place: Far| back.rotate(place.plus(from.times(-1.0)).over(length));
-        let links = reader.parts.iter().zip(ends).map(|(part, ends)| Link {
+        let parts = reader.parts.iter().zip(ends).zip(0..);
+        let links = parts.map(|((part, ends), position)| Link {
             kind: word[part.position as usize],
             ends: ends.map(seen),
             mirrored: part.pose.mirrored,
             joined: part.joined,
-            position: part.position,
+            position,
         });
         Ok(Shape {
             links: links.collect(),
@@ -282,6 +327,17 @@ impl Edges {
         })
     }
 
+    /// How the turtle starts.
+    fn start(&self) -> State {
+        let Effects {
+            system, compass, ..
+        } = &self.effects;
+        let mut state = State::SAME;
+        state.pose.heading = compass.of_degrees(system.start());
+        state.pose.scale = system.length();
+        state
+    }
+
     /// Whether something goes or draws that is not replaced.
     fn keeps_lengths(&self) -> bool {
         let symbols = self.effects.system.symbols();
@@ -310,17 +366,12 @@ impl Edges {
             .iter()
             .map(|draws| draws.then(|| next.next()).flatten());
         let objects: Vec<Option<usize>> = objects.collect();
-        let system = &self.effects.system;
-        let compass = self.effects.compass;
-        let mut state = State::SAME;
-        state.pose.heading = compass.of_degrees(system.start());
-        state.pose.scale = system.length();
         let axiom = &self.effects.kinds.axiom;
-        let mut reader = Reader::new(&self.effects, state, false);
+        let mut reader = Reader::new(&self.effects, self.start(), false);
         reader.read(axiom, 0, Path::of_seed(0))?;
         let unit = Far::of_length(1.0);
         let mut links = Vec::new();
-        for part in &reader.parts {
+        for (position, part) in (0..).zip(&reader.parts) {
             let kind = axiom[part.position as usize];
             let to = self.end(&part.of, &part.pose, kind, 0)?;
             links.push(Link {
@@ -328,7 +379,7 @@ impl Edges {
                 ends: [part.pose.place, to].map(|place| place.over(unit)),
                 mirrored: part.pose.mirrored,
                 joined: part.joined,
-                position: part.position,
+                position,
             });
         }
         let start = Shape {

@@ -1,0 +1,24 @@
+use crate::graph::{Chords, Instance};
+use crate::lsystem::LSystem;
+use crate::zoom::fixed::Fixed;
+
+/// The maps of an L-system that rewrites edges.
+pub(super) struct OfTurtle {
+    chords: Chords,
+}
+
+impl OfTurtle {
+    /// Those of a system; nothing if it does not rewrite edges.
+    pub(super) fn new(system: &LSystem, bits: usize) -> Option<Self> {
+        let chords = Chords::of(system, bits)?;
+        Some(Self { chords })
+    }
+
+    /// The map of a line of the axiom, or of what replaces an object.
+    pub(super) fn child(&self, parent: Option<usize>, instance: &Instance) -> Fixed {
+        let Chords { initiator, objects } = &self.chords;
+        let lines = parent.map_or(initiator, |object| &objects[object]);
+        let [from, to] = &lines[instance.position as usize];
+        Fixed::between(from, to, instance.frame.direction)
+    }
+}
