@@ -14,7 +14,7 @@ use crate::grow::{Growth, Progress, WalkError};
 use crate::parallel::with_team;
 use crate::style::Width;
 
-use super::png::{BAND_ROWS, Colours, Pixmap, Png, encode_pieces};
+use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
 use super::sight::Sight;
 use super::survey::overhang;
 use super::{Canvas, Drawing, Options, RenderError, Scene, Survey};
@@ -81,11 +81,12 @@ impl<'a> Bands<'a> {
         }
         let mut colours = Colours::none();
         let on_opaque = style.background.is_some_and(|it| it == it.opaque());
+        let mut spare = Spare::default();
         for rows in self.each() {
             if colours.are_settled(on_opaque) {
                 self.count(&rows);
             } else {
-                self.draw(rows, &mut |pixels| {
+                self.draw(rows, &mut spare, &mut |pixels| {
                     colours.add(pixels);
                     Ok(())
                 })?;
@@ -94,7 +95,8 @@ impl<'a> Bands<'a> {
         let colours = colours.sorted();
         let mut out = Told { out, error: None };
         let encoded = encode_pieces(size, &colours, labels, &mut out, |encode| {
-            self.each().try_for_each(|rows| self.draw(rows, encode))
+            self.each()
+                .try_for_each(|rows| self.draw(rows, &mut spare, encode))
         });
         match out.error {
             Some(error) => Err(error.into()),
@@ -113,6 +115,7 @@ impl<'a> Bands<'a> {
     fn draw(
         &self,
         rows: Range<u32>,
+        spare: &mut Spare,
         give: &mut dyn FnMut(&Pixmap) -> io::Result<()>,
     ) -> Result<(), RenderError> {
         // A walk over little would not look.
@@ -124,11 +127,13 @@ impl<'a> Bands<'a> {
         let survey = survey.of_what_is_in(self.sight.moved_to(&shown));
         let scene = Scene::new(&survey, &self.growth, self.canvas);
         let (size, background) = (scene.size(), scene.background());
-        let pixels = with_team(self.options.threads, |team| {
-            let mut png = Png::begin_band(size, rows.clone(), background, team)?;
+        let used = std::mem::take(spare);
+        let (pixels, unused) = with_team(self.options.threads, |team| {
+            let mut png = Png::begin_band(size, rows.clone(), background, used, team)?;
             scene.draw(&mut png, team)?;
             Ok::<_, RenderError>(png.into_pixels())
         })?;
+        *spare = unused;
         self.count(&rows);
         Ok(give(&pixels)?)
     }

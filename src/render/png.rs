@@ -29,6 +29,7 @@ use self::chunk::Chunk;
 use self::coverage::{HairPen, MOST_VERTICES, bounding, flattened, is_small, smoothed};
 use self::nib::{Nib, Nibs};
 use self::part::Part;
+use self::planes::Planes;
 use self::skia::Outline;
 use super::Labels;
 use super::filled::Filled;
@@ -52,6 +53,11 @@ pub struct TooManyPixels {
 fn bytes(size: &[u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1]) * 4e-9
 }
+
+/// What is of use for other bands: threads that gave memory back and took it again would keep it, each
+/// for itself.
+#[derive(Default)]
+pub(super) struct Spare(Option<Arc<Planes>>);
 
 /// A picture in memory.
 pub(super) struct Png<'t, 'w> {
@@ -99,10 +105,15 @@ impl<'t, 'w> Png<'t, 'w> {
         size: [u32; 2],
         rows: Range<u32>,
         background: Option<Colour>,
+        spare: Spare,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
         let outline = Outline::of_rows(rows.clone());
-        Self::begin_on(size, rows, outline, background, team)
+        let mut png = Self::begin_on(size, rows, outline, background, team)?;
+        if let Some(planes) = spare.0.and_then(Arc::into_inner) {
+            png.part = png.part.on(planes);
+        }
+        Ok(png)
     }
 
     fn begin_on(
@@ -136,10 +147,11 @@ impl<'t, 'w> Png<'t, 'w> {
         })
     }
 
-    /// The pixels of the rows.
-    pub(super) fn into_pixels(mut self) -> Pixmap {
+    /// The pixels of the rows, and what another band can be drawn with.
+    pub(super) fn into_pixels(mut self) -> (Pixmap, Spare) {
         self.settle();
-        self.part.pixmap
+        let spare = Spare(self.part.planes());
+        (self.part.pixmap, spare)
     }
 
     /// Encodes the picture.

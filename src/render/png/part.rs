@@ -45,6 +45,12 @@ impl Part {
         })
     }
 
+    /// The same with planes that have been used for other rows.
+    pub(super) fn on(self, planes: Planes) -> Self {
+        let planes = planes.moved_to(&self.rows).map(Arc::new);
+        Self { planes, ..self }
+    }
+
     /// Whether the part is small enough to have a plane.
     pub(super) fn may_cover(&self) -> bool {
         let pixels = u64::from(self.pixmap.width()) * u64::from(self.pixmap.height());

@@ -41,6 +41,29 @@ impl Planes {
         }
     }
 
+    /// The same planes, on which nothing is covered, for as many other rows of the picture.
+    pub(super) fn moved_to(self, rows: &Range<u32>) -> Option<Self> {
+        if self.rows.len() != rows.len() {
+            return None;
+        }
+        let Self { picture, .. } = self;
+        let filled = Filled::new(picture[0], rows.clone(), MARGIN, self.planes.len());
+        let planes = (0..).zip(self.planes).map(|(number, plane)| {
+            let mut plane = plane.into_inner().unwrap_or_else(PoisonError::into_inner);
+            if let Some(plane) = &mut plane {
+                plane.move_to(rows.start);
+                filled.add(number, plane.cells());
+            }
+            Mutex::new(plane)
+        });
+        Some(Self {
+            picture,
+            rows: rows.clone(),
+            planes: planes.collect(),
+            filled: Arc::new(filled),
+        })
+    }
+
     /// Covers something on a plane on which no other thread draws.
     pub(super) fn with_one(&self, cover: impl FnOnce(&mut Plane)) {
         let planes = (0..).zip(&self.planes);

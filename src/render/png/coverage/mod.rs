@@ -121,6 +121,11 @@ impl Plane {
         }
     }
 
+    /// Has other rows of the picture, as many from this one on. Nothing may be covered.
+    pub(crate) fn move_to(&mut self, top: u32) {
+        self.top = top.into();
+    }
+
     /// The samples that are covered, by pixel, by rows, with a margin of [`MARGIN`] around the picture.
     pub(crate) fn cells(&self) -> Arc<[AtomicU64]> {
         Arc::clone(&self.cells)
