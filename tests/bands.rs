@@ -136,7 +136,6 @@ fn progress_counts_pixels() {
 #[test]
 fn the_command_line_says_how_long_bands_take() {
     let folder = tempfile::tempdir().unwrap();
-    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
     let arguments = [
         "grow",
         "koch",
@@ -147,14 +146,8 @@ fn the_command_line_says_how_long_bands_take() {
         "-o",
         "wide.png",
     ];
-    let output = command
-        .current_dir(folder.path())
-        .args(arguments)
-        .output()
-        .unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    let note =
-        "note: 67200 x 1000 pixels are drawn in bands, in about 1 s\nwide.png: step 3 of koch, ";
+    let (_, said) = common::said(folder.path(), &arguments);
+    let note = "note: 67200 x 1000 pixels are drawn in bands, in about 1 s\nwide.png: step 3 of koch, ";
     assert!(said.starts_with(note), "{said}");
     let bytes = std::fs::read(folder.path().join("wide.png")).unwrap();
     // The width and height that PNG has in its first chunk.

@@ -11,7 +11,6 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use assert_cmd::Command;
 use common::{compiled, document, document_of, resolved};
 use kfrac::document::Document;
 use kfrac::geometry::DVec2;
@@ -373,14 +372,8 @@ fn windows_may_be_as_small_as_numbers_are_precise() {
 }
 
 fn run(folder: &Path, arguments: &[&str]) -> (bool, String) {
-    let output = Command::cargo_bin("kfrac")
-        .unwrap()
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    (output.status.success(), said)
+    let (code, said) = common::said(folder, arguments);
+    (code == Some(0), said)
 }
 
 #[test]

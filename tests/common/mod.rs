@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its share")]
 
 use std::convert::Infallible;
+use std::path::Path;
 use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
@@ -11,6 +12,18 @@ use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
 use kfrac::rule::Rule;
+
+/// Runs the program in a folder: its status, and what it says beside its output.
+pub(crate) fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let output = command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), said)
+}
 
 /// A rule of the embedded library as it is written.
 pub(crate) fn document(name: &str) -> Document {

@@ -2,7 +2,6 @@
 
 use std::num::NonZero;
 
-use assert_cmd::Command;
 use kfrac::render::{Format, Size, Unit};
 use kfrac::style::{Cap, ColorBy, Colour, Join, Width};
 
@@ -126,16 +125,7 @@ fn sizes_are_what_is_asked_for() {
 #[test]
 fn the_command_line_has_millimetres() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |arguments: &[&str]| {
-        let mut command = Command::cargo_bin("kfrac").unwrap();
-        let output = command
-            .current_dir(folder.path())
-            .args(arguments)
-            .output()
-            .unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        (output.status.code(), said)
-    };
+    let run = |arguments: &[&str]| crate::common::said(folder.path(), arguments);
     let plot = ["grow", "koch", "--steps", "3", "--plot", "--size", "200mm"];
     let (code, said) = run(&[&plot[..], &["--stroke-width", "0.3mm", "--margin", "10mm"]].concat());
     assert_eq!(code, Some(0), "{said}");

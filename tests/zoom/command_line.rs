@@ -1,20 +1,11 @@
 //! `--zoom` and `--at`.
 
-use assert_cmd::Command;
+use crate::common;
 
+/// What `kfrac grow` says, and its status.
 fn said(arguments: &[&str]) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
-    let output = Command::cargo_bin("kfrac")
-        .unwrap()
-        .current_dir(&folder)
-        .arg("grow")
-        .args(arguments)
-        .output()
-        .unwrap();
-    (
-        output.status.code(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
+    common::said(folder.path(), &[&["grow"], arguments].concat())
 }
 
 #[test]
