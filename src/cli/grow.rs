@@ -172,12 +172,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             Format::Picture(format) => {
                 let options = arguments.options(&loaded, goal, format);
                 goal.come_to(&loaded, graph, |graph, steps| {
-                    let growth = match format {
-                        render::Format::Png if arguments.detail.is_some() || look.is_some() => {
-                            arguments.growth.to_detail(steps, progress)
-                        }
-                        _ => arguments.growth.to(steps, progress),
-                    };
+                    let growth = arguments.growth.drawn_as(&options, steps, progress);
                     let written = match &look {
                         None => render::write(graph, &growth, &options, out),
                         Some(look) => {

@@ -22,13 +22,17 @@ use super::{Failure, output, stop};
 /// of them come to no more than pixels.
 const MOST_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
 
+/// The most where all of them are in memory: with some 200 bytes each, a gigabyte.
+const MOST_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
+
 /// How a rule is grown, and how far at most.
 #[derive(clap::Args)]
 pub(super) struct GrowthArguments {
     /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(super) seed: u64,
-    /// The most elements that are grown [default: 50 million, 500 million to a PNG's detail]
+    /// The most elements that are grown [default: 50 million; 500 million to a PNG's detail, 5 million
+    /// of a plot]
     ///
     /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N")]
@@ -64,6 +68,25 @@ impl GrowthArguments {
         self.max_elements.unwrap_or(Model::MOST_ELEMENTS)
     }
 
+    /// The most elements of a picture.
+    fn most_elements_of(&self, picture: &render::Options) -> u64 {
+        let default = match picture {
+            render::Options { plot: true, .. }
+            | render::Options {
+                format: render::Format::Dxf,
+                ..
+            } => MOST_PLOTTED,
+            // Of which there are no more than pixels.
+            render::Options {
+                format: render::Format::Png,
+                detail: Some(_),
+                ..
+            } => MOST_GROWN_TO_DETAIL,
+            _ => Model::MOST_ELEMENTS,
+        };
+        self.max_elements.unwrap_or(default)
+    }
+
     /// Refuses a step that has too many elements, as far as that can be told before.
     ///
     /// `picture` tells how it would be drawn, if it would.
@@ -74,9 +97,13 @@ impl GrowthArguments {
         loaded: &Loaded,
         picture: Option<&render::Options>,
     ) -> Result<(), Failure> {
-        let checked = graph.check_size(steps, self.most_elements());
+        let most = match picture {
+            Some(picture) => self.most_elements_of(picture),
+            None => self.most_elements(),
+        };
+        let checked = graph.check_size(steps, most);
         checked.map_err(|error| {
-            anyhow!(self.too_large(&error, &loaded.name, steps, graph, picture))
+            anyhow!(too_large(&error, most, &loaded.name, steps, graph, picture))
         })?;
         Ok(())
     }
@@ -92,44 +119,17 @@ impl GrowthArguments {
         }
     }
 
-    /// Growth to a detail of a picture that takes no more room the more elements it has.
-    pub(super) fn to_detail<'a>(&self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
+    /// The same for a picture.
+    pub(super) fn drawn_as<'a>(
+        &self,
+        picture: &render::Options,
+        steps: u32,
+        progress: Option<&'a Progress>,
+    ) -> Growth<'a> {
         Growth {
-            most_elements: self.max_elements.unwrap_or(MOST_GROWN_TO_DETAIL),
+            most_elements: self.most_elements_of(picture),
             ..self.to(steps, progress)
         }
-    }
-
-    fn too_large(
-        &self,
-        error: &TooLarge,
-        name: &str,
-        steps: u32,
-        graph: &Graph,
-        picture: Option<&render::Options>,
-    ) -> String {
-        let limit = grouped(&self.most_elements().into());
-        let count = error.elements.as_ref().map_or_else(
-            || "more elements than can be counted".into(),
-            |elements| counted(elements, "element"),
-        );
-        let svg = picture.filter(|options| options.format == render::Format::Svg);
-        let estimate = svg.and_then(|options| estimate(graph, steps, options));
-        let size = estimate.map_or_else(String::new, |estimate| {
-            let bytes = rough_bytes(estimate.svg_bytes);
-            let time = duration(estimate.seconds);
-            format!(", about {bytes} of SVG and {time} of drawing")
-        });
-        let deepest = match error.deepest {
-            Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
-            None => format!("no step is within --max-elements {limit}"),
-        };
-        let detail = if picture.is_some() && shrinks(graph) {
-            "; --detail 0.5 draws it to half a pixel"
-        } else {
-            ""
-        };
-        format!("step {steps} of {name} has {count}{size}; {deepest}{detail}")
     }
 
     /// The options that the draws depend on.
@@ -168,6 +168,39 @@ impl GrowthArguments {
             other => anyhow::Error::new(other).into(),
         }
     }
+}
+
+/// What is said of a step that has more elements than may be.
+fn too_large(
+    error: &TooLarge,
+    most: u64,
+    name: &str,
+    steps: u32,
+    graph: &Graph,
+    picture: Option<&render::Options>,
+) -> String {
+    let limit = grouped(&most.into());
+    let count = error.elements.as_ref().map_or_else(
+        || "more elements than can be counted".into(),
+        |elements| counted(elements, "element"),
+    );
+    let svg = picture.filter(|options| options.format == render::Format::Svg);
+    let estimate = svg.and_then(|options| estimate(graph, steps, options));
+    let size = estimate.map_or_else(String::new, |estimate| {
+        let bytes = rough_bytes(estimate.svg_bytes);
+        let time = duration(estimate.seconds);
+        format!(", about {bytes} of SVG and {time} of drawing")
+    });
+    let deepest = match error.deepest {
+        Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
+        None => format!("no step is within --max-elements {limit}"),
+    };
+    let detail = if picture.is_some() && shrinks(graph) {
+        "; --detail 0.5 draws it to half a pixel"
+    } else {
+        ""
+    };
+    format!("step {steps} of {name} has {count}{size}; {deepest}{detail}")
 }
 
 /// What a step takes that is not grown.
