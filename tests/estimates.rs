@@ -9,7 +9,7 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::estimate::Estimator;
 use kfrac::graph::Graph;
 use kfrac::grow::{Growth, extent};
-use kfrac::render::{self, Options, Size};
+use kfrac::render::{self, Format, Options, Size};
 
 /// Holds the estimates of the steps of a rule that have a number of elements in a range against
 /// pictures that are `side` pixels large, and tells how many there were.
@@ -66,6 +66,41 @@ fn sizes_of_the_library_are_estimated() {
 fn sizes_are_estimated_where_elements_are_smaller_than_can_be_written() {
     for name in ["koch", "dragon", "pythagoras", "carpet"] {
         assert!(hold(name, 10_000..=300_000, 40) > 0);
+    }
+}
+
+/// Of pictures with whole areas of one colour, which are those that are large.
+#[test]
+fn sizes_of_png_are_estimated() {
+    for (name, step) in [
+        ("koch", 5),
+        ("koch-snowflake", 6),
+        ("dragon", 10),
+        ("pythagoras", 8),
+        ("carpet", 3),
+        ("gosper", 3),
+    ] {
+        let rule = resolved(&document(name), &[]);
+        let graph = Graph::compile(&rule, step).unwrap();
+        let options = Options {
+            size: Size::Long(4000),
+            format: Format::Png,
+            ..Options::of(rule.heading())
+        };
+        let mut forecast = graph.forecast().unwrap();
+        assert!((0..step).all(|_| forecast.advance()));
+        let growth = Growth::steps(step);
+        let bounds = extent(&graph, &growth).unwrap();
+        let estimator = Estimator::new(&graph, &options);
+        let estimate = estimator.at(&forecast, &bounds).unwrap().png_bytes;
+        let mut png = Vec::new();
+        render::write(&graph, &growth, &options, &mut png).unwrap();
+        let ratio = estimate / png.len() as f64;
+        assert!(
+            (0.33..=3.0).contains(&ratio),
+            "{name}: {estimate}, but {} bytes",
+            png.len()
+        );
     }
 }
 

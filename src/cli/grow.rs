@@ -244,7 +244,7 @@ impl Arguments {
         }
     }
 
-    /// Says how long a picture takes that is larger than memory.
+    /// Says how long a picture takes that is larger than memory, and how large its file is.
     fn tell_of_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
         let Format::Picture(render::Format::Png) = format else {
             return;
@@ -268,8 +268,12 @@ impl Arguments {
         };
         let pixels = f64::from(width) * f64::from(height);
         if u64::from(width) * u64::from(height) > options.in_one_piece {
+            let bytes = growth::png_bytes(graph, goal, &options)
+                .map_or_else(String::new, |bytes| {
+                    format!(", to about {}", wording::rough_bytes(bytes))
+                });
             text::say(&format!(
-                "note: {width} x {height} pixels are drawn in bands, in about {}",
+                "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
                 wording::duration(pixels * SECONDS_A_PIXEL)
             ));
         }

@@ -11,10 +11,11 @@ use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError, extent};
 use crate::model::Model;
 use crate::parallel::all_cores;
-use crate::render::{self, RenderError};
+use crate::render::{self, RenderError, Size};
 use crate::rule::Placement;
 use crate::wording::{counted, duration, grouped, rough_bytes};
 
+use super::goal::Goal;
 use super::rule::Loaded;
 use super::{Failure, output, stop};
 
@@ -211,6 +212,38 @@ fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Esti
     }
     let bounds = rough_bounds(graph, steps)?;
     Estimator::new(graph, options).at(&forecast, &bounds)
+}
+
+/// The bytes of a PNG, where that can be told: of what is to be drawn to a detail, those of the first
+/// step whose elements are as small in the mean.
+pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) -> Option<f64> {
+    const MOST_STEPS: u32 = 1_000;
+    let steps = match goal {
+        Goal::Steps(steps, _) => steps.min(MOST_STEPS),
+        Goal::Detail(_) => MOST_STEPS.min(graph.depth().unwrap_or(MOST_STEPS)),
+    };
+    let bounds = rough_bounds(graph, steps)?;
+    let window = options.view.window.map(|window| window[2].max(window[3]));
+    let across = window.unwrap_or(bounds.size().max_element());
+    let side = match options.size {
+        Size::Long(side) => side,
+        Size::Exactly(width, height) => width.max(height),
+    };
+    let shortest = options
+        .detail
+        .map_or(0.0, |detail| detail.pixels * across / f64::from(side));
+    let mut forecast = graph.forecast()?;
+    while forecast.step() < steps {
+        let level = forecast.level();
+        if level.length? <= shortest * level.elements.to_f64() {
+            break;
+        }
+        if !forecast.advance() {
+            return None;
+        }
+    }
+    let estimate = Estimator::new(graph, options).at(&forecast, &bounds);
+    estimate.map(|estimate| estimate.png_bytes)
 }
 
 /// The box of an approximant: from the graph, or else by a walk that is not too long.
