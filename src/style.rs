@@ -239,6 +239,17 @@ impl Style {
         self.fill.unwrap_or_else(|| self.lines())
     }
 
+    /// The same with the middle colour of the palette for all, whatever colours tell.
+    #[must_use]
+    pub fn in_one_colour(self) -> Self {
+        let colour = self.palette.at(0.5);
+        Self {
+            stroke: self.stroke.filter(|_| self.fill.is_some()).or(Some(colour)),
+            color_by: ColorBy::None,
+            ..self
+        }
+    }
+
     /// Whether closed base elements get an outline beside their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {

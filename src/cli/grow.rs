@@ -10,7 +10,7 @@ use crate::export;
 use crate::graph::Graph;
 use crate::grow::Walked;
 use crate::render::{self, Canvas, Plotted, RenderError, Size, Unit};
-use crate::style::Named;
+use crate::style::{ColorBy, Named, Style};
 use crate::wording;
 
 use super::chaos::ChaosArguments;
@@ -161,11 +161,17 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
         Some(_) => Goal::zoomed(arguments.steps, arguments.detail),
     };
-    let color_by = arguments.picture.style(loaded.model.heading()).color_by;
+    let color_by = arguments.style(&loaded).color_by;
     let graph = loaded.compile_for(goal.steps(), color_by)?;
     arguments.check(goal, format, &graph, &loaded)?;
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
+    if look.is_some()
+        && !arguments.growth.quiet
+        && arguments.is_of_numbers(&arguments.picture.style(loaded.model.heading()))
+    {
+        text::say("note: drawn in one colour, for elements far from the window are not counted");
+    }
     arguments.tell_of_bands(&loaded, goal, format, &graph);
     let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
         match format {
@@ -218,6 +224,24 @@ impl Arguments {
             _ => return Ok(()),
         };
         Err(Failure::Usage(message.into()))
+    }
+
+    /// How it is drawn. What is zoomed into is drawn in one colour rather than not at all where the
+    /// rule, and nobody else, wants numbers told by colours.
+    fn style(&self, loaded: &Loaded) -> Style {
+        let style = self
+            .picture
+            .style_in(loaded.model.heading(), self.size.unit);
+        if self.zoom.is_asked() && self.is_of_numbers(&style) {
+            return style.in_one_colour();
+        }
+        style
+    }
+
+    /// Whether colours tell numbers of elements, and nobody has asked for it.
+    fn is_of_numbers(&self, style: &Style) -> bool {
+        let numbers = matches!(style.color_by, ColorBy::Index | ColorBy::Fractal);
+        numbers && self.picture.asked_color_by().is_none()
     }
 
     /// Refuses what is too much, as far as that can be told before: where only what can be seen is
@@ -294,7 +318,7 @@ impl Arguments {
         let heading = loaded.model.heading();
         render::Options {
             format,
-            style: self.picture.style_in(heading, unit),
+            style: self.style(loaded),
             view: self.picture.view_in(heading, unit),
             size,
             unit,

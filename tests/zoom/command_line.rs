@@ -110,3 +110,14 @@ fn a_zoom_writes_pictures_of_both_formats() {
         assert!(text.contains("koch to a detail of 1 pixel, 1"), "{text}");
     }
 }
+
+/// A rule whose own style tells elements by their number is drawn in one colour, and says so.
+#[test]
+fn rules_that_colour_by_index_are_zoomed_into_in_one_colour() {
+    for name in ["dragon", "levy", "hilbert"] {
+        let arguments = [name, "--zoom", "1e40", "--at", "0.(0.1)", "-o", "deep.png"];
+        let (code, text) = said(&arguments);
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.starts_with("note: drawn in one colour"), "{text}");
+    }
+}
