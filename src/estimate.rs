@@ -16,10 +16,12 @@
 //! runs, and some three for every pixel of an edge between two.
 
 use std::f64::consts::{FRAC_2_PI, PI};
+use std::io::{self, Write};
 
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Forecast, Graph, Population};
-use crate::render::{Canvas, Options};
+use crate::grow::Growth;
+use crate::render::{self, Canvas, Format, Options};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Width};
 
@@ -58,6 +60,37 @@ const DOCUMENT: f64 = 1_000.0;
 /// The tag of a path, and of one with a width of its own.
 const PATH: f64 = 14.0;
 const WIDE_PATH: f64 = 34.0;
+
+/// About the bytes of an SVG of nested instances, of which few are written to know it; `None` where it
+/// cannot be made, or not without growing more than that.
+#[must_use]
+pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
+    const MOST_GROWN: u64 = 20_000;
+    struct Length(u64);
+    impl Write for Length {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0 += bytes.len() as u64;
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let options = Options {
+        format: Format::Svg,
+        instanced: true,
+        ..options.clone()
+    };
+    let growth = Growth {
+        most_elements: MOST_GROWN,
+        ..Growth::steps(steps)
+    };
+    let mut length = Length(0);
+    render::write(graph, &growth, &options, &mut length).ok()?;
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    Some(DOCUMENT + length.0 as f64)
+}
 
 /// Estimates what pictures of a graph take.
 pub struct Estimator<'a> {

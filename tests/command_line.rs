@@ -139,6 +139,7 @@ fn info_tells_the_size_of_every_step() {
         "area",
         "svg_bytes",
         "seconds",
+        "instanced_svg_bytes",
         "bounds",
         "limit_bounds",
         "dimension",
@@ -153,6 +154,7 @@ fn info_tells_the_size_of_every_step() {
         assert_eq!(estimate.len(), 4);
         assert!(estimate.is_sorted_by_key(|value| value.as_f64().unwrap()));
     }
+    assert_eq!(info["instanced_svg_bytes"], 2300);
     assert_eq!(info["bounds"]["min"], serde_json::json!([0, 0]));
     let dimension = info["dimension"]["similarity"].as_f64().unwrap();
     assert!((dimension - 4f64.ln() / 3f64.ln()).abs() < 1e-12);

@@ -35,6 +35,11 @@ impl Goal {
         })
     }
 
+    /// What was asked for where all of a step is drawn.
+    pub(super) fn whole(steps: Option<u32>, loaded: &Loaded) -> Result<Self, Failure> {
+        Ok(Self::Steps(steps::choose(steps, loaded)?, None))
+    }
+
     /// What was asked for where a part is drawn that may be as small as one likes: everything that
     /// can be seen.
     pub(super) fn zoomed(steps: Option<u32>, detail: Option<f64>) -> Self {

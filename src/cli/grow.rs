@@ -9,7 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::Graph;
 use crate::grow::Walked;
-use crate::render::{self, Canvas, Plotted, RenderError, Size, Unit};
+use crate::render::{self, Canvas, Instanced, Plotted, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::wording;
 
@@ -20,6 +20,7 @@ use super::labels::labels;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
+use super::svg::{self, SvgArguments};
 use super::zoom::ZoomArguments;
 use super::{Failure, chaos, format, help, output, steps, text};
 
@@ -71,6 +72,8 @@ pub(super) struct Arguments {
     #[arg(long, help_heading = "Picture")]
     plot: bool,
     #[command(flatten)]
+    svg: SvgArguments,
+    #[command(flatten)]
     zoom: ZoomArguments,
     #[command(flatten)]
     picture: PictureArguments,
@@ -107,6 +110,8 @@ Examples:
       Draws it for a pen plotter, 200 mm wide and no line twice
   kfrac grow koch-snowflake --size 100mm -o flake.dxf
       Writes outlines that a cutter reads; .pdf is for paper
+  kfrac grow koch --steps 200 --svg instanced -o koch.svg
+      Writes a small file of nested instances, of 4^200 elements
   kfrac grow koch --steps 4 --format csv -o - | head
       Lists the elements
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
@@ -150,6 +155,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(Failure::Usage(message.into()));
     }
     arguments.refuse_paper(format)?;
+    arguments.refuse_instances(format)?;
     let look = arguments.zoom.look(arguments.picture.has_view())?;
     if look.is_some() && !matches!(format, Format::Picture(_)) {
         let message = "--zoom is of pictures: write a .png or a .svg";
@@ -158,6 +164,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
     let goal = match look {
+        None if arguments.svg.is_instanced() => Goal::whole(arguments.steps, &loaded)?,
         None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
         Some(_) => Goal::zoomed(arguments.steps, arguments.detail),
     };
@@ -200,6 +207,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         .map_err(|error| arguments.growth.explain(error, &loaded, path))
     })?;
     if !arguments.growth.quiet {
+        if let Some(instanced) = &wrote.instanced {
+            svg::warn(instanced);
+        }
         text::say(&format!(
             "{}: {}, {}, {}, {:.2} s",
             output::called(path),
@@ -244,6 +254,26 @@ impl Arguments {
         numbers && self.picture.asked_color_by().is_none()
     }
 
+    /// Refuses what nested instances cannot be.
+    fn refuse_instances(&self, format: Format) -> Result<(), Failure> {
+        if !self.svg.is_instanced() {
+            return Ok(());
+        }
+        let message = if format != Format::Picture(render::Format::Svg) {
+            "--svg instanced is of SVG: write a .svg"
+        } else if self.plot {
+            "--plot draws every line, and --svg instanced none by itself: give one of them"
+        } else if self.detail.is_some() {
+            "--detail leaves out what is small, and --svg instanced draws all of a step, in a file that \
+             is no larger for it: give --steps"
+        } else if self.zoom.is_asked() {
+            "--zoom draws what lies about a point, and --svg instanced all of a step: give one of them"
+        } else {
+            return Ok(());
+        };
+        Err(Failure::Usage(message.into()))
+    }
+
     /// Refuses what is too much, as far as that can be told before: where only what can be seen is
     /// grown, it cannot.
     fn check(
@@ -261,7 +291,9 @@ impl Arguments {
             .as_ref()
             .is_some_and(|picture| picture.view.window.is_some());
         match goal {
-            Goal::Steps(steps, None) if !shows_a_part && !self.zoom.is_asked() => {
+            Goal::Steps(steps, None)
+                if !shows_a_part && !self.zoom.is_asked() && !self.svg.is_instanced() =>
+            {
                 self.growth.check(steps, graph, loaded, picture.as_ref())
             }
             _ => Ok(()),
@@ -311,6 +343,7 @@ impl Arguments {
             options.push(("format", format.name().into()));
         }
         options.extend(self.plot.then(|| ("plot", String::new())));
+        options.extend(self.svg.options());
         options.push(("size", self.size.to_string()));
         options.extend(self.zoom.options());
         options.extend(self.picture.options());
@@ -323,6 +356,7 @@ impl Arguments {
             size,
             unit,
             plot: self.plot,
+            instanced: self.svg.is_instanced(),
             threads: self.growth.threads(),
             detail: goal.detail(unit),
             labels: labels(loaded, &goal.described(), "grow", options),
@@ -366,6 +400,10 @@ impl Arguments {
             let message = "--plot is of lines, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
+        if self.svg.is_instanced() {
+            let message = "--svg instanced is of lines, and --method chaos draws points";
+            return Err(Failure::Usage(message.into()));
+        }
         self.refuse_paper(format)?;
         let loaded = self.rule.load(catalogue, self.growth.quiet)?;
         let game = self.chaos.game(&loaded, self.steps, &self.picture)?;
@@ -401,6 +439,7 @@ struct Wrote {
     fractals: u64,
     pixels: Option<[u32; 2]>,
     plotted: Option<Plotted>,
+    instanced: Option<Instanced>,
     /// Whether elements outside a window may not be among them.
     is_part: bool,
 }
@@ -413,6 +452,7 @@ impl From<render::Picture> for Wrote {
             fractals: picture.fractals,
             pixels: Some(picture.size),
             plotted: picture.plotted,
+            instanced: picture.instanced,
             is_part: picture.is_part,
         }
     }
@@ -426,16 +466,20 @@ impl Wrote {
             fractals: walked.fractals,
             pixels: None,
             plotted: None,
+            instanced: None,
             is_part: false,
         }
     }
 
     fn summary(&self, unit: Unit) -> String {
-        let mut summary = wording::counted(&self.elements.into(), "element");
+        let mut summary = match &self.instanced {
+            Some(instanced) => svg::described(instanced),
+            None => wording::counted(&self.elements.into(), "element"),
+        };
         if self.is_part {
             summary.push_str(" visited");
         }
-        if self.fractals > 1 {
+        if self.fractals > 1 && self.instanced.is_none() {
             summary.push_str(" in ");
             summary.push_str(&wording::counted(&self.fractals.into(), "fractal"));
         }

@@ -5,7 +5,7 @@ use std::fmt::{self, Write as _};
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
-use crate::estimate::{Estimate, Estimator};
+use crate::estimate::{Estimate, Estimator, instanced_bytes};
 use crate::geometry::Bounds;
 use crate::graph::{Count, Graph, Level};
 use crate::heading::Parameter;
@@ -38,7 +38,8 @@ pub(super) struct Arguments {
     ///
     /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two
     /// digits, by step: of the SVG in the rule's own style, 1024 pixels large, and of the time to
-    /// draw it; null where the rule or a double does not hold them.
+    /// draw it; null where the rule or a double does not hold them. instanced_svg_bytes is the size of
+    /// the last step with --svg instanced; null where that is not possible.
     #[arg(long)]
     json: bool,
 }
@@ -78,6 +79,7 @@ struct Info<'a> {
     svg_bytes: Option<Vec<Option<f64>>>,
     #[serde(serialize_with = "rounded")]
     seconds: Option<Vec<Option<f64>>>,
+    instanced_svg_bytes: Option<f64>,
     bounds: Option<Corners>,
     limit_bounds: Option<Corners>,
     dimension: Dimension,
@@ -198,6 +200,8 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
     let (length, area) = (measures(|level| level.length), measures(|level| level.area));
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
+    let options = Options::of(loaded.model.heading());
+    let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(wording::two_digits);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
         let mut counts = [const { Vec::new() }; 3];
         for Row { level, .. } in rows {
@@ -228,6 +232,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         area,
         svg_bytes,
         seconds,
+        instanced_svg_bytes,
         bounds: bounds.as_ref().map(corners),
         limit_bounds: graph.limit_bounds().as_ref().map(corners),
         dimension: Dimension {
@@ -336,6 +341,13 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         (None, note) => note.clone().unwrap_or_else(|| "unknown".into()),
     };
     line("dimension", &dimension);
+    if let Some(bytes) = info.instanced_svg_bytes {
+        let bytes = wording::rough_bytes(bytes);
+        line(
+            "instanced",
+            &format!("about {bytes} of SVG at step {}", info.steps),
+        );
+    }
     if let Some(bounds) = &info.bounds {
         line("bounds", &format!("{bounds} at step {}", info.steps));
     }

@@ -30,6 +30,7 @@ mod show;
 mod steps;
 mod stop;
 mod structure;
+mod svg;
 mod system;
 mod text;
 mod zoom;

@@ -83,6 +83,23 @@ impl Coat {
         }
     }
 
+    /// The same without its colours.
+    pub(crate) fn without_colour(self) -> Self {
+        Self {
+            width: self.width,
+            sets_width: self.sets_width,
+            ..Self::NONE
+        }
+    }
+
+    /// What tells it from others.
+    pub(crate) fn bits(self) -> [u32; 6] {
+        let [red, green, blue] = self.colour.map(f32::to_bits);
+        let flags = u32::from(self.sets_width) | u32::from(self.paints) << 1;
+        let (alpha, width) = (self.alpha.to_bits(), self.width.to_bits());
+        [red, green, blue, alpha, width, flags]
+    }
+
     /// So many times as wide as the style says strokes are.
     #[inline]
     #[must_use]

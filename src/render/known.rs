@@ -25,13 +25,24 @@ impl<'g> Survey<'g> {
         steps: u32,
     ) -> Option<Self> {
         let level = level(graph, growth)?;
-        let mut survey = Self::new(graph, style, steps);
-        let stands = Standing::at(graph, growth.steps)?;
-        survey.bounds = survey.known_bounds(growth)?;
+        let mut survey = Self::outlined(graph, growth, style, steps, level.fractals > 1)?;
         survey.elements = level.elements;
         survey.fractals = level.fractals;
         survey.largest_index = level.elements;
-        let seeds = level.fractals > 1;
+        Some(survey)
+    }
+
+    /// The same but for the numbers of elements, which may be beyond any that are counted.
+    pub(super) fn outlined(
+        graph: &'g Graph,
+        growth: &Growth<'_>,
+        style: &'g Style,
+        steps: u32,
+        seeds: bool,
+    ) -> Option<Self> {
+        let mut survey = Self::new(graph, style, steps);
+        let stands = Standing::at(graph, growth.steps)?;
+        survey.bounds = survey.known_bounds(growth)?;
         let one = |known: bool, value: u64| (!seeds || known).then(|| vec![value]);
         let used: Vec<u64> = match style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],

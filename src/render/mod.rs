@@ -7,7 +7,7 @@
 //! hundredths of a pixel, the same for every format.
 //!
 //! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
-//! bands.
+//! bands. An SVG of nested instances takes neither walk nor survey: it is told by the graph.
 //!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
 //! what lies where all is covered in its colour already; and where colours tell steps, what nothing
@@ -21,6 +21,7 @@ mod density;
 mod dxf;
 mod filled;
 mod hidden;
+mod instanced;
 mod known;
 mod layout;
 mod painter;
@@ -40,6 +41,7 @@ mod zoomed;
 pub use canvas::{Canvas, NoRoom, Size};
 pub use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
+pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
 pub use plot::Plotted;
 pub use png::TooManyPixels;
@@ -136,6 +138,10 @@ pub struct Options {
     /// for plotters and cutters. Nothing is filled, not even the background. This is done in memory,
     /// of some hundred bytes an edge.
     pub plot: bool,
+    /// Whether an SVG is made of nested instances, so that it grows with the graph and the number of
+    /// steps and not with the elements. Other formats do not look at this; detail and plots are not
+    /// for it.
+    pub instanced: bool,
     /// The most pixels of a PNG that is drawn in one piece, 2^26 unless said otherwise. A larger one
     /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
     /// without growing it; and twice, unless its colours are soon known to be many.
@@ -162,6 +168,7 @@ impl Default for Options {
             size: Size::Long(1024),
             unit: Unit::Pixel,
             plot: false,
+            instanced: false,
             in_one_piece: 1 << 26,
             band: 1 << 21,
             detail: None,
@@ -198,6 +205,8 @@ pub struct Picture {
     pub is_part: bool,
     /// What it takes as a plot, if it is one.
     pub plotted: Option<Plotted>,
+    /// What it is made of, if that is nested instances; its elements are then not counted.
+    pub instanced: Option<Instanced>,
 }
 
 /// Why a picture is not made.
@@ -218,6 +227,9 @@ pub enum RenderError {
     /// What the picture is to show is not told so far down.
     #[error(transparent)]
     NoZoom(#[from] NoZoom),
+    /// It cannot be made of nested instances.
+    #[error(transparent)]
+    NotInstanced(#[from] NotInstanced),
     /// The picture is larger than memory may be.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
@@ -270,6 +282,9 @@ pub fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
+    if options.instanced && options.format == Format::Svg {
+        return instanced::write(graph, growth, options, out);
+    }
     let Layout {
         survey,
         canvas,
@@ -295,6 +310,7 @@ fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plot
         fractals: survey.fractals,
         is_part: survey.sight().is_bounded(),
         plotted,
+        instanced: None,
     }
 }
 

@@ -32,50 +32,17 @@ pub(super) struct Svg<'t, 'w, W> {
 impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
     /// Begins a document.
     pub(super) fn begin(mut out: W, page: &Page<'_>, team: &'t Team<'w>) -> io::Result<Self> {
+        begin_document(&mut out, page)?;
         let Page {
-            size,
-            unit,
-            background,
-            pen,
-            labels,
-            has_layers,
+            pen, has_layers, ..
         } = *page;
-        let [wide, high] = fine(size);
-        let [width, height] = size.map(|side| unit.length(side));
-        let namespace = if has_layers {
-            r#" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape""#
-        } else {
-            ""
-        };
+        // What all paths share.
         writeln!(
             out,
-            r#"<svg xmlns="http://www.w3.org/2000/svg"{namespace} width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
+            r#"<g fill="none" stroke-width="{}"{}>"#,
+            pen.width * FINE,
+            ends_and_corners(pen)
         )?;
-        writeln!(out, "<title>{}</title>", escaped(&labels.title))?;
-        writeln!(out, "<desc>{}</desc>", escaped(&labels.description))?;
-        if !labels.provenance.is_empty() {
-            writeln!(
-                out,
-                "<metadata>\n{}</metadata>",
-                escaped(&labels.provenance)
-            )?;
-        }
-        if let Some(background) = background {
-            let opacity = opacity("fill", background);
-            writeln!(
-                out,
-                r#"<rect width="{wide}" height="{high}" fill="{background}"{opacity}/>"#
-            )?;
-        }
-        // What all paths share.
-        write!(out, r#"<g fill="none" stroke-width="{}""#, pen.width * FINE)?;
-        if pen.cap != Cap::Butt {
-            write!(out, r#" stroke-linecap="{}""#, pen.cap.name())?;
-        }
-        if pen.join != Join::Miter {
-            write!(out, r#" stroke-linejoin="{}""#, pen.join.name())?;
-        }
-        out.write_all(b">\n")?;
         Ok(Self {
             out,
             chunk: Chunk::default(),
@@ -231,6 +198,59 @@ impl<W: Write> Surface for Svg<'_, '_, W> {
     }
 }
 
+/// Writes what stands before all that is drawn: the root's tag, what the file says of itself, and the
+/// background.
+pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Result<()> {
+    let Page {
+        size,
+        unit,
+        background,
+        labels,
+        has_layers,
+        ..
+    } = *page;
+    let [wide, high] = fine(size);
+    let [width, height] = size.map(|side| unit.length(side));
+    let namespace = if has_layers {
+        r#" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape""#
+    } else {
+        ""
+    };
+    writeln!(
+        out,
+        r#"<svg xmlns="http://www.w3.org/2000/svg"{namespace} width="{width}" height="{height}" viewBox="0 0 {wide} {high}">"#
+    )?;
+    writeln!(out, "<title>{}</title>", escaped(&labels.title))?;
+    writeln!(out, "<desc>{}</desc>", escaped(&labels.description))?;
+    if !labels.provenance.is_empty() {
+        writeln!(
+            out,
+            "<metadata>\n{}</metadata>",
+            escaped(&labels.provenance)
+        )?;
+    }
+    if let Some(background) = background {
+        let opacity = opacity("fill", background);
+        writeln!(
+            out,
+            r#"<rect width="{wide}" height="{high}" fill="{background}"{opacity}/>"#
+        )?;
+    }
+    Ok(())
+}
+
+/// The shapes of a pen's ends and corners, where they are not those that SVG has for itself.
+pub(super) fn ends_and_corners(pen: Pen) -> String {
+    let mut text = String::new();
+    if pen.cap != Cap::Butt {
+        text.push_str(&format!(r#" stroke-linecap="{}""#, pen.cap.name()));
+    }
+    if pen.join != Join::Miter {
+        text.push_str(&format!(r#" stroke-linejoin="{}""#, pen.join.name()));
+    }
+    text
+}
+
 /// Whole pixels in the units of positions.
 fn fine(pixels: [u32; 2]) -> [u64; 2] {
     pixels.map(|side| u64::from(side) * 100)
@@ -254,7 +274,7 @@ fn escaped(text: &str) -> String {
 }
 
 /// The attribute for a colour that is not opaque.
-fn opacity(what: &str, colour: Colour) -> String {
+pub(super) fn opacity(what: &str, colour: Colour) -> String {
     if colour.opacity() < 1.0 {
         format!(r#" {what}-opacity="{:.3}""#, colour.opacity())
     } else {

@@ -1,0 +1,95 @@
+//! SVG of nested instances: a symbol an object and number of steps, each made of the symbols of what
+//! takes the object's place, so that the file grows with the graph and the steps and not with the
+//! elements (Hart 1992, section 2).
+//!
+//! Symbols are drawn in the unit frames of their objects, maps are attributes of their instances.
+//! Colours are set where the initiator is instanced, once a class, of which each has symbols of its
+//! own where it needs them. Strokes of a width in pixels do not scale; relative ones do, with their
+//! elements. What fades below the numbers of who shows it is not seen: browsers count in single
+//! precision, whose smallest number is 1e-45.
+
+mod drawing;
+mod ends;
+mod refusal;
+mod symbols;
+mod text;
+
+pub use refusal::NotInstanced;
+
+use std::io::Write;
+
+use crate::geometry::Bounds;
+use crate::graph::Graph;
+use crate::grow::Growth;
+
+use super::svg::begin_document;
+use super::{Canvas, Options, Page, Picture, RenderError, Survey};
+use drawing::Drawing;
+
+/// What a picture of nested instances is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Instanced {
+    /// The number of symbols.
+    pub symbols: u64,
+    /// The number of elements and instances that who shows it has to expand it to; infinite beyond a
+    /// double's range.
+    pub expanded: f64,
+}
+
+/// Symbols that are kept in memory at most.
+const MOST_SYMBOLS: usize = 1 << 18;
+
+/// The pixels from what is shown to what is drawn far away at most: a single-precision number tells
+/// a sixteenth of a pixel there.
+const FARTHEST: f64 = 1_048_576.0;
+
+/// Writes an approximant as nested instances.
+pub(super) fn write(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
+    let Options {
+        style, view, size, ..
+    } = options;
+    refusal::check(graph, style, growth.steps)?;
+    let steps = growth.steps;
+    let survey = match Survey::outlined(graph, growth, style, steps, graph.seeds) {
+        Some(survey) => survey,
+        None => Survey::new(graph, style, steps).walked(growth, options.threads)?,
+    };
+    let canvas = Canvas::of(std::slice::from_ref(&survey), view, *size)?;
+    if !is_near(&canvas, &survey.bounds) {
+        return Err(NotInstanced::TooClose.into());
+    }
+    let (classes, painted) = survey.classes();
+    let drawing = Drawing::new(graph, growth, options, classes);
+    let page = Page {
+        size: canvas.size(),
+        unit: options.unit,
+        background: style.background,
+        pen: super::pen(style),
+        labels: &options.labels,
+        has_layers: false,
+    };
+    begin_document(out, &page)?;
+    let instanced = drawing.write(&canvas, &painted, out)?;
+    out.write_all(b"</svg>\n")?;
+    Ok(Picture {
+        size: canvas.size(),
+        steps,
+        elements: survey.elements,
+        fractals: survey.fractals,
+        is_part: false,
+        plotted: None,
+        instanced: Some(instanced),
+    })
+}
+
+fn is_near(canvas: &Canvas, bounds: &Bounds) -> bool {
+    let corners = [bounds.min(), bounds.max()].map(|corner| canvas.pixel(corner));
+    corners
+        .iter()
+        .all(|corner| corner.abs().max_element() <= FARTHEST)
+}

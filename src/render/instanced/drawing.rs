@@ -1,0 +1,369 @@
+//! The symbols and what is made of them, as text.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::atomic::Ordering::Relaxed;
+
+use crate::geometry::{DVec2, Direction};
+use crate::graph::{Chain, Graph};
+use crate::grow::{Growth, WalkError};
+use crate::instancing::Coat;
+use crate::render::surface::FINE;
+use crate::render::svg::{ends_and_corners, opacity};
+use crate::render::{Canvas, Classes, Options, RenderError, Unit, pen};
+use crate::style::{ColorBy, Colour, Style, Width};
+
+use super::ends::{End, Ends};
+use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
+use super::{Instanced, MOST_SYMBOLS, NotInstanced, text};
+
+/// What is painted at once.
+#[derive(Clone, Copy, PartialEq)]
+enum Layer {
+    Lines,
+    Areas,
+    Outlines,
+    /// Closed elements and open ones, as they come.
+    Both,
+}
+
+/// What has been written of a symbol.
+#[derive(Clone, Copy)]
+struct Written {
+    name: u64,
+    /// The number of elements and instances that it stands for, itself included.
+    expanded: f64,
+}
+
+/// A picture that is being written.
+pub(super) struct Drawing<'a> {
+    graph: &'a Graph,
+    style: &'a Style,
+    unit: Unit,
+    growth: &'a Growth<'a>,
+    classes: Classes,
+    symbols: Symbols<'a>,
+    /// The symbols that show something.
+    named: BTreeMap<Symbol, Written>,
+    /// The names of base elements in their coats.
+    outlines: BTreeMap<(usize, Dress), u64>,
+    names: u64,
+}
+
+impl<'a> Drawing<'a> {
+    /// Of a graph whose classes of colour are known.
+    pub(super) fn new(
+        graph: &'a Graph,
+        growth: &'a Growth<'a>,
+        options: &'a Options,
+        classes: Classes,
+    ) -> Self {
+        let style = &options.style;
+        Self {
+            graph,
+            style,
+            unit: options.unit,
+            growth,
+            classes,
+            symbols: Symbols::new(graph, style.color_by, classes),
+            named: BTreeMap::new(),
+            outlines: BTreeMap::new(),
+            names: 0,
+        }
+    }
+
+    /// Writes the symbols, and the initiator for every class.
+    pub(super) fn write(
+        mut self,
+        canvas: &Canvas,
+        painted: &[u64],
+        out: &mut impl Write,
+    ) -> Result<Instanced, RenderError> {
+        let initiator = self.graph.initiator(self.growth.steps);
+        // The initiator takes the place of something that has one step more to go.
+        let aspect = |part| Aspect {
+            steps: self.growth.steps + 1,
+            part,
+            dress: Dress(Coat::NONE),
+        };
+        let aspects = |class| self.parts(class).into_iter().map(aspect).collect();
+        let classes = painted.iter().map(|&class| (class, aspects(class)));
+        let classes: Vec<(u64, Vec<Aspect>)> = classes.collect();
+        let all = classes
+            .iter()
+            .flat_map(|(_, aspects)| aspects.iter().copied());
+        let symbols = self.symbols.collect(initiator, all, MOST_SYMBOLS);
+        let symbols = symbols.ok_or(NotInstanced::TooManySymbols)?;
+        let mut ends = Ends::new(self.graph);
+        let mut text = String::new();
+        out.write_all(b"<defs>\n")?;
+        for symbol in symbols {
+            if self.growth.cancel.is_some_and(|it| it.load(Relaxed)) {
+                return Err(RenderError::Walk(WalkError::Cancelled));
+            }
+            text.clear();
+            self.define(&symbol, &mut ends, &mut text);
+            out.write_all(text.as_bytes())?;
+        }
+        out.write_all(b"</defs>\n")?;
+        let map = canvas.to_pixels().to_cols_array();
+        let map = map.map(|number| (number * FINE).to_string()).join(" ");
+        writeln!(
+            out,
+            r#"<g transform="matrix({map})"{}{}>"#,
+            self.width(Coat::NONE, 1.0),
+            ends_and_corners(pen(self.style))
+        )?;
+        if self.symbols.links {
+            ends.advance(self.growth.steps);
+        }
+        let mut expanded = 0.0;
+        for (class, aspects) in classes {
+            for &layer in self.layers() {
+                text.clear();
+                for of in &aspects {
+                    expanded += self.chain(initiator, of, false, &ends, &mut text);
+                }
+                if !text.is_empty() {
+                    writeln!(out, "<g{}>\n{text}\n</g>", self.paint(class, layer))?;
+                }
+            }
+        }
+        out.write_all(b"</g>\n")?;
+        Ok(Instanced {
+            symbols: self.names,
+            expanded,
+        })
+    }
+
+    /// The parts that are painted in the colour of a class, as something that has the initiator in its
+    /// place a step later sees them.
+    fn parts(&self, class: u64) -> Vec<Part> {
+        match self.style.color_by {
+            ColorBy::Step => {
+                let steps = self.classes.steps(class).into_iter().flatten();
+                steps.map(|step| Part::Born(step + 1)).collect()
+            }
+            ColorBy::Age if self.graph.seeds => {
+                let steps = self.growth.steps;
+                let born = |age: u32| match steps - age {
+                    0 => Part::Own,
+                    born => Part::Seeded(born + 1),
+                };
+                let of_class = |age: &u32| self.classes.of_value(u64::from(*age)) == class;
+                (0..=steps).filter(of_class).map(born).collect()
+            }
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => vec![Part::Class(class)],
+            ColorBy::Direction => {
+                let number = u32::try_from(class + 1).ok();
+                let direction = number.and_then(Direction::from_number);
+                direction.map(Part::Heading).into_iter().collect()
+            }
+            _ => vec![Part::All],
+        }
+    }
+
+    /// Writes a symbol, if it shows anything.
+    fn define(&mut self, symbol: &Symbol, ends: &mut Ends<'_>, text: &mut String) {
+        let Some(production) = self.symbols.production(symbol) else {
+            let name = self.outline(symbol, text);
+            let written = Written {
+                name,
+                expanded: 1.0,
+            };
+            self.named.insert(*symbol, written);
+            return;
+        };
+        if self.symbols.links {
+            ends.advance(symbol.aspect.steps - 1);
+        }
+        let mut content = String::new();
+        let of = &symbol.aspect;
+        let mut expanded = 1.0 + self.chain(&production.body, of, false, ends, &mut content);
+        for seed in &production.seeds {
+            expanded += self.chain(&seed.chain, of, true, ends, &mut content);
+        }
+        if content.is_empty() {
+            return;
+        }
+        let name = self.next_name();
+        text.push_str(&format!("<g id=\"{}\">{content}</g>\n", text::name(name)));
+        self.named.insert(*symbol, Written { name, expanded });
+    }
+
+    fn next_name(&mut self) -> u64 {
+        self.names += 1;
+        self.names - 1
+    }
+
+    /// The name of the outline of an object in its coat, which is written once.
+    fn outline(&mut self, symbol: &Symbol, text: &mut String) -> u64 {
+        let number = self.graph.objects()[symbol.object].base_element;
+        let Dress(coat) = symbol.aspect.dress;
+        let key = (number, symbol.aspect.dress);
+        if let Some(&name) = self.outlines.get(&key) {
+            return name;
+        }
+        let base_element = &self.graph.base_elements()[number];
+        let (style, is_closed) = (self.style, base_element.is_closed());
+        let own = |what: &str, colour: Option<Colour>| colour.map(|colour| painted(what, colour));
+        let fill = match is_closed {
+            false => Some(r#" fill="none""#.into()),
+            true => own("fill", self.tint(coat, style.polygons())),
+        };
+        let stroke = match (is_closed, style.outlines_polygons()) {
+            (false, _) => own("stroke", self.tint(coat, style.lines())),
+            (true, _) if self.layers() != [Layer::Both] => None,
+            (true, true) => own("stroke", style.stroke),
+            (true, false) => Some(r#" stroke="none""#.into()),
+        };
+        let width = self.graph.widest().map(|_| self.width(coat, 1.0));
+        let name = self.next_name();
+        text.push_str(&format!(
+            "<path id=\"{}\" d=\"{}\"{}{}{}{}/>\n",
+            text::name(name),
+            text::outline(base_element),
+            fill.unwrap_or_default(),
+            stroke.unwrap_or_default(),
+            width.unwrap_or_default(),
+            self.effect()
+        ));
+        self.outlines.insert(key, name);
+        name
+    }
+
+    /// Strokes of a width in pixels are not scaled.
+    fn effect(&self) -> &'static str {
+        match self.style.width {
+            Width::Pixels(_) => r#" vector-effect="non-scaling-stroke""#,
+            Width::Relative(_) => "",
+        }
+    }
+
+    /// Instances of what is in a chain, and the lines between them; the number of what they expand
+    /// to.
+    fn chain(
+        &self,
+        chain: &Chain,
+        of: &Aspect,
+        seeded: bool,
+        ends: &Ends<'_>,
+        text: &mut String,
+    ) -> f64 {
+        let part = match (of.part, seeded) {
+            (Part::Seeded(1), true) => Part::Own,
+            (part, _) => part,
+        };
+        let mut expanded = 0.0;
+        // What the first instance of a ring is joined to.
+        let mut before = chain.instances.last();
+        for instance in &chain.instances {
+            if let (true, true, Some(before)) = (self.symbols.links, instance.joined, before)
+                && let (Some(from), Some(to)) = (ends.of(before)[1], ends.of(instance)[0])
+                && !(from.meets_frame && to.meets_frame)
+                && self.symbols.paints(to.object, to.born, to.direction, part)
+            {
+                let Dress(coat) = of.dress;
+                self.link(from.point, &to, coat, text);
+                expanded += 1.0;
+            }
+            before = Some(instance);
+            let symbol = self.symbols.child(instance, of, seeded);
+            let Some(written) = symbol.and_then(|symbol| self.named.get(&symbol)) else {
+                continue;
+            };
+            let transform = text::transform(&instance.frame.map);
+            let name = text::name(written.name);
+            if transform.is_empty() {
+                text.push_str(&format!("<use href=\"#{name}\"/>"));
+            } else {
+                text.push_str(&format!(
+                    "<use href=\"#{name}\" transform=\"{transform}\"/>"
+                ));
+            }
+            expanded += written.expanded + 1.0;
+        }
+        expanded
+    }
+
+    /// A line that leads to an element, in something of a coat.
+    fn link(&self, from: DVec2, to: &End, coat: Coat, text: &mut String) {
+        let coat = coat.over(to.coat);
+        let stroke = self.tint(coat, self.style.lines());
+        let stroke = stroke.map(|colour| painted("stroke", colour));
+        let has_own_width =
+            self.graph.widest().is_some() || matches!(self.style.width, Width::Relative(_));
+        let width = has_own_width.then(|| self.width(coat, to.length));
+        text.push_str(&format!(
+            "<path d=\"{}\" fill=\"none\"{}{}{}/>",
+            text::line(from, to.point),
+            stroke.unwrap_or_default(),
+            width.unwrap_or_default(),
+            self.effect()
+        ));
+    }
+
+    /// The colour of what is tinted and has a colour of its own.
+    fn tint(&self, coat: Coat, own: Colour) -> Option<Colour> {
+        (self.style.color_by == ColorBy::Tint && self.graph.tints()).then(|| coat.on(own))
+    }
+
+    /// What is painted of every class, one after another.
+    fn layers(&self) -> &'static [Layer] {
+        let drawn = self.graph.objects().iter().filter(|object| object.visible);
+        let [mut open, mut closed] = [false; 2];
+        for object in drawn {
+            let is_closed = self.graph.base_elements()[object.base_element].is_closed();
+            closed |= is_closed;
+            open |= !is_closed;
+        }
+        match (open, closed) {
+            (_, false) => &[Layer::Lines],
+            (true, true) => &[Layer::Both],
+            (false, true) if self.style.outlines_polygons() => &[Layer::Areas, Layer::Outlines],
+            (false, true) => &[Layer::Areas],
+        }
+    }
+
+    /// The width of strokes in a coat: in a frame where elements have a length, or in pixels as CSS has
+    /// them.
+    fn width(&self, coat: Coat, length: f64) -> String {
+        let width = match self.style.width {
+            Width::Relative(width) => width * length * self.graph.unit(),
+            Width::Pixels(width) => width * self.unit.millimetres() / Unit::Pixel.millimetres(),
+        };
+        let width = width * coat.width();
+        format!(r#" stroke-width="{width}""#)
+    }
+
+    /// The attributes of all that is painted in the colour of a class. Opacity is that of the whole, so
+    /// that what overlaps does not show.
+    fn paint(&self, class: u64, layer: Layer) -> String {
+        let own = self.classes.colour(class, self.style);
+        let lines = own.unwrap_or(self.style.lines());
+        let areas = own.unwrap_or(self.style.polygons());
+        let one = |colour: Colour, fill: bool| {
+            let (on, off) = if fill {
+                ("fill", "stroke")
+            } else {
+                ("stroke", "fill")
+            };
+            let opacity = if colour.opacity() < 1.0 {
+                format!(r#" opacity="{:.3}""#, colour.opacity())
+            } else {
+                String::new()
+            };
+            format!(r#" {off}="none" {on}="{colour}"{opacity}"#)
+        };
+        match layer {
+            Layer::Lines => one(lines, false),
+            Layer::Areas => one(areas, true),
+            Layer::Outlines => one(self.style.stroke.unwrap_or(lines), false),
+            Layer::Both => painted("fill", areas) + &painted("stroke", lines),
+        }
+    }
+}
+
+fn painted(what: &str, colour: Colour) -> String {
+    format!(r#" {what}="{colour}"{}"#, opacity(what, colour))
+}

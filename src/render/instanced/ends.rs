@@ -1,0 +1,120 @@
+//! Where what stands for an object begins and ends, for the lines that link neighbours.
+
+use crate::geometry::{DVec2, Direction, Frame};
+use crate::graph::{Chain, Graph, Instance, Replacement};
+use crate::instancing::Coat;
+use crate::rule::Piece;
+
+/// The first or the last element that stands for an object, if others may be joined to it there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    /// Where its outline ends, in the object's unit frame.
+    pub(super) point: DVec2,
+    /// Whether that is the end of its frame.
+    pub(super) meets_frame: bool,
+    /// The element itself.
+    pub(super) object: usize,
+    pub(super) length: f64,
+    pub(super) direction: Direction,
+    /// How many steps later it is born.
+    pub(super) born: u32,
+    /// What it is tinted with on the way to it.
+    pub(super) coat: Coat,
+}
+
+impl End {
+    fn within(self, instance: &Instance, coat: Coat) -> Self {
+        let Frame { map, direction } = instance.frame;
+        Self {
+            point: map.transform_point2(self.point),
+            length: self.length * instance.length,
+            direction: self.direction * direction,
+            born: self.born + 1,
+            coat: coat.over(self.coat),
+            ..self
+        }
+    }
+}
+
+/// The ends of all objects after a number of steps.
+pub(super) struct Ends<'g> {
+    graph: &'g Graph,
+    steps: u32,
+    /// By object: the end at (0, 0) and the one at (1, 0).
+    all: Vec<[Option<End>; 2]>,
+}
+
+impl<'g> Ends<'g> {
+    /// Those of the objects themselves.
+    pub(super) fn new(graph: &'g Graph) -> Self {
+        let objects = 0..graph.objects().len();
+        Self {
+            graph,
+            steps: 0,
+            all: objects.map(|object| own(graph, object)).collect(),
+        }
+    }
+
+    /// Goes on to a number of steps.
+    pub(super) fn advance(&mut self, steps: u32) {
+        while self.steps < steps {
+            let objects = self.graph.objects().iter().enumerate();
+            let next = objects.map(|(number, object)| match &object.replacement {
+                Replacement::Kept => self.all[number],
+                Replacement::Fixed(production) => self.of_chain(&production.body),
+                Replacement::Evaluated(_) | Replacement::Beyond => [None; 2],
+            });
+            self.all = next.collect();
+            self.steps += 1;
+        }
+    }
+
+    fn of_chain(&self, chain: &Chain) -> [Option<End>; 2] {
+        let [starts, ends] = chain.meets_frame;
+        let first = chain.instances.first().filter(|_| starts);
+        let last = chain.instances.last().filter(|_| ends);
+        [
+            first.and_then(|instance| self.of(instance)[0]),
+            last.and_then(|instance| self.of(instance)[1]),
+        ]
+    }
+
+    /// Where what stands for an instance begins and ends, in the order of listing and in the frame of
+    /// what it is part of.
+    pub(super) fn of(&self, instance: &Instance) -> [Option<End>; 2] {
+        let coat = self.graph.coat(instance.object);
+        let within = |end: Option<End>| end.map(|end| end.within(instance, coat));
+        let [start, end] = self.all[instance.object].map(within);
+        if instance.frame.direction.is_reversed() {
+            [end, start]
+        } else {
+            [start, end]
+        }
+    }
+}
+
+/// The ends of an object's own outline.
+fn own(graph: &Graph, number: usize) -> [Option<End>; 2] {
+    let object = &graph.objects()[number];
+    let base_element = &graph.base_elements()[object.base_element];
+    if !object.visible || base_element.is_closed() {
+        return [None; 2];
+    }
+    let start = base_element.start();
+    let points = [
+        start,
+        base_element.pieces().last().map_or(start, Piece::end),
+    ];
+    let meet = base_element.ends_meet_frame();
+    [0, 1].map(|end| {
+        Some(End {
+            point: points[end],
+            meets_frame: meet[end],
+            object: number,
+            length: 1.0,
+            direction: Direction::Normal,
+            born: 0,
+            coat: Coat::NONE,
+        })
+    })
+}

@@ -1,0 +1,106 @@
+//! What nested instances cannot show.
+
+use crate::graph::{Graph, Replacement};
+use crate::rule::Placement;
+use crate::style::{Cap, ColorBy, Join, Named, Style, Width};
+
+/// Why a picture cannot be made of nested instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotInstanced {
+    /// Numbers are drawn where elements stand.
+    #[error("its elements are drawn at random, each in its own way")]
+    Draws,
+    /// Indices are counted.
+    #[error("what replaces an element depends on the number of all those before it")]
+    CountsIndex,
+    /// What stands in a place cannot be told before.
+    #[error("what replaces an element is worked out where it stands")]
+    Evaluated,
+    /// A seed is placed as the initiator, which no map of its parent does.
+    #[error("it seeds parts that are placed as the initiator, whatever they stand in")]
+    Resets,
+    /// Colours that depend on more than the object and the step.
+    #[error(
+        "--color-by {by} tells elements of one symbol apart; step, age, generator, direction, tint and none work"
+    )]
+    Colours {
+        /// The name of what they tell.
+        by: &'static str,
+    },
+    /// The inside of a closed path whose sides are grown.
+    #[error(
+        "the area inside a path that is grown is no union of copies; --fill transparent leaves it out"
+    )]
+    Areas,
+    /// Strokes whose ends or corners show.
+    #[error(
+        "elements are stroked one by one, so that they join only with --cap round and --join round"
+    )]
+    Corners,
+    /// Relative widths under maps that are no similarities.
+    #[error(
+        "its maps would flatten strokes of a relative width; --stroke-width 1.5, in pixels, works"
+    )]
+    Flattened,
+    /// Rounding would show.
+    #[error("the window is too small: browsers count in single precision")]
+    TooClose,
+    /// The file would be very large.
+    #[error("it takes more than {} symbols", super::MOST_SYMBOLS)]
+    TooManySymbols,
+}
+
+/// Refuses what symbols cannot show.
+pub(super) fn check(graph: &Graph, style: &Style, steps: u32) -> Result<(), NotInstanced> {
+    if graph.draws() {
+        return Err(NotInstanced::Draws);
+    }
+    if graph.counts_index() {
+        return Err(NotInstanced::CountsIndex);
+    }
+    if !graph.is_plain() {
+        return Err(NotInstanced::Evaluated);
+    }
+    let productions = || {
+        let objects = graph.objects().iter();
+        objects.filter_map(|object| match &object.replacement {
+            Replacement::Fixed(production) => Some(production),
+            _ => None,
+        })
+    };
+    let seeds = || productions().flat_map(|production| &production.seeds);
+    if seeds().any(|seed| seed.placement == Placement::SeedsAsInitiator) {
+        return Err(NotInstanced::Resets);
+    }
+    let tells = match style.color_by {
+        ColorBy::Index => true,
+        ColorBy::Fractal => graph.seeds,
+        _ => false,
+    };
+    if tells {
+        let by = style.color_by.name();
+        return Err(NotInstanced::Colours { by });
+    }
+    let is_open = |object: usize| {
+        let object = &graph.objects()[object];
+        !graph.base_elements()[object.base_element].is_closed()
+    };
+    let drawn = |number: usize| graph.objects()[number].visible;
+    let objects = || 0..graph.objects().len();
+    let initiator = graph.initiator(steps);
+    let is_ring = initiator.is_ring() || seeds().any(|seed| seed.chain.is_ring());
+    let fills = style.fill.is_some_and(|fill| fill.opacity() > 0.0);
+    if fills && is_ring && objects().any(is_open) {
+        return Err(NotInstanced::Areas);
+    }
+    let is_round = style.cap == Cap::Round && style.join == Join::Round;
+    if !is_round && graph.joins() && objects().any(|number| drawn(number) && is_open(number)) {
+        return Err(NotInstanced::Corners);
+    }
+    let strokes = objects().any(|number| drawn(number) && is_open(number));
+    let strokes = strokes || style.outlines_polygons();
+    if strokes && matches!(style.width, Width::Relative(_)) && !graph.is_similar() {
+        return Err(NotInstanced::Flattened);
+    }
+    Ok(())
+}
