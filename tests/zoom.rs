@@ -226,6 +226,8 @@ fn fixed_points_look_the_same_at_any_depth() {
         ("dragon", library("dragon"), 0, ROOT, 9),
         ("trunks", read(trunks), 1, "3", 3),
         ("fern", read(fern), 0, "1.25", 21),
+        ("koch-lsystem", library("koch-lsystem"), 0, "3", 3),
+        ("dragon-lsystem", library("dragon-lsystem"), 0, ROOT, 9),
         ("mirrored", read(mirrored), 0, "3", 3),
     ];
     for (name, rule, child, ratio, first) in cases {
@@ -296,6 +298,9 @@ fn shallow_zooms_are_windows_of_the_whole() {
         ("barnsley-fern", vec![0, 0, 1]),
         ("gasket", vec![0, 0, 1, 2]),
         ("koch-ifs", vec![0, 1, 2]),
+        ("gosper-lsystem", vec![0, 5]),
+        ("koch-lsystem", vec![0, 1, 2]),
+        ("koch-island", vec![2, 1]),
         ("blancmange", vec![0, 0, 1]),
         ("gasket-recursive", vec![0, 0, 1]),
         ("ages", vec![0, 1, 0]),
