@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use include_dir::{Dir, include_dir};
+use include_dir::{Dir, File, include_dir};
 
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
 use crate::model::Kind;
@@ -258,8 +258,8 @@ impl Catalogue {
             return read_file(path);
         }
         let name = format!("{}/{}.yaml", entry.shelf.folder(), entry.name);
-        let bytes = EMBEDDED
-            .get_file(&name)
+        let bytes = embedded(entry.shelf)
+            .find(|file| file.path().as_os_str() == name.as_str())
             .map_or(&[][..], |file| file.contents());
         Source::read(format!("library/{name}"), bytes.to_vec())
     }
@@ -301,11 +301,7 @@ impl Catalogue {
     pub fn entries(&self) -> Vec<Entry> {
         let mut entries = BTreeMap::new();
         for shelf in Shelf::ALL {
-            let embedded = EMBEDDED
-                .get_dir(shelf.folder())
-                .into_iter()
-                .flat_map(Dir::files);
-            for file in embedded {
+            for file in embedded(shelf) {
                 add(&mut entries, shelf, file.path(), None);
             }
             for folder in self.folders.iter().rev() {
@@ -324,6 +320,14 @@ impl Catalogue {
         }
         entries.into_values().collect()
     }
+}
+
+/// The embedded files of a shelf.
+fn embedded(shelf: Shelf) -> impl Iterator<Item = &'static File<'static>> {
+    EMBEDDED
+        .get_dir(shelf.folder())
+        .into_iter()
+        .flat_map(Dir::files)
 }
 
 fn add(

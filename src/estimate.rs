@@ -141,7 +141,7 @@ impl<'a> Estimator<'a> {
             }
         }
         let classes = self.classes(forecast.step(), fractals);
-        let walk = if self.graph.is_plain() && !self.graph.counts_index() {
+        let walk = if !self.graph.counts_index() {
             (1.0 + PASSED * classes) / BLOCKS
         } else {
             // The survey is a walk as well.

@@ -68,6 +68,7 @@ pub mod import;
 pub mod instancing;
 pub mod lsystem;
 pub mod measure;
+mod mix;
 pub mod model;
 pub mod parallel;
 pub mod render;

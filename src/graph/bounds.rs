@@ -6,9 +6,10 @@
 //! merged to the one that reaches farthest, and states that cannot reach the best one are dropped;
 //! what is left stays small (finitely many directions where turns are rational).
 
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use crate::geometry::{Bounds, DVec2};
+use crate::mix::MixMap;
 use crate::rule::Placement;
 
 use super::{Graph, Instance, Object, Replacement};
@@ -352,20 +353,17 @@ fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
 /// Keeps the farthest of the states that are equal but for the offset.
 fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
     let mut kept: Vec<State> = Vec::new();
-    let mut numbers = HashMap::new();
+    let mut numbers = MixMap::default();
     for state in states {
-        let length = state.vector.length();
-        let unit = state.vector / length;
-        let key = [unit.x, unit.y, libm::log(length)].map(rounded);
-        match numbers.get(&(state.object, key)) {
-            Some(&number) => {
-                let known: &mut State = &mut kept[number];
+        match numbers.entry((state.object, key(state.vector))) {
+            Entry::Occupied(number) => {
+                let known: &mut State = &mut kept[*number.get()];
                 if (known.offset, known.lost) < (state.offset, state.lost) {
                     (known.offset, known.lost) = (state.offset, state.lost);
                 }
             }
-            None => {
-                numbers.insert((state.object, key), kept.len());
+            Entry::Vacant(free) => {
+                free.insert(kept.len());
                 kept.push(state);
             }
         }
@@ -373,10 +371,21 @@ fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
     kept
 }
 
+/// The same for vectors that differ by rounding: a direction to ten decimals, and a length to as many
+/// digits.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
-fn rounded(value: f64) -> i64 {
-    (value * 1e10).round() as i64
+fn key(vector: DVec2) -> ([i64; 2], u64) {
+    /// The bits of a double that are left out; what is on an edge, as powers of two are, is rounded
+    /// to it from both sides.
+    const ROUNDED: u32 = 19;
+    let length = vector.length();
+    let unit = vector / length;
+    let direction = [unit.x, unit.y].map(|value| (value * 1e10).round() as i64);
+    (
+        direction,
+        (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
+    )
 }

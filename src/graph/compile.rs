@@ -1,10 +1,11 @@
 //! From a rule to its graph: the dependence on the moment becomes more objects.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::expression::Dependence;
 use crate::geometry::DVec2;
+use crate::mix::MixMap;
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
 
@@ -65,19 +66,19 @@ struct Compiler<'r> {
     depends: Dependences,
     steps: u32,
     kinds: BTreeMap<Option<usize>, usize>,
-    numbers: HashMap<(Class, State), usize>,
+    numbers: MixMap<(Class, State), usize>,
     /// The class and state of every object, in the order of their numbers.
     keys: Vec<(Class, State)>,
     objects: Vec<Object>,
     /// Numbers for whether an element is fertile, the generator that it names and its state.
-    behaviours: HashMap<(bool, Option<usize>, State), usize>,
+    behaviours: MixMap<(bool, Option<usize>, State), usize>,
     /// What is known of the behaviours.
-    replacements: HashMap<usize, Replacement>,
+    replacements: MixMap<usize, Replacement>,
     /// What has been used up of the most that is allowed.
     instances: usize,
     work: usize,
     /// The replacement matrix modulo m for an age and step: a column a kind.
-    columns: HashMap<(u32, u32), Vec<Vec<u32>>>,
+    columns: MixMap<(u32, u32), Vec<Vec<u32>>>,
 }
 
 impl<'r> Compiler<'r> {
@@ -98,14 +99,14 @@ impl<'r> Compiler<'r> {
             depends,
             steps,
             kinds,
-            numbers: HashMap::new(),
+            numbers: MixMap::default(),
             keys: Vec::new(),
             objects: Vec::new(),
-            behaviours: HashMap::new(),
-            replacements: HashMap::new(),
+            behaviours: MixMap::default(),
+            replacements: MixMap::default(),
             instances: 0,
             work: 0,
-            columns: HashMap::new(),
+            columns: MixMap::default(),
         }
     }
 

@@ -35,6 +35,9 @@ pub struct Level {
 /// The sizes of successive approximants, from approximant 0 on.
 pub struct Forecast<'g> {
     graph: &'g Graph,
+    /// Whether every production is a list of fixed maps, and whether all maps are similarities.
+    is_plain: bool,
+    is_similar: bool,
     /// By object.
     standing: BTreeMap<usize, Tally>,
     fractals: Count,
@@ -229,6 +232,8 @@ impl<'g> Forecast<'g> {
     fn new(graph: &'g Graph) -> Self {
         let mut forecast = Self {
             graph,
+            is_plain: graph.is_plain(),
+            is_similar: graph.is_similar(),
             standing: BTreeMap::new(),
             fractals: Count::from(1u64),
             step: 0,
@@ -325,7 +330,7 @@ impl<'g> Forecast<'g> {
     /// The size of the approximant that stands now.
     #[must_use]
     pub fn level(&self) -> Level {
-        let plain = self.graph.is_plain();
+        let plain = self.is_plain;
         let all = || self.standing.iter();
         let fertile = all().filter(|(object, _)| self.is_fertile(**object));
         let bulge = |(&object, tally): (&usize, &Tally)| {
@@ -336,7 +341,7 @@ impl<'g> Forecast<'g> {
             elements: self.elements(),
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
-            length: (plain && self.graph.is_similar())
+            length: (plain && self.is_similar)
                 // Not a sum: that of nothing is -0.
                 .then(|| all().fold(0.0, |length, (_, tally)| length + tally.sums.length)),
             area: match self.outlines {
@@ -361,7 +366,7 @@ impl<'g> Forecast<'g> {
             apart: tally.sums.apart,
             parted: tally.sums.parted,
         });
-        self.graph.is_plain().then_some(populations)
+        self.is_plain.then_some(populations)
     }
 
     fn is_fertile(&self, object: usize) -> bool {

@@ -1,7 +1,5 @@
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
-
 use crate::geometry::DVec2;
+use crate::mix::MixMap;
 use crate::render::surface::Position;
 
 /// Positions no farther apart than this are one point: 0.02 units of the picture, which is what
@@ -16,7 +14,7 @@ pub(super) type Point = u32;
 pub(super) struct Points {
     places: Vec<[i32; 2]>,
     /// The point in a square with sides of [`MEET`]: no two fit in.
-    squares: HashMap<u64, Point, BuildHasherDefault<Mix>>,
+    squares: MixMap<u64, Point>,
 }
 
 impl Points {
@@ -69,30 +67,6 @@ pub(super) fn vector([x, y]: [i32; 2]) -> DVec2 {
 
 fn key([x, y]: [i32; 2]) -> u64 {
     u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned())
-}
-
-/// Mixes the bits of a word: these tables are never walked over, so their order does not matter.
-#[derive(Default)]
-pub(super) struct Mix(u64);
-
-impl Hasher for Mix {
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u64(byte.into());
-        }
-    }
-
-    fn write_u64(&mut self, word: u64) {
-        let mixed = u128::from(self.0 ^ word) * 0x9E37_79B9_7F4A_7C15;
-        #[expect(clippy::cast_possible_truncation, reason = "both halves are used")]
-        {
-            self.0 = (mixed >> 64) as u64 ^ mixed as u64;
-        }
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
-use std::collections::HashSet;
-use std::hash::BuildHasherDefault;
+use crate::mix::MixSet;
 
-use super::points::{Mix, Point};
+use super::points::Point;
 use super::strokes::Strokes;
 use super::tree::Tree;
 
@@ -12,7 +11,7 @@ use super::tree::Tree;
 pub(super) struct Unique<'a> {
     places: &'a [[i32; 2]],
     tree: Tree,
-    drawn: HashSet<u64, BuildHasherDefault<Mix>>,
+    drawn: MixSet<u64>,
     /// How many pieces have been left out.
     pub(super) repeated: u64,
     pieces: Vec<(f64, Point)>,
@@ -24,7 +23,7 @@ impl<'a> Unique<'a> {
         Self {
             places,
             tree: Tree::new(items.collect()),
-            drawn: HashSet::default(),
+            drawn: MixSet::default(),
             repeated: 0,
             pieces: Vec::new(),
         }
