@@ -121,25 +121,12 @@ impl Sizes {
             .collect();
         let mut by_length = vec![vec![1]; children.len()];
         for class in 1..=MOST_LENGTHS {
-            let mut grows = false;
-            for (object, children) in children.iter().enumerate() {
-                let Some(children) = children
-                    .as_ref()
-                    .filter(|_| by_length[object].len() == class)
-                else {
-                    continue;
-                };
-                let mut counts = children.iter().map(|&(child, shorter)| {
-                    let known = by_length[child].get(class.saturating_sub(shorter));
-                    known.copied().filter(|_| shorter > 0)
-                });
-                let count = counts.try_fold(0, |sum: u64, count| sum.checked_add(count?));
-                if let Some(count) = count.filter(|&count| count <= most) {
-                    by_length[object].push(count.max(1));
-                    grows = true;
-                }
+            let mut is_any = false;
+            // What is as long as its parent must be known before.
+            while lengthen(&mut by_length, &children, class, most) {
+                is_any = true;
             }
-            if !grows {
+            if !is_any {
                 break;
             }
         }
@@ -193,6 +180,31 @@ impl Sizes {
     }
 }
 
+/// Adds the sizes of a class of lengths where those of all children are known; whether there are any.
+/// Children are given by object, and by how many classes they are shorter.
+fn lengthen(
+    by_length: &mut [Vec<u64>],
+    children: &[Option<Vec<(usize, usize)>>],
+    class: usize,
+    most: u64,
+) -> bool {
+    let mut grows = false;
+    for (object, children) in children.iter().enumerate() {
+        let (Some(children), true) = (children, by_length[object].len() == class) else {
+            continue;
+        };
+        let mut counts = children
+            .iter()
+            .map(|&(child, shorter)| by_length[child].get(class.saturating_sub(shorter)).copied());
+        let count = counts.try_fold(0, |sum: u64, count| sum.checked_add(count?));
+        if let Some(count) = count.filter(|&count| count <= most) {
+            by_length[object].push(count.max(1));
+            grows = true;
+        }
+    }
+    grows
+}
+
 /// By how many classes a length is longer than another, from their ratio.
 fn classes(ratio: f64) -> f64 {
     LENGTHS_AN_OCTAVE * libm::log2(ratio)
@@ -211,4 +223,28 @@ fn whole(number: f64) -> usize {
 fn sum(objects: impl Iterator<Item = usize>, counts: &[u64]) -> u64 {
     let counts = objects.map(|object| counts[object]);
     counts.fold(0, u64::saturating_add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sizes;
+    use crate::catalogue::Catalogue;
+    use crate::document::Document;
+    use crate::graph::Replacement;
+
+    /// Branches are turned first, and shrunk in the next step.
+    #[test]
+    fn sizes_are_known_where_children_are_as_long() {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.rule("ternary-tree").unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let graph = document.resolve(&[]).unwrap().0.compile(60).unwrap();
+        let sizes = Sizes::most(&graph, 4096).down_to(&graph, 0.01, 4096);
+        for (number, object) in graph.objects().iter().enumerate() {
+            if !matches!(object.replacement, Replacement::Kept) {
+                let size = sizes.cut(number, 60, 0.012);
+                assert!(size.is_some(), "{number}");
+            }
+        }
+    }
 }
