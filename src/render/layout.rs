@@ -214,7 +214,10 @@ impl<'a> Surveyor<'a> {
     /// Learns the rest of what has been looked at.
     fn completed(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
         let survey = if survey.is_bounded {
-            survey.walked(&self.growth, self.options.threads)?
+            match survey.counted(&self.growth)? {
+                Some(counted) => counted,
+                None => survey.walked(&self.growth, self.options.threads)?,
+            }
         } else {
             survey
         };

@@ -15,6 +15,7 @@
 
 mod bands;
 mod canvas;
+mod census;
 mod classes;
 mod comb;
 mod density;

@@ -125,6 +125,13 @@ impl Sight {
         self.cuts().then_some(self.shortest)
     }
 
+    /// Whether an element of a length is too short to be replaced, if it leads to no seeds that are placed
+    /// as the initiator.
+    #[inline]
+    pub(super) fn is_short(&self, length: f64) -> bool {
+        length < self.shortest
+    }
+
     /// Whether anything that becomes of an element of a length in a number of steps may be so long
     /// that it is replaced.
     #[inline]
@@ -146,7 +153,7 @@ impl Sight {
             return window.outside;
         }
         let is_whole = self.is_whole.get(subtree.object);
-        if length < self.shortest && is_whole != Some(&true) {
+        if self.is_short(length) && is_whole != Some(&true) {
             return Enter::Keep;
         }
         Enter::Replace

@@ -148,6 +148,12 @@ impl<'g> Survey<'g> {
         }
     }
 
+    /// An element is visible.
+    pub(super) fn use_value_of(&mut self, element: &Element, fractal: &Fractal) {
+        let value = self.classes.value(element, fractal, self.graph);
+        self.use_value(value);
+    }
+
     /// The same survey of an approximant of so many steps fewer, in which all that it has met stands
     /// already.
     pub(super) fn sooner(mut self, growth: &Growth<'_>, fewer: u32) -> Self {
@@ -324,8 +330,8 @@ impl Visitor for Survey<'_> {
         }
         let object = &self.graph.objects()[element.object];
         if object.visible {
-            let value = self.classes.value(element, &self.fractal, self.graph);
-            self.use_value(value);
+            let fractal = self.fractal;
+            self.use_value_of(element, &fractal);
             self.strokes |= self.is_stroked(object);
             if !self.is_bounded {
                 let base_element = &self.graph.base_elements()[object.base_element];
