@@ -189,7 +189,7 @@ impl Graph {
     }
 
     /// The objects of a kind, and those that such may come of.
-    fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
+    pub(crate) fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();
         let mut changes = leading.contains(&true);
         while changes {

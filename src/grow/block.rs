@@ -78,6 +78,7 @@ impl Block {
 /// Elements in a row that come as one: a block in its place.
 pub struct Run<'b> {
     pub(super) block: &'b Block,
+    pub(super) object: usize,
     /// Where the object stood.
     pub(super) frame: Frame,
     pub(super) length: f64,
@@ -97,6 +98,12 @@ impl Run<'_> {
     #[must_use]
     pub fn count(&self) -> u64 {
         self.block.len()
+    }
+
+    /// The object that they take the place of.
+    #[must_use]
+    pub fn object(&self) -> usize {
+        self.object
     }
 
     /// The first element.

@@ -128,6 +128,7 @@ pub(super) struct Found {
 /// A block that a descent has come to instead of its elements.
 pub(super) struct FoundRun<'b> {
     pub(super) block: &'b Block,
+    pub(super) object: usize,
     pub(super) frame: Frame,
     pub(super) length: f64,
     pub(super) coat: Coat,
@@ -341,6 +342,7 @@ impl<'g> Descent<'g> {
         self.visited += block.len();
         Some(FoundRun {
             block,
+            object,
             frame: standing.frame,
             length: standing.length,
             coat: standing.coat,

@@ -274,6 +274,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
     pub(super) fn run(&mut self, found: &FoundRun<'_>) -> Result<(), WalkError<V::Error>> {
         let run = Run {
             block: found.block,
+            object: found.object,
             frame: found.frame,
             length: found.length,
             coat: found.coat,

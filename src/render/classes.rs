@@ -1,6 +1,6 @@
 use std::ops::{Range, RangeInclusive};
 
-use crate::graph::Graph;
+use crate::graph::{Graph, Object};
 use crate::grow::{Element, Fractal, Run};
 use crate::style::{ColorBy, Colour, Style};
 
@@ -67,6 +67,21 @@ impl Classes {
         self.of_value(self.value(element, fractal, graph))
     }
 
+    /// The class of all elements that are an object, if that tells it.
+    pub(super) fn of_object(&self, object: &Object) -> Option<u64> {
+        self.value_of_object(object)
+            .map(|value| self.of_value(value))
+    }
+
+    fn value_of_object(&self, object: &Object) -> Option<u64> {
+        let number = match self.by {
+            ColorBy::Generator | ColorBy::FirstMap => object.origin,
+            ColorBy::LastMap => object.last_map,
+            _ => return None,
+        };
+        Some(number.map_or(0, |number| number as u64 + 1))
+    }
+
     /// The value of what the colours tell.
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
@@ -76,12 +91,10 @@ impl Classes {
             ColorBy::Age => u64::from(fractal.age),
             ColorBy::Fractal => fractal.number,
             ColorBy::Index => element.index - 1,
-            ColorBy::Generator | ColorBy::FirstMap => graph.objects()[element.object]
-                .origin
-                .map_or(0, |generator| generator as u64 + 1),
-            ColorBy::LastMap => graph.objects()[element.object]
-                .last_map
-                .map_or(0, |map| map as u64 + 1),
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+                let object = &graph.objects()[element.object];
+                self.value_of_object(object).unwrap_or(0)
+            }
             ColorBy::Direction => u64::from(element.frame.direction.number()) - 1,
         }
     }

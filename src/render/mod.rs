@@ -10,9 +10,10 @@
 //! bands. An SVG of nested instances takes neither walk nor survey: it is told by the graph.
 //!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
-//! what lies where all is covered in its colour already; and where colours tell steps, what nothing
-//! comes of in those that are painted.
+//! what lies where all is covered in its colour already; and where colours tell steps, maps or
+//! generators, what nothing comes of in those that are painted.
 
+mod aim;
 mod bands;
 mod canvas;
 mod census;

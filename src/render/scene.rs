@@ -7,6 +7,7 @@ use crate::grow::{Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
+use super::aim::Aim;
 use super::painter::Painter;
 use super::sight::Sight;
 use super::sketch::Sketcher;
@@ -109,7 +110,8 @@ impl Drawing for Scene<'_> {
             let mut painter = Painter::new(self, pass, surface);
             let comb = painter.comb().map(Arc::new);
             let hidden = painter.hidden(pass).map(Arc::new);
-            let fresh = || Sketcher::new(self, pass, comb.clone(), hidden.clone());
+            let aim = Arc::new(Aim::of(self, pass));
+            let fresh = || Sketcher::new(self, pass, comb.clone(), hidden.clone(), aim.clone());
             let walked = walk_with(
                 team,
                 self.graph,

@@ -4,7 +4,7 @@
 //! sketches of all spans together, in order.
 
 use std::io;
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -13,6 +13,7 @@ use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
 use super::WIDTHS_AN_OCTAVE;
+use super::aim::Aim;
 use super::classes::Share;
 use super::comb::Comb;
 use super::hidden::Hidden;
@@ -153,10 +154,8 @@ pub(super) struct Sketcher<'a> {
     class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
-    /// Whether nothing needs to be known of elements that are not painted.
-    stands_alone: bool,
-    /// The steps in which is born what is painted, where that is so.
-    steps: Option<RangeInclusive<u32>>,
+    /// What the pass is to paint.
+    aim: Arc<Aim>,
 }
 
 impl<'a> Sketcher<'a> {
@@ -165,12 +164,8 @@ impl<'a> Sketcher<'a> {
         pass: Pass,
         comb: Option<Arc<Comb>>,
         hidden: Option<Arc<Hidden>>,
+        aim: Arc<Aim>,
     ) -> Self {
-        let stands_alone = stands_alone(scene);
-        let steps = match pass {
-            Pass::Class(class) if stands_alone => scene.classes.steps(class),
-            _ => None,
-        };
         Self {
             scene,
             pass,
@@ -184,8 +179,7 @@ impl<'a> Sketcher<'a> {
             },
             class: None,
             open: None,
-            stands_alone,
-            steps,
+            aim,
         }
     }
 
@@ -484,16 +478,6 @@ impl<'a> Sketcher<'a> {
         is_tinted.then(|| element.coat.on(own))
     }
 
-    /// Whether anything that becomes of an element may be born in a step that is painted.
-    #[inline]
-    fn may_paint(&self, subtree: &Subtree) -> bool {
-        self.steps.as_ref().is_none_or(|steps| {
-            let before = steps.start().saturating_sub(subtree.born + 1);
-            let length = subtree.frame.stretch();
-            subtree.born < *steps.end() && self.scene.sight.lasts(length, before)
-        })
-    }
-
     /// Whether nothing that becomes of an element can be seen any more.
     #[inline]
     fn is_hidden(&self, subtree: &Subtree) -> bool {
@@ -605,7 +589,11 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.sight.enter(subtree) {
-            Enter::Replace if !self.may_paint(subtree) || self.is_hidden(subtree) => Enter::Skip,
+            Enter::Replace
+                if !self.aim.may_paint(self.scene, subtree) || self.is_hidden(subtree) =>
+            {
+                Enter::Skip
+            }
             enter => enter,
         }
     }
@@ -620,6 +608,7 @@ impl Visitor for Sketcher<'_> {
         let Scene { graph, classes, .. } = self.scene;
         let share = match self.pass {
             Pass::Areas => Share::Some,
+            Pass::Class(_) if self.aim.paints_all_of(run.object()) => Share::All,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
             Pass::Along => {
                 let ends = [run.first(), run.last()].map(|element| {
@@ -641,9 +630,9 @@ impl Visitor for Sketcher<'_> {
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
-            _ => match (self.pass, self.steps.clone()) {
+            _ => match (self.pass, self.aim.steps.clone()) {
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
-                (Pass::Class(class), None) if self.stands_alone => {
+                (Pass::Class(class), None) if self.aim.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
                     self.some(run, run.chosen(is_of));

@@ -1,0 +1,188 @@
+use std::ops::RangeInclusive;
+
+use crate::graph::Object;
+use crate::grow::Subtree;
+
+use super::scene::{Pass, Scene};
+use super::sketch::stands_alone;
+
+/// What a pass is to paint, as far as it is known of an element before it is replaced: what becomes of
+/// others is left out.
+pub(super) struct Aim {
+    /// Whether nothing needs to be known of elements that are not painted.
+    pub(super) stands_alone: bool,
+    /// The steps in which is born what is painted, where that is so.
+    pub(super) steps: Option<RangeInclusive<u32>>,
+    /// By object, what part of all that becomes of it is painted, where objects tell their class.
+    objects: Vec<Part>,
+}
+
+/// How much of what becomes of an object is painted.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Nothing,
+    Some,
+    Everything,
+}
+
+impl Aim {
+    pub(super) fn of(scene: &Scene<'_>, pass: Pass) -> Self {
+        let stands_alone = stands_alone(scene);
+        let class = match pass {
+            Pass::Class(class) if stands_alone => Some(class),
+            _ => None,
+        };
+        Self {
+            stands_alone,
+            steps: class.and_then(|class| scene.classes.steps(class)),
+            objects: class.map_or(Vec::new(), |class| parts(scene, class)),
+        }
+    }
+
+    /// Whether anything that becomes of an element may be painted.
+    #[inline]
+    pub(super) fn may_paint(&self, scene: &Scene<'_>, subtree: &Subtree) -> bool {
+        if self.objects.get(subtree.object) == Some(&Part::Nothing) {
+            return false;
+        }
+        self.steps.as_ref().is_none_or(|steps| {
+            let before = steps.start().saturating_sub(subtree.born + 1);
+            let length = subtree.frame.stretch();
+            subtree.born < *steps.end() && scene.sight.lasts(length, before)
+        })
+    }
+
+    /// Whether all that is drawn of what becomes of an object is painted.
+    #[inline]
+    pub(super) fn paints_all_of(&self, object: usize) -> bool {
+        self.objects.get(object) == Some(&Part::Everything)
+    }
+}
+
+/// By object, what part of all that becomes of it is of a class; empty where objects do not tell.
+fn parts(scene: &Scene<'_>, class: u64) -> Vec<Part> {
+    let graph = scene.graph;
+    let of = |object: &Object| scene.classes.of_object(object);
+    let Some(classes) = graph.objects().iter().map(of).collect::<Option<Vec<_>>>() else {
+        return Vec::new();
+    };
+    let is_drawn = |object: usize| graph.objects()[object].visible;
+    let painted = graph.leading_to(|object| is_drawn(object) && classes[object] == class);
+    let others = graph.leading_to(|object| !is_drawn(object) || classes[object] != class);
+    let part = |(painted, others)| match (painted, others) {
+        (false, _) => Part::Nothing,
+        (true, true) => Part::Some,
+        (true, false) => Part::Everything,
+    };
+    painted.into_iter().zip(others).map(part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::convert::Infallible;
+
+    use super::{Part, parts};
+    use crate::catalogue::Catalogue;
+    use crate::document::Document;
+    use crate::graph::Graph;
+    use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
+    use crate::model::Model;
+    use crate::render::Options;
+    use crate::render::layout::Layout;
+    use crate::render::scene::Scene;
+    use crate::style::ColorBy;
+
+    /// What classes are drawn of what becomes of every object.
+    struct Lineage<'a> {
+        scene: &'a Scene<'a>,
+        /// What the element descends from that comes next: steps of birth and objects.
+        path: Vec<(u32, usize)>,
+        drawn: Vec<BTreeSet<u64>>,
+    }
+
+    impl Lineage<'_> {
+        fn come_to(&mut self, born: u32, object: usize) {
+            self.path.retain(|(earlier, _)| *earlier < born);
+            self.path.push((born, object));
+        }
+    }
+
+    impl Visitor for Lineage<'_> {
+        type Error = Infallible;
+
+        fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+            Ok(())
+        }
+
+        fn enter(&mut self, subtree: &Subtree) -> Enter {
+            self.come_to(subtree.born, subtree.object);
+            Enter::Replace
+        }
+
+        fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+            self.come_to(element.born, element.object);
+            let object = &self.scene.graph.objects()[element.object];
+            if let Some(class) = self
+                .scene
+                .classes
+                .of_object(object)
+                .filter(|_| object.visible)
+            {
+                for (_, ancestor) in &self.path {
+                    self.drawn[*ancestor].insert(class);
+                }
+            }
+            Ok(())
+        }
+
+        fn end(&mut self, _: bool) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_has_nothing_of_its_class() {
+        let catalogue = Catalogue::embedded();
+        for (name, color_by) in [
+            ("twindragon-ifs", ColorBy::LastMap),
+            ("square-filled", ColorBy::FirstMap),
+            ("barnsley-fern", ColorBy::LastMap),
+            ("snow-crystal", ColorBy::Generator),
+            ("penrose-stars", ColorBy::Generator),
+        ] {
+            let source = catalogue.rule(name).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            let model = document.resolve(&[]).unwrap().0;
+            let graph = match &model {
+                Model::Ifs(system) => Graph::telling_last_maps(system).unwrap(),
+                model => model.compile(4).unwrap(),
+            };
+            let mut options = Options::of(model.heading());
+            options.style.color_by = color_by;
+            let growth = Growth::steps(4);
+            let layout = Layout::find(&graph, &growth, &options).unwrap();
+            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let mut lineage = Lineage {
+                scene: &scene,
+                path: Vec::new(),
+                drawn: vec![BTreeSet::new(); graph.objects().len()],
+            };
+            walk(&graph, &growth, &mut lineage).unwrap();
+            let mut nothing = 0;
+            for class in scene.classes.all() {
+                for (part, drawn) in parts(&scene, class).iter().zip(&lineage.drawn) {
+                    match part {
+                        Part::Nothing => assert!(!drawn.contains(&class), "{name}"),
+                        Part::Everything => {
+                            assert!(drawn.iter().all(|of| *of == class), "{name}");
+                        }
+                        Part::Some => {}
+                    }
+                    nothing += usize::from(*part == Part::Nothing && !drawn.is_empty());
+                }
+            }
+            assert!(nothing > 0, "{name}: nothing is left out");
+        }
+    }
+}
