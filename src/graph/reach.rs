@@ -294,7 +294,7 @@ impl Graph {
     }
 
     /// The fixed instances that take an object's place or start what it seeds.
-    pub(super) fn children(&self, object: usize) -> impl Iterator<Item = (Placement, &Instance)> {
+    pub(crate) fn children(&self, object: usize) -> impl Iterator<Item = (Placement, &Instance)> {
         let production = match &self.objects[object].replacement {
             Replacement::Fixed(production) => Some(production),
             _ => None,

@@ -6,6 +6,7 @@ mod tests;
 
 use std::ops::{Range, RangeInclusive};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::graph::{CompileError, Graph, Replacement};
@@ -21,6 +22,9 @@ pub(super) const MOST_LEAVES: u64 = 1024;
 
 /// All blocks that a graph may have together have no more elements than this.
 const MOST_MEMORY: u64 = 1 << 17;
+
+/// The number of the next block that is made.
+static NEXT: AtomicU64 = AtomicU64::new(0);
 
 /// An element of a block, as seen from the object whose place it takes.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +54,8 @@ pub struct Stick {
 /// What an object becomes in a number of steps.
 #[derive(Debug)]
 pub(super) struct Block {
+    /// Its own.
+    number: u64,
     leaves: Vec<Leaf>,
     /// The leaves as lines in the object's unit frame, if all of them are visible lines.
     sticks: Option<Vec<Stick>>,
@@ -104,6 +110,27 @@ impl Run<'_> {
     #[must_use]
     pub fn object(&self) -> usize {
         self.object
+    }
+
+    /// A number that tells the run from others that are not the same but for their places.
+    pub(crate) fn number(&self) -> u64 {
+        self.block.number
+    }
+
+    /// Where the object stood.
+    pub(crate) fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// The step in which the object was born.
+    pub(crate) fn born(&self) -> u32 {
+        self.born
+    }
+
+    /// The same run in another place, with as many elements backwards.
+    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
+        let frame = Frame { map, ..self.frame };
+        Self { frame, ..*self }
     }
 
     /// The first element.
@@ -269,8 +296,12 @@ pub(super) struct Blocks {
 
 impl Blocks {
     /// What there is to know before blocks are made.
-    pub(super) fn of(graph: &Graph) -> Self {
-        let mut most = if graph.counts_index() { 0 } else { MOST_LEAVES };
+    pub(super) fn of(graph: &Graph, longest: u64) -> Self {
+        let mut most = if graph.counts_index() {
+            0
+        } else {
+            MOST_LEAVES.min(longest)
+        };
         let mut sizes = Sizes::fixed(graph, most);
         // In both directions.
         while most > 0 && 2 * sizes.sum() > MOST_MEMORY {
@@ -363,6 +394,7 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
     let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
     by_birth.sort_by_key(|&number| leaves[number as usize].born);
     Ok(Block {
+        number: NEXT.fetch_add(1, Ordering::Relaxed),
         by_birth,
         births,
         line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),

@@ -145,6 +145,11 @@ pub trait Visitor {
         false
     }
 
+    /// The most elements that a run should have, of those that it may have.
+    fn longest_run(&self) -> u64 {
+        u64::MAX
+    }
+
     /// Elements of the fractal in a row, if the visitor [takes runs](Visitor::takes_runs).
     ///
     /// # Errors

@@ -127,7 +127,7 @@ where
         graph,
         steps: growth.steps,
         size,
-        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph))),
+        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run()))),
         sizes_are_exact: cuts.is_none() && graph.is_plain(),
         asked,
         span: Span::default(),
@@ -490,6 +490,10 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
 
     fn takes_runs(&self) -> bool {
         self.visitor.takes_runs()
+    }
+
+    fn longest_run(&self) -> u64 {
+        self.visitor.longest_run()
     }
 
     fn begin(&mut self, fractal: Fractal) -> Result<(), V::Error> {

@@ -91,7 +91,9 @@ pub fn walk<V: Visitor>(
     growth: &Growth<'_>,
     visitor: &mut V,
 ) -> Result<Walked, WalkError<V::Error>> {
-    let blocks = visitor.takes_runs().then(|| Blocks::of(graph));
+    let blocks = visitor
+        .takes_runs()
+        .then(|| Blocks::of(graph, visitor.longest_run()));
     let stop = blocks.as_ref().map_or(Stop::Nowhere, Stop::AtBlocks);
     let mut sink = Direct {
         visiting: Visiting::new(graph, visitor),

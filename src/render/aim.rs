@@ -52,6 +52,12 @@ impl Aim {
         })
     }
 
+    /// Whether objects tell what is painted.
+    #[inline]
+    pub(super) fn tells_objects(&self) -> bool {
+        !self.objects.is_empty()
+    }
+
     /// Whether all that is drawn of what becomes of an object is painted.
     #[inline]
     pub(super) fn paints_all_of(&self, object: usize) -> bool {

@@ -52,11 +52,17 @@ impl Hidden {
         }
     }
 
+    /// How many pixels from the middle of its frame what becomes of an object of a length is drawn at
+    /// most.
+    #[inline]
+    pub(super) fn reach(&self, scene: &Scene<'_>, object: usize, length: f64) -> f64 {
+        self.reaches[object] * scene.canvas.scale() * length + self.overhang
+    }
+
     /// Whether all that becomes of an element of a class is.
     #[inline]
     pub(super) fn hides(&self, scene: &Scene<'_>, subtree: &Subtree, class: u64) -> bool {
-        let scale = scene.canvas.scale() * subtree.frame.stretch();
-        let reach = self.reaches[subtree.object] * scale + self.overhang;
+        let reach = self.reach(scene, subtree.object, subtree.frame.stretch());
         let middle = subtree.frame.map.transform_point2(scene.graph.middle());
         let layer = self.first + class;
         self.filled

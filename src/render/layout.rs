@@ -111,6 +111,7 @@ impl<'a> Layout<'a> {
             survey = survey.sooner(&surveyor.growth, fewer);
             surveyor.growth.steps -= fewer;
         }
+        survey.is_to_detail = options.detail.is_some();
         if let Some(progress) = growth.progress {
             progress.expect(surveyor.elements);
         }

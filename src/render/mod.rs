@@ -11,7 +11,9 @@
 //!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
 //! what lies where all is covered in its colour already; and where colours tell steps, maps or
-//! generators, what nothing comes of in those that are painted.
+//! generators, what nothing comes of in those that are painted. All that changes no pixel. In PNGs to a
+//! detail, small runs of elements that lie alike may be drawn as stamps, which comes close: see
+//! `stamps`.
 
 mod aim;
 mod bands;
@@ -33,6 +35,7 @@ mod png;
 mod scene;
 mod sight;
 mod sketch;
+mod stamps;
 mod surface;
 mod survey;
 mod svg;

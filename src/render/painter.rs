@@ -1,5 +1,6 @@
 use std::collections::BTreeSet;
 use std::io;
+use std::sync::Arc;
 
 use crate::grow::Seam;
 use crate::style::{Colour, Width};
@@ -9,7 +10,8 @@ use super::hidden::Hidden;
 use super::pen;
 use super::scene::{Pass, Scene};
 use super::sketch::{Kind, Line, Look, Mark, Sketch, class_width};
-use super::surface::{FINE, Paint, Position, Stroke, Surface};
+use super::stamps::Stamps;
+use super::surface::{FINE, Paint, Position, Stencil, Stroke, Surface};
 use super::tracer::Tracer;
 
 /// Vertices between two chances of the surface to hand on what it has.
@@ -78,15 +80,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         if !Hidden::may_be(self.scene, pass) {
             return None;
         }
-        let Scene {
-            graph,
-            classes,
-            style,
-            ..
-        } = self.scene;
-        let drawn = graph.objects().iter().filter(|object| object.visible);
-        let is_closed = |base_element: usize| graph.base_elements()[base_element].is_closed();
-        let kinds: BTreeSet<bool> = drawn.map(|object| is_closed(object.base_element)).collect();
+        let Scene { classes, style, .. } = self.scene;
+        let kinds = self.kinds();
         let mut filled = None;
         let mut inks = BTreeSet::new();
         let all = match pass {
@@ -98,8 +93,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.colour = classes.colour(class, style);
             }
             inks.clear();
-            for &is_closed in &kinds {
-                let kind = if is_closed { Kind::Polygon } else { Kind::Line };
+            for &kind in &kinds {
                 let paint = self.paint(Look {
                     kind,
                     ..Look::TUFTS
@@ -124,6 +118,35 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Some(hidden)
     }
 
+    /// What makes stamps, if they may be put in one opaque colour a class: where everything may be
+    /// hidden that is covered already.
+    pub(super) fn stamps(&mut self, pass: Pass, hidden: Option<&Arc<Hidden>>) -> Option<Stamps> {
+        let hidden = hidden?;
+        if pass == Pass::Along {
+            self.colour = self.scene.classes.colour(0, self.scene.style);
+        }
+        let mut stencils = self.kinds().into_iter().map(|kind| {
+            let paint = self.paint(Look {
+                kind,
+                ..Look::TUFTS
+            });
+            self.tracer.stencil(&paint)
+        });
+        let first = stencils.next()??;
+        let pen = stencils.try_fold(first.pen, |pen, stencil| Some(pen.or(stencil?.pen)))?;
+        Stamps::new(self.scene, Stencil { pen }, Arc::clone(hidden))
+    }
+
+    /// The kinds of what is drawn.
+    fn kinds(&self) -> Vec<Kind> {
+        let graph = self.scene.graph;
+        let drawn = graph.objects().iter().filter(|object| object.visible);
+        let is_closed = |base_element: usize| graph.base_elements()[base_element].is_closed();
+        let closed: BTreeSet<bool> = drawn.map(|object| is_closed(object.base_element)).collect();
+        let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
+        closed.into_iter().map(kind).collect()
+    }
+
     /// What comes is of the layer of a class.
     fn begin_layer(&mut self, class: u64) {
         if let Some(first) = self.first_layer {
@@ -140,6 +163,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     pub(super) fn paint_span(&mut self, sketch: &Sketch, seam: Seam) -> io::Result<()> {
         let mut points = sketch.points.as_slice();
         let mut tufts = sketch.tufts.as_slice();
+        let mut stamps = sketch.stamps.as_slice();
         let mut joined = seam.joined;
         for mark in &sketch.marks {
             if let Mark::Tufts(count) = *mark {
@@ -147,6 +171,12 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 tufts = rest;
                 self.begin_path(Look::TUFTS)?;
                 self.tracer.tufts(now);
+            }
+            if let Mark::Stamps { look, count } = *mark {
+                let (now, rest) = stamps.split_at(count);
+                stamps = rest;
+                self.begin_path(look)?;
+                self.tracer.stamps(now);
             }
             self.mark(mark, joined, &mut points)?;
             // A class is not yet an element.
@@ -195,7 +225,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.reach(end);
                 return self.hand_on();
             }
-            Mark::Tufts(_) => return self.hand_on(),
+            Mark::Tufts(_) | Mark::Stamps { .. } => return self.hand_on(),
             Mark::Close { returned } => {
                 self.tracer.close(returned);
                 return self.tracer.hand_on();

@@ -12,6 +12,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
+pub(super) use coverage::{RoundPen, Sheet};
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 
@@ -33,7 +34,7 @@ use self::planes::Planes;
 use self::skia::Outline;
 use super::Labels;
 use super::filled::Filled;
-use super::surface::{Paint, Position, Stroke, Surface, Tuft};
+use super::surface::{Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
 
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
@@ -384,6 +385,22 @@ impl Surface for Png<'_, '_> {
 
     fn tufts(&mut self, tufts: &[Tuft]) {
         self.chunk.tufts(tufts);
+    }
+
+    fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
+        let pen = match (paint.fill, &paint.stroke) {
+            (Some(_), None) => None,
+            (None, Some(stroke)) => match self.nibs.nib(stroke.pen)? {
+                Nib::Round(pen) => Some(pen),
+                Nib::Hair { .. } => return None,
+            },
+            _ => return None,
+        };
+        self.part.may_cover().then_some(Stencil { pen })
+    }
+
+    fn stamps(&mut self, stamps: &[Stamped]) {
+        self.chunk.stamps(stamps);
     }
 
     fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {

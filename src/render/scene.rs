@@ -25,9 +25,11 @@ pub(crate) struct Scene<'a> {
     pub(super) classes: Classes,
     passes: Vec<Pass>,
     /// The number of elements.
-    elements: u64,
+    pub(super) elements: u64,
     /// Ranks of elements, where colours tell them and it took a walk to know them.
     ranks: Option<Ranks>,
+    /// Whether elements are replaced down to a detail only.
+    pub(super) is_to_detail: bool,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
 }
@@ -75,6 +77,7 @@ impl<'a> Scene<'a> {
             passes,
             elements: survey.elements,
             ranks: survey.ranks.clone(),
+            is_to_detail: survey.is_to_detail,
             fills_strokes: together && style.fill.is_some(),
         }
     }
@@ -110,8 +113,12 @@ impl Drawing for Scene<'_> {
             let mut painter = Painter::new(self, pass, surface);
             let comb = painter.comb().map(Arc::new);
             let hidden = painter.hidden(pass).map(Arc::new);
+            let stamps = painter.stamps(pass, hidden.as_ref()).map(Arc::new);
             let aim = Arc::new(Aim::of(self, pass));
-            let fresh = || Sketcher::new(self, pass, comb.clone(), hidden.clone(), aim.clone());
+            let fresh = || {
+                let short = (hidden.clone(), stamps.clone());
+                Sketcher::new(self, pass, comb.clone(), short, aim.clone())
+            };
             let walked = walk_with(
                 team,
                 self.graph,

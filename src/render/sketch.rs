@@ -18,7 +18,8 @@ use super::classes::Share;
 use super::comb::Comb;
 use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
-use super::surface::{FINE, Position, Tuft, position};
+use super::stamps::{LONGEST_RUN, Painted, Stamps};
+use super::surface::{FINE, Position, Stamped, Tuft, position};
 
 /// What tells paths apart: a new one is begun where this changes.
 #[derive(Clone, Copy, PartialEq)]
@@ -94,6 +95,8 @@ pub(super) enum Mark {
     Curve,
     /// So many tufts.
     Tufts(usize),
+    /// So many stamps of what looks alike.
+    Stamps { look: Look, count: usize },
     /// The polygon is closed; whether it has returned to its start.
     Close { returned: bool },
     /// An open element that is not drawn, by its end, and whether its frame ends there.
@@ -104,12 +107,13 @@ pub(super) enum Mark {
     End(bool),
 }
 
-/// Marks, and the points and tufts that they are about.
+/// Marks, and the points, tufts and stamps that they are about.
 #[derive(Default)]
 pub(super) struct Sketch {
     pub(super) marks: Vec<Mark>,
     pub(super) points: Vec<Position>,
     pub(super) tufts: Vec<Tuft>,
+    pub(super) stamps: Vec<Stamped>,
 }
 
 /// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
@@ -148,6 +152,8 @@ pub(super) struct Sketcher<'a> {
     comb: Option<Arc<Comb>>,
     /// What need not be drawn, where that can be told,
     hidden: Option<Arc<Hidden>>,
+    /// what many runs cover, drawn once,
+    stamps: Option<Arc<Stamps>>,
     /// and the class that all of the span is of, if it is known.
     whole: Option<u64>,
     /// The class that the sketch has come to, where it holds all.
@@ -163,7 +169,7 @@ impl<'a> Sketcher<'a> {
         scene: &'a Scene<'a>,
         pass: Pass,
         comb: Option<Arc<Comb>>,
-        hidden: Option<Arc<Hidden>>,
+        (hidden, stamps): (Option<Arc<Hidden>>, Option<Arc<Stamps>>),
         aim: Arc<Aim>,
     ) -> Self {
         Self {
@@ -173,6 +179,7 @@ impl<'a> Sketcher<'a> {
             sketch: Sketch::default(),
             comb,
             hidden,
+            stamps,
             whole: match pass {
                 Pass::Class(class) => Some(class),
                 Pass::Areas | Pass::Along => None,
@@ -188,6 +195,7 @@ impl<'a> Sketcher<'a> {
         self.sketch.marks.clear();
         self.sketch.points.clear();
         self.sketch.tufts.clear();
+        self.sketch.stamps.clear();
         self.class = None;
         self.open = None;
         if self.pass == Pass::Along {
@@ -450,6 +458,42 @@ impl<'a> Sketcher<'a> {
         true
     }
 
+    /// What of a run is painted, by a stamp; whether there is one.
+    fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
+        let stamps = self.stamps.as_ref();
+        let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {
+            return false;
+        };
+        let graph = self.scene.graph;
+        let is_open = |element: &Element| {
+            let object = &graph.objects()[element.object];
+            object.visible && !graph.base_elements()[object.base_element].is_closed()
+        };
+        let end = run.last().filter(is_open);
+        let kind = if end.is_some() {
+            Kind::Line
+        } else {
+            Kind::Polygon
+        };
+        let look = Look {
+            kind,
+            ..Look::TUFTS
+        };
+        self.sketch.stamps.push(stamped);
+        // What joins the run goes on where it ends; of other runs nobody needs to know.
+        match (self.sketch.marks.last_mut(), end) {
+            (Some(Mark::Stamps { look: last, count }), None) if *last == look => *count += 1,
+            (_, end) => {
+                self.mark(Mark::Stamps { look, count: 1 });
+                if let Some(end) = end {
+                    self.pass_by(Mark::Skip { meets_frame: true });
+                    self.start_at(end.frame.ends()[1]);
+                }
+            }
+        }
+        true
+    }
+
     fn width_class(&self, element: &Element) -> i32 {
         let Scene { graph, style, .. } = self.scene;
         if let (Width::Pixels(width), Some(_)) = (style.width, graph.widest()) {
@@ -566,6 +610,10 @@ impl Visitor for Sketcher<'_> {
         !self.scene.sight.cuts()
     }
 
+    fn longest_run(&self) -> u64 {
+        self.stamps.as_ref().map_or(u64::MAX, |_| LONGEST_RUN)
+    }
+
     fn cuts(&self) -> Option<f64> {
         self.scene.sight.shortest()
     }
@@ -627,11 +675,16 @@ impl Visitor for Sketcher<'_> {
         match (share, line, run.sticks(), run.first(), run.last()) {
             // Of what is not painted only the end matters, where the next line may begin.
             (Share::None, _, _, _, Some(last)) => self.see(&last),
+            (Share::All, ..) if self.stamp(run, Painted::All) => {}
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
             _ => match (self.pass, self.aim.steps.clone()) {
+                (_, Some(steps))
+                    if self.stamp(run, Painted::Steps(*steps.start(), *steps.end())) => {}
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
+                (Pass::Class(class), None)
+                    if self.aim.tells_objects() && self.stamp(run, Painted::Class(class)) => {}
                 (Pass::Class(class), None) if self.aim.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;

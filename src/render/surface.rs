@@ -5,6 +5,7 @@ use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
 use super::filled::Filled;
+use super::png::RoundPen;
 
 /// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
 ///
@@ -90,6 +91,30 @@ pub(crate) struct Tuft {
     pub(crate) width: f32,
 }
 
+/// What is covered of some pixels, drawn once to be put in many places.
+#[derive(Debug)]
+pub(crate) struct Stamp {
+    /// Its upper left pixel, seen from that on which it is put,
+    pub(crate) corner: [i64; 2],
+    /// and how many of them are in a row.
+    pub(crate) width: usize,
+    /// What is covered of each, by rows: samples as bits.
+    pub(crate) cells: Box<[u64]>,
+}
+
+/// A stamp, and the pixel on which it is put.
+#[derive(Clone, Debug)]
+pub(crate) struct Stamped {
+    pub(crate) stamp: Arc<Stamp>,
+    pub(crate) pixel: [i64; 2],
+}
+
+/// What stamps are drawn with: shapes are filled, and lines drawn with a pen if there is one.
+#[derive(Clone)]
+pub(crate) struct Stencil {
+    pub(crate) pen: Option<Arc<RoundPen>>,
+}
+
 /// Where the parts of pictures are made: a picture's format.
 ///
 /// Paths come one after another, each between [`Surface::begin`] and [`Surface::end`]; what comes
@@ -130,6 +155,14 @@ pub(crate) trait Surface {
     }
     /// Tufts, within a path of one that may come so.
     fn tufts(&mut self, _: &[Tuft]) {}
+
+    /// What draws stamps that may be put where paths are painted so, if they may: whatever they cover
+    /// more than once stays covered once.
+    fn stencil(&mut self, _: &Paint) -> Option<Stencil> {
+        None
+    }
+    /// Stamps, within a path that is painted so.
+    fn stamps(&mut self, _: &[Stamped]) {}
 
     /// What tells which pixels are covered all over, where paths that are painted so are drawn by
     /// layers, each of one opaque colour; nothing unless said otherwise.

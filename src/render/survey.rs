@@ -47,6 +47,8 @@ pub struct Survey<'g> {
     pub(super) is_bounded: bool,
     /// The number of steps that are needed: more would change nothing.
     pub(super) steps: u32,
+    /// Whether elements are replaced down to a detail only.
+    pub(super) is_to_detail: bool,
     /// Ranks, where colours tell them and there was a walk.
     pub(super) ranks: Option<Ranks>,
     sight: Sight,
@@ -74,6 +76,7 @@ impl<'g> Survey<'g> {
             walked: false,
             is_bounded: false,
             steps: 0,
+            is_to_detail: false,
             ranks: None,
             sight: Sight::unbounded(),
             fractal: Fractal::default(),

@@ -2,7 +2,7 @@ use std::io;
 use std::sync::Arc;
 
 use crate::render::filled::Filled;
-use crate::render::surface::{Paint, Position, Stroke, Surface, Tuft};
+use crate::render::surface::{Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
 
 /// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {
@@ -146,6 +146,16 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     /// Tufts, wherever the pen is.
     pub(crate) fn tufts(&mut self, tufts: &[Tuft]) {
         self.surface.tufts(tufts);
+    }
+
+    /// As [`Surface::stencil`].
+    pub(crate) fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
+        self.surface.stencil(paint)
+    }
+
+    /// Stamps, wherever the pen is.
+    pub(crate) fn stamps(&mut self, stamps: &[Stamped]) {
+        self.surface.stamps(stamps);
     }
 
     /// Hands on what has been drawn of the path, if that is much.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::render::surface::{Position, Tuft};
+use crate::render::surface::{Position, Stamped, Tuft};
 
 use super::coverage::Plane;
 use super::nib::Nib;
@@ -24,6 +24,8 @@ enum Command {
     Polygons { vertices: usize, count: usize },
     /// So many tufts.
     Tufts(usize),
+    /// So many stamps.
+    Stamps(usize),
 }
 
 /// Commands, and what they are about.
@@ -34,6 +36,7 @@ pub(super) struct Chunk {
     commands: Vec<Command>,
     points: Vec<Position>,
     tufts: Vec<Tuft>,
+    stamps: Vec<Stamped>,
 }
 
 impl Chunk {
@@ -43,7 +46,8 @@ impl Chunk {
 
     pub(super) fn is_full(&self) -> bool {
         let most = self.commands.len().max(self.points.len());
-        most.max(self.tufts.len()) >= MANY
+        let apart = self.tufts.len().max(self.stamps.len());
+        most.max(apart) >= MANY
     }
 
     #[inline]
@@ -87,6 +91,11 @@ impl Chunk {
         self.commands.push(Command::Tufts(tufts.len()));
     }
 
+    pub(super) fn stamps(&mut self, stamps: &[Stamped]) {
+        self.stamps.extend_from_slice(stamps);
+        self.commands.push(Command::Stamps(stamps.len()));
+    }
+
     /// Lets `next` go on with a nib from a position.
     pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, at: Position) {
         next.nib(nib);
@@ -113,10 +122,12 @@ impl Chunk {
         self.commands.clear();
         self.points.clear();
         self.tufts.clear();
+        self.stamps.clear();
     }
 
     fn cover_on(&mut self, plane: &mut Plane) {
         let (mut points, mut tufts) = (self.points.as_slice(), self.tufts.as_slice());
+        let mut stamps = self.stamps.as_slice();
         let mut next = |count: usize| {
             let (next, rest) = points.split_at(count.min(points.len()));
             points = rest;
@@ -150,6 +161,12 @@ impl Chunk {
                         plane.tuft(tuft.middle, tuft.extent, tuft.area, tuft.width)
                     });
                     tufts = rest;
+                }
+                Command::Stamps(count) => {
+                    let (now, rest) = stamps.split_at(*count);
+                    now.iter()
+                        .for_each(|Stamped { stamp, pixel }| plane.stamp(stamp, *pixel));
+                    stamps = rest;
                 }
             }
         }

@@ -9,6 +9,7 @@ mod curve;
 mod hair;
 mod pen;
 mod polygon;
+mod stamp;
 #[cfg(test)]
 mod tests;
 
@@ -22,6 +23,7 @@ pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
 pub(crate) use polygon::{MOST_VERTICES, is_small, smoothed};
+pub(crate) use stamp::Sheet;
 
 /// A position in hundredths of a pixel.
 type Position = [i64; 2];

@@ -1,0 +1,161 @@
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+use super::{MARGIN, Plane, Position, RoundPen, bounding, cover, flattened, index, smoothed};
+use crate::render::surface::Stamp;
+
+/// A small plane apart from any picture, on which a stamp is drawn.
+pub(crate) struct Sheet {
+    plane: Plane,
+    /// What draws lines.
+    pen: Option<Arc<RoundPen>>,
+    /// Whether all could be drawn that was to be.
+    is_whole: bool,
+}
+
+impl Sheet {
+    /// An empty one of so many pixels.
+    pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>) -> Self {
+        Self {
+            plane: Plane::of_rows(size, 0..size[1]),
+            pen,
+            is_whole: true,
+        }
+    }
+
+    /// Covers what a closed outline encircles, if that is convex.
+    pub(crate) fn polygon(&mut self, vertices: &[Position]) {
+        self.is_whole &= self.plane.polygon(vertices)
+            || smoothed(vertices).is_some_and(|smooth| self.plane.polygon(&smooth));
+    }
+
+    /// Covers a line through points.
+    pub(crate) fn line(&mut self, points: &[Position]) {
+        let (Some(pen), Some((&start, rest))) = (&self.pen, points.split_first()) else {
+            self.is_whole = false;
+            return;
+        };
+        self.plane.dot(pen, start);
+        let mut from = start;
+        for &to in rest {
+            self.plane.line(pen, from, to);
+            from = to;
+        }
+    }
+
+    /// Adds the points of a curve, but the first, to those of a line or an outline.
+    pub(crate) fn add_curve(points: &mut Vec<Position>, curve: [Position; 4], is_closed: bool) {
+        if is_closed {
+            points.extend(bounding(curve));
+        } else {
+            points.extend(flattened(curve));
+        }
+    }
+
+    /// What has been covered, if all could be drawn; a pixel of the sheet is to come to the pixel that it
+    /// is put on.
+    pub(crate) fn into_stamp(mut self, pixel: [i64; 2]) -> Option<Stamp> {
+        if !self.is_whole {
+            return None;
+        }
+        let [rows, columns] = self.plane.take_touched();
+        let stride = self.plane.stride;
+        let first = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
+        let cells = rows.clone().flat_map(|row| {
+            let start = row * stride;
+            &self.plane.cells[start + columns.start..start + columns.end]
+        });
+        Some(Stamp {
+            cells: cells.map(|cell| cell.load(Relaxed)).collect(),
+            width: columns.len(),
+            corner: [
+                first(columns.start) - MARGIN - pixel[0],
+                first(rows.start) - MARGIN - pixel[1],
+            ],
+        })
+    }
+}
+
+impl Plane {
+    /// Covers what a stamp does that is put on a pixel.
+    pub(crate) fn stamp(&mut self, stamp: &Stamp, pixel: [i64; 2]) {
+        let Stamp { corner, width, .. } = *stamp;
+        if width == 0 {
+            return;
+        }
+        let [left, top] = [0, 1].map(|axis| pixel[axis] + corner[axis]);
+        let side = |count: usize| i64::try_from(count).unwrap_or(i64::MAX);
+        let height = stamp.cells.len() / width;
+        // In the cells of the plane.
+        let (x, y) = (left + MARGIN, top - self.top + MARGIN);
+        let within = |from: i64, count: usize, most: i64| {
+            let first = (-from).clamp(0, side(count));
+            let last = (most - from).clamp(first, side(count));
+            index(first)..index(last)
+        };
+        let columns = within(x, width, self.size[0] + 2 * MARGIN);
+        let rows = within(y, height, self.size[1] + 2 * MARGIN);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        for row in rows {
+            let start = index(y + side(row)) * self.stride + index(x + side(columns.start));
+            let cells = &self.cells[start..start + columns.len()];
+            let stamped = &stamp.cells[row * width..][columns.clone()];
+            for (cell, &samples) in cells.iter().zip(stamped) {
+                cover(cell, samples);
+            }
+        }
+        self.touched.add(
+            [left, left + side(width) - 1],
+            [top, top + side(height) - 1],
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::{Plane, RoundPen, Sheet};
+    use crate::render::png::coverage::FINE;
+
+    fn drained(plane: &mut Plane) -> Vec<(usize, u32)> {
+        let mut covered = Vec::new();
+        plane.drain(|pixel, part| covered.push((pixel, part)));
+        covered
+    }
+
+    #[test]
+    fn a_stamp_covers_what_was_drawn_wherever_it_is_put() {
+        let pen = Arc::new(RoundPen::new(1.0));
+        let square = [[310, 290], [370, 300], [360, 360], [300, 350]];
+        let line = [[120, 150], [310, 480], [150, 600]];
+        for pixel in [[3, 4], [0, 0], [-3, 2], [9, 9], [40, 4], [-20, -20]] {
+            let mut sheet = Sheet::new([8, 8], Some(Arc::clone(&pen)));
+            sheet.polygon(&square);
+            sheet.line(&line);
+            let stamp = sheet.into_stamp([2, 2]).unwrap();
+            let mut stamped = Plane::new([12, 12]);
+            stamped.stamp(&stamp, pixel);
+            let moved = |point: [i64; 2]| [0, 1].map(|a| point[a] + (pixel[a] - 2) * FINE);
+            let mut drawn = Plane::new([12, 12]);
+            drawn.polygon(&square.map(moved));
+            let line = line.map(moved);
+            drawn.dot(&pen, line[0]);
+            drawn.line(&pen, line[0], line[1]);
+            drawn.line(&pen, line[1], line[2]);
+            assert_eq!(drained(&mut stamped), drained(&mut drawn), "{pixel:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_makes_no_stamp() {
+        let mut sheet = Sheet::new([8, 8], None);
+        sheet.polygon(&[[100, 100], [500, 100], [300, 200], [400, 600]]);
+        assert!(sheet.into_stamp([0, 0]).is_none());
+        let mut sheet = Sheet::new([8, 8], None);
+        sheet.line(&[[100, 100], [500, 100]]);
+        assert!(sheet.into_stamp([0, 0]).is_none());
+    }
+}
