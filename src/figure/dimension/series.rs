@@ -1,16 +1,13 @@
 //! A dimension as a function of a parameter, in the manner of Kaandorp 1987, figure 20.
 
-use std::io::Write;
-use std::num::NonZero;
+use std::io::{self, Write};
 
 use crate::geometry::DVec2;
-use crate::parallel::Team;
-use crate::render::{Drawing, Pen, RenderError, Surface, write_drawing};
-use crate::style::Colour;
+use crate::render::{RenderError, Surface};
 
-use super::super::text::{Anchor, Font};
+use super::Options;
 use super::axis::Axis;
-use super::{LEFT, Options, Pad, RIGHT, WORDS, blue, frame, orange, pen};
+use super::pad::{self, LEFT, Pad, Plot, RIGHT, frame, orange};
 
 const SIZE: [u32; 2] = [720, 480];
 const PANEL: [f64; 2] = [44.0, 420.0];
@@ -30,65 +27,39 @@ pub fn write_series(
     let series = Series {
         parameter,
         dimensions,
-        options,
-        font: Font::new(),
     };
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&series, options.format, &options.labels, one, out)?;
-    Ok(SIZE)
+    pad::write(&series, options, out)
 }
 
 struct Series<'a> {
     parameter: &'a str,
     dimensions: &'a [(f64, Option<f64>)],
-    options: &'a Options,
-    font: Font,
 }
 
-impl Drawing for Series<'_> {
+impl Plot for Series<'_> {
     fn size(&self) -> [u32; 2] {
         SIZE
     }
 
-    fn background(&self) -> Option<Colour> {
-        Some(Colour::grey(255))
-    }
-
-    fn pen(&self) -> Pen {
-        pen(1.0)
-    }
-
-    fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
+    fn draw<S: Surface>(&self, pad: &mut Pad<'_, S>) -> io::Result<()> {
         let values = self.dimensions.iter();
         let across = Axis::linear(values.clone().map(|(value, _)| *value), [LEFT, RIGHT]);
         let told = values.clone().filter_map(|(_, dimension)| *dimension);
         let up = Axis::linear(told, [PANEL[1], PANEL[0]]);
-        let mut pad = Pad {
-            surface,
-            font: &self.font,
-        };
-        let middle = f64::midpoint(LEFT, RIGHT);
-        let title = &self.options.labels.title;
-        pad.text(title, 17.0, DVec2::new(middle, 27.0), Anchor::Middle)?;
-        frame(&mut pad, &across, &up, PANEL, true)?;
+        frame(pad, &across, &up, PANEL, true)?;
+        let at = |value: f64, dimension: f64| DVec2::new(across.at(value), up.at(dimension));
         // A line joins neighbours that both have a dimension.
         for pair in self.dimensions.windows(2) {
             if let [(from, Some(first)), (to, Some(second))] = *pair {
-                let ends = [(from, first), (to, second)];
-                let ends = ends.map(|(x, y)| DVec2::new(across.at(x), up.at(y)));
-                pad.line(&ends, orange(), 1.5)?;
+                pad.line(&[at(from, first), at(to, second)], orange(255), 1.5)?;
             }
         }
-        for (value, dimension) in self.dimensions {
+        for &(value, dimension) in self.dimensions {
             if let Some(dimension) = dimension {
-                let at = DVec2::new(across.at(*value), up.at(*dimension));
-                pad.line(&[at, at], blue(255), 6.0)?;
+                pad.dot(at(value, dimension), true)?;
             }
         }
-        let below = DVec2::new(middle, 466.0);
-        pad.text(self.parameter, WORDS, below, Anchor::Middle)?;
-        let beside = DVec2::new(10.0, PANEL[0] - 12.0);
-        pad.text("dimension", WORDS, beside, Anchor::Start)?;
-        Ok(())
+        pad.below(self.parameter, 466.0)?;
+        pad.beside("similarity dimension", PANEL[0] - 12.0)
     }
 }
