@@ -89,15 +89,22 @@ impl Assignment {
             Values::One(_) => return None,
             Values::Several(values) => values.clone(),
             Values::Range([first, last]) => {
-                let share = |sample: u32| f64::from(sample) / f64::from(samples.max(2) - 1);
-                let samples = 0..samples.max(2);
-                samples
-                    .map(|sample| first + (last - first) * share(sample))
-                    .collect()
+                let most = samples.max(2) - 1;
+                let value = |sample: u32| match sample {
+                    0 => *first,
+                    _ if sample == most => *last,
+                    _ => plain(first + (last - first) * f64::from(sample) / f64::from(most)),
+                };
+                (0..=most).map(value).collect()
             }
         };
         Some(values.into_iter().map(|value| self.with(value)).collect())
     }
+}
+
+/// A value without the last digits, which are rounding: 0.56, not 0.5599999999999999.
+fn plain(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 /// The settings that are the same for all pictures, and those of the parameter that is swept.
