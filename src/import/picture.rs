@@ -15,7 +15,7 @@ pub enum PictureError {
     #[error("the picture is neither PNG nor JPEG")]
     Unknown,
     /// The PNG cannot be read.
-    #[error("the PNG cannot be read: {0}")]
+    #[error("the PNG cannot be read")]
     Png(#[from] png::DecodingError),
     /// The JPEG cannot be read.
     #[error("the JPEG cannot be read: {0}")]
