@@ -74,7 +74,7 @@ proptest! {
         if let (Some(a), Some(b)) = (before.hausdorff.value, after.hausdorff.value) {
             prop_assert!(near(a, b), "{} {}", a, b);
         }
-        let boundaries = [before.boundary, after.boundary].map(|boundary| boundary.map(|found| found.value));
+        let boundaries = [before.boundary, after.boundary].map(|boundary| boundary.and_then(|found| found.value));
         prop_assert_eq!(boundaries[0].is_some(), boundaries[1].is_some());
         if let [Some(a), Some(b)] = boundaries {
             prop_assert!(near(a, b), "{} {}", a, b);

@@ -106,7 +106,10 @@ fn boundaries_have_their_published_dimensions() {
         let found = rule(name).dimensions.unwrap();
         assert_eq!(found.hausdorff.value, Some(2.0), "{name}");
         let boundary = found.boundary.unwrap();
-        assert!(near(boundary.value, dimension), "{name} {boundary:?}");
+        assert!(
+            near(boundary.value.unwrap(), dimension),
+            "{name} {boundary:?}"
+        );
     }
     assert_eq!(rule("carpet").dimensions.unwrap().boundary, None);
 }

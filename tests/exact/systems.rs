@@ -99,9 +99,39 @@ fn the_reference_systems_have_their_dimensions() {
         };
         assert_eq!(found.boundary.is_some(), boundary.is_some(), "{id}");
         if let (Some(found), Some(known)) = (found.boundary, boundary) {
-            assert!(near(found.value, known), "{id} {found:?}");
+            assert!(near(found.value.unwrap(), known), "{id} {found:?}");
         }
     }
+}
+
+/// A square of a ratio, upright.
+fn square(ratio: f64, x: f64, y: f64) -> DAffine2 {
+    similarity(ratio, 0.0, false, [x, y])
+}
+
+#[test]
+fn boundaries_of_squares_of_unequal_and_of_overlapping_squares() {
+    // One square of 2/3 and five of 1/3: no powers of one number.
+    let (large, small) = (2.0 / 3.0, 1.0 / 3.0);
+    let unequal = of(&[
+        square(large, 0.0, 0.0),
+        square(small, large, 0.0),
+        square(small, large, small),
+        square(small, large, large),
+        square(small, 0.0, large),
+        square(small, small, large),
+    ]);
+    assert_eq!(unequal.hausdorff.value, Some(2.0));
+    assert_eq!(unequal.boundary.unwrap().value, Some(1.0));
+    // Nine squares of 1/2, every 1/4: pieces coincide.
+    let quarters = [0.0, 0.25, 0.5];
+    let all = quarters.map(|x| quarters.map(|y| square(0.5, x, y)));
+    let coinciding = of(all.as_flattened());
+    assert_eq!(coinciding.hausdorff.overlap, Overlap::Exact);
+    assert_eq!(coinciding.hausdorff.value, Some(2.0));
+    let boundary = coinciding.boundary.unwrap();
+    assert_eq!(boundary.value, None);
+    assert_eq!(boundary.method, "not decided: pieces coincide");
 }
 
 #[test]

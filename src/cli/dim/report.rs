@@ -311,7 +311,8 @@ fn known(text: &mut String, exact: &Grown) {
         line("overlap", &overlap.to_string());
         if let Some(boundary) = &dimensions.boundary {
             let form = boundary.closed_form.as_ref();
-            line("boundary", &told(boundary.value, form));
+            let own = boundary.value.map(|value| told(value, form));
+            line("boundary", own.as_ref().unwrap_or(&boundary.method));
         }
         if let Some(drawn) = exact.drawn {
             line("all that is drawn", &told(drawn, None));

@@ -37,12 +37,15 @@ pub fn dimensions_of_graph(graph: &Graph) -> Grown {
     };
     let mut notes = Vec::new();
     let own = dimensions.hausdorff.value;
+    let infertile = infertile(graph);
     if own == Some(0.0) {
-        let points = "the limit set of the fertile elements is made of single points, and the \
-                      line that is drawn has finite length";
-        notes.push(points.into());
+        let points = "the limit set of the fertile elements is made of single points";
+        notes.push(match infertile {
+            Some(2.0) => points.into(),
+            _ => format!("{points}, and the line that is drawn has finite length"),
+        });
     }
-    let drawn = match infertile(graph) {
+    let drawn = match infertile {
         None => own,
         Some(infertile) => {
             notes.push(format!(
@@ -97,7 +100,6 @@ fn at_random(graph: &Graph) -> Grown {
     }
 }
 
-/// Whether elements that are drawn stay infertile.
 /// The dimension of the infertile elements that are drawn, if there are any: 2 of polygons and the
 /// like, which are filled, 1 of lines.
 fn infertile(graph: &Graph) -> Option<f64> {

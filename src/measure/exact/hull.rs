@@ -10,6 +10,8 @@ use super::system::{Copy, System, ratio};
 /// A strongly connected system of similarities in coordinates of its own.
 #[derive(Clone, Debug)]
 pub(super) struct Flat {
+    /// The dimension of the space that the sets are given in.
+    pub(super) space: usize,
     /// The dimension of the affine hull of each set.
     pub(super) dimension: usize,
     pub(super) size: usize,
@@ -62,6 +64,7 @@ impl Flat {
             }
         });
         Self {
+            space: system.space,
             dimension,
             size: system.size,
             copies: copies.collect(),

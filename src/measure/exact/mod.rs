@@ -116,11 +116,11 @@ pub struct Hausdorff {
 /// The dimension of the boundary of a set with inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// The dimension.
-    pub value: f64,
+    /// The dimension; `None` where it is not decided.
+    pub value: Option<f64>,
     /// An expression that is equal, where one was found.
     pub closed_form: Option<String>,
-    /// How it was found.
+    /// How it was found, or why it was not.
     pub method: String,
 }
 
@@ -133,7 +133,7 @@ pub struct Dimensions {
     pub affinity: Option<Affinity>,
     /// The dimension of the set itself; that of a single copy, where several stand together.
     pub hausdorff: Hausdorff,
-    /// The dimension of its boundary, where it has inside and that is known.
+    /// The dimension of its boundary, where it is known to have inside.
     pub boundary: Option<Boundary>,
 }
 

@@ -42,7 +42,7 @@ pub(super) fn part_dimension(system: &System) -> PartDimension {
         hausdorff: Hausdorff {
             value: None,
             closed_form: None,
-            upper_bound: Some(value.min(bound_of_space(system))),
+            upper_bound: Some(value.min(count(system.space))),
             overlap: Overlap::Unknown,
             method: String::new(),
         },
@@ -57,15 +57,22 @@ pub(super) fn part_dimension(system: &System) -> PartDimension {
     }
     let flat = Flat::of(system);
     match Generations::of(&flat) {
-        Some(generations) => part.by_neighbours(system, &flat, &generations),
+        Some(generations) => part.by_neighbours(&flat, &generations),
         None => part.by_open_set(&flat, "the ratios are not powers of one number"),
+    }
+    if part.has_inside(&flat) && part.boundary.is_none() {
+        part.boundary = Some(Boundary {
+            value: None,
+            closed_form: None,
+            method: "not decided: pieces coincide".into(),
+        });
     }
     part
 }
 
-#[expect(clippy::cast_precision_loss, reason = "2 or 3")]
-fn bound_of_space(system: &System) -> f64 {
-    system.space as f64
+#[expect(clippy::cast_precision_loss, reason = "3 at most")]
+fn count(dimensions: usize) -> f64 {
+    dimensions as f64
 }
 
 impl PartDimension {
@@ -83,7 +90,15 @@ impl PartDimension {
         };
     }
 
-    fn by_neighbours(&mut self, system: &System, flat: &Flat, generations: &Generations) {
+    /// Whether the set has the dimension of the space that it lies in.
+    fn has_inside(&self, flat: &Flat) -> bool {
+        let own = self.hausdorff.value;
+        own.is_some_and(|own| {
+            flat.dimension == flat.space && (own - count(flat.space)).abs() < SAME
+        })
+    }
+
+    fn by_neighbours(&mut self, flat: &Flat, generations: &Generations) {
         let similarity = self.similarity.value;
         let agrees =
             |growth: &f64| (libm::log(*growth) / generations.depth - similarity).abs() < SAME;
@@ -140,11 +155,9 @@ impl PartDimension {
             "open set condition: none of {count} neighbour maps is the identity (Bandt & Graf 1992)"
         );
         self.decide(Overlap::Touching, method);
-        let full = flat.dimension == system.space
-            && (self.similarity.value - bound_of_space(system)).abs() < SAME;
-        if full {
+        if self.has_inside(flat) {
             self.boundary = Some(Boundary {
-                value: settled(libm::log(spread) / generations.depth),
+                value: Some(settled(libm::log(spread) / generations.depth)),
                 closed_form: closed_form(spread, generations.depth),
                 method: format!("spectral radius of {left} touching neighbour maps"),
             });
@@ -194,6 +207,15 @@ impl PartDimension {
         } else if hulls_are_open_sets(flat) {
             let method = "open set condition: the convex hulls of copies overlap in sides only";
             self.decide(Overlap::Touching, method.into());
+            // The hulls of copies leave no gap: they are as large as the hull that they lie in.
+            if self.has_inside(flat) {
+                let value = count(flat.space - 1);
+                self.boundary = Some(Boundary {
+                    value: Some(value),
+                    closed_form: plain(value),
+                    method: "the set is its convex hull".into(),
+                });
+            }
         } else if flat.dimension > 2 {
             self.give_up(&format!("{tried}; convex hulls in space are not looked at"));
         } else {
