@@ -12,7 +12,7 @@ use std::num::NonZero;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::measure::{Bits, BoxCounting, Estimate, Grid, LimitSet, Masses, NoLimit};
+use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised, Grid, LimitSet, Masses, NoLimit};
 
 fn number(number: usize) -> NonZero<usize> {
     NonZero::new(number).unwrap()
@@ -68,8 +68,8 @@ fn lines_have_dimension_1() {
 fn a_gasket_has_its_dimension() {
     let gasket = picture(4096, |column, row| column & row == 0);
     assert_is(&measured(&gasket), libm::log(3.0) / libm::log(2.0), 0.01);
-    let masses = Masses::of_pixels(&gasket);
-    for generalised in masses.spectrum(&[0.0, 1.0, 2.0, 3.5], 4.0) {
+    let orders = [1.0, 2.0, 3.5];
+    for generalised in Generalised::of_pixels(&gasket, &orders, &grids(), number(2)) {
         assert_is(
             &generalised.estimate.unwrap(),
             libm::log(3.0) / libm::log(2.0),
@@ -115,12 +115,13 @@ fn boxes_of_other_sizes_measure_the_same() {
 
 #[test]
 fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
-    let uniform = Masses::of_pixels(&picture(256, |_, _| true)).lacunarity();
+    let uniform = Masses::of_pixels(&picture(256, |_, _| true), [0; 2]).lacunarity();
     assert!(
         uniform.iter().all(|it| (it.value - 1.0).abs() < 1e-12),
         "{uniform:?}"
     );
-    let gasket = Masses::of_pixels(&picture(256, |column, row| column & row == 0)).lacunarity();
+    let gasket = picture(256, |column, row| column & row == 0);
+    let gasket = Masses::of_pixels(&gasket, [0; 2]).lacunarity();
     // One box of one pixel: ⟨m²⟩ / ⟨m⟩² is one over the part of the pixels that are set.
     assert!((gasket[0].value - (4.0f64 / 3.0).powi(8)).abs() < 1e-9);
     assert!(gasket.is_sorted_by(|a, b| a.value >= b.value), "{gasket:?}");
@@ -142,7 +143,6 @@ fn of_limit(set: &LimitSet, base: f64) -> Estimate {
         finest: 0.0,
         coarsest: set.bounds().size().max_element() / 2.0,
         least_boxes: 9,
-        most_boxes: u64::MAX,
     };
     let scales = set.scales(base, 2_000, &grids(), number(2));
     BoxCounting::of(&scales, &window).estimate.unwrap()
@@ -211,6 +211,18 @@ fn a_limit_that_is_a_point_has_dimension_0() {
     assert_eq!(spiral.bounds().size().max_element(), 0.0);
     let estimate = BoxCounting::of_limit(&spiral, None, &grids(), number(1)).estimate;
     assert_eq!(estimate.unwrap().value, 0.0);
+}
+
+#[test]
+fn maps_that_are_no_similarities_are_as_long_as_their_product() {
+    // The norms of these two maps are 0.73, but a product of n of them is some 2^-n long.
+    let parabola = limit("parabola").unwrap();
+    let scales = parabola.sampled_scales(number(2), &grids()[..2], number(2));
+    let (first, last) = (scales[4], scales[scales.len() - 1]);
+    assert!(last.size < 1e-7 * first.size, "{last:?}");
+    let slope =
+        libm::log(last.count as f64 / first.count as f64) / libm::log(first.size / last.size);
+    assert!((slope - 1.0).abs() < 0.03, "{slope}");
 }
 
 #[test]

@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
     /// By what number boxes get smaller [default: the least whole number that is a power of the ratio
-    /// that a rule repeats itself by, or 2; a whole number for pictures, 2 for points]
+    /// that a rule repeats itself by, or 2; a whole number for pictures and points]
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
     /// How many grids are tried

@@ -23,9 +23,6 @@ const LEAST_ERROR: f64 = 0.001;
 /// So many sizes are left in every range, at least.
 const LEAST_SIZES: usize = 4;
 
-/// No set of the plane has a larger dimension.
-const PLANE: f64 = 2.0;
-
 /// How counts grow from a size to the next smaller one.
 struct Growth {
     /// The logarithm of the ratio of sizes.
@@ -52,8 +49,9 @@ struct Fit {
     prior: f64,
 }
 
-/// The slope of readings, from the largest size to the smallest; none if there are too few.
-pub(super) fn averaged(readings: &[Reading]) -> Option<Estimate> {
+/// The slope of readings, from the largest size to the smallest, which is no more than `most`; none if
+/// there are too few.
+pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     if readings.len() < LEAST_SIZES + 1 {
         return None;
     }
@@ -61,7 +59,7 @@ pub(super) fn averaged(readings: &[Reading]) -> Option<Estimate> {
     let corrections = corrections(readings);
     let last = growths.len() + 1 - LEAST_SIZES;
     let starts = (0..=last).flat_map(|from| {
-        let fit = |correction: &Correction| Fit::of(&growths, correction, from);
+        let fit = |correction: &Correction| Fit::of(&growths, correction, from, most);
         corrections.iter().map(fit).collect::<Vec<_>>()
     });
     let fits: Vec<Fit> = starts.collect();
@@ -111,21 +109,21 @@ impl Growth {
         let error = fine.growth_error;
         Self {
             step: libm::log(coarse.size / fine.size),
-            log: fine.log - coarse.log,
+            log: fine.growth,
             weight: 1.0 / (error * error + LEAST_ERROR * LEAST_ERROR),
         }
     }
 }
 
 impl Fit {
-    fn of(growths: &[Growth], correction: &Correction, from: usize) -> Self {
+    fn of(growths: &[Growth], correction: &Correction, from: usize, most: f64) -> Self {
         let growths = growths[from..].iter().zip(&correction.growth[from..]);
         let (mut norm, mut sum) = (0.0, 0.0);
         for (growth, more) in growths.clone() {
             norm += growth.weight * growth.step * growth.step;
             sum += growth.weight * growth.step * (growth.log - more);
         }
-        let slope = (sum / norm).min(PLANE);
+        let slope = (sum / norm).min(most);
         let squares = growths.map(|(growth, more)| {
             let rest = growth.log - more - slope * growth.step;
             growth.weight * rest * rest
@@ -191,6 +189,7 @@ mod tests {
                 size: libm::exp(-x),
                 log: log(x),
                 scatter: 0.0,
+                growth: log(x) - log(x - std::f64::consts::LN_2),
                 growth_error: error,
             }
         };
@@ -200,7 +199,7 @@ mod tests {
     #[test]
     fn a_power_has_its_exponent() {
         for exponent in [0.5, 1.2618595, 1.9] {
-            let estimate = averaged(&readings(20, 0.0, |x| 0.7 + exponent * x)).unwrap();
+            let estimate = averaged(&readings(20, 0.0, |x| 0.7 + exponent * x), 2.0).unwrap();
             assert!((estimate.value - exponent).abs() < 1e-3, "{estimate:?}");
             assert!(estimate.std_error < 0.003, "{estimate:?}");
             assert!(estimate.r_squared > 1.0 - 1e-9, "{estimate:?}");
@@ -213,7 +212,7 @@ mod tests {
         let bent = readings(25, 0.002, |x| {
             libm::log(libm::exp(1.9 * x) + 2.0 * libm::exp(1.4 * x))
         });
-        let estimate = averaged(&bent).unwrap();
+        let estimate = averaged(&bent, 2.0).unwrap();
         assert!((estimate.value - 1.9).abs() < 0.005, "{estimate:?}");
         let off = (estimate.value - 1.9).abs();
         assert!(off < 2.0 * estimate.std_error, "{estimate:?}");
@@ -222,7 +221,7 @@ mod tests {
     #[test]
     fn counts_that_are_known_less_well_have_a_larger_error() {
         let error = |error| {
-            averaged(&readings(20, error, |x| 1.3 * x))
+            averaged(&readings(20, error, |x| 1.3 * x), 2.0)
                 .unwrap()
                 .std_error
         };
@@ -233,7 +232,7 @@ mod tests {
     fn waves_that_no_model_has_make_the_error_larger() {
         let waves = |height: f64| {
             let log = |x: f64| 1.3 * x + height * libm::sin(4.0 * x);
-            averaged(&readings(20, 0.002, log)).unwrap()
+            averaged(&readings(20, 0.002, log), 2.0).unwrap()
         };
         let estimate = waves(0.05);
         assert!(
@@ -248,6 +247,6 @@ mod tests {
 
     #[test]
     fn four_sizes_are_too_few() {
-        assert_eq!(averaged(&readings(4, 0.0, |x| x)), None);
+        assert_eq!(averaged(&readings(4, 0.0, |x| x), 2.0), None);
     }
 }

@@ -4,9 +4,15 @@ use super::averaging::averaged;
 use super::bits::Bits;
 use super::cover::{Grid, Scale};
 use super::limit::LimitSet;
-use super::points::Points;
 use super::raster::raster_scales;
 use super::regression::{Estimate, Reading, estimate};
+use super::sample::Sample;
+
+/// No set of the plane has a larger dimension.
+pub(super) const PLANE: f64 = 2.0;
+
+/// Fewer boxes tell nothing but where they lie.
+const LEAST_BOXES: u64 = 9;
 
 /// A box-counting dimension, and its evidence.
 #[derive(Clone, Debug, Default)]
@@ -43,8 +49,6 @@ pub struct Window {
     pub coarsest: f64,
     /// The least count: a few boxes tell nothing but where they lie.
     pub least_boxes: u64,
-    /// The largest count: where there are more boxes, the data do not fill them.
-    pub most_boxes: u64,
 }
 
 impl BoxCounting {
@@ -88,15 +92,14 @@ impl BoxCounting {
         let window = Window {
             finest: 0.0,
             coarsest: extent / 2.0,
-            least_boxes: 9,
-            most_boxes: u64::MAX,
+            least_boxes: LEAST_BOXES,
         };
         let base = base.unwrap_or_else(|| whole_power(set.period()));
         let scales = whole(base).map(|base| set.sampled_scales(base, grids, threads));
         let comes_far =
             |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < FINE * extent);
         match scales.filter(comes_far) {
-            Some(scales) => Self::by(&scales, &window, averaged),
+            Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, PLANE)),
             None => Self::of(&set.scales(base, MOST_BOXES, grids, threads), &window),
         }
     }
@@ -117,37 +120,26 @@ impl BoxCounting {
             finest: 4.0,
             coarsest: longest / 8.0,
             least_boxes: 1,
-            most_boxes: u64::MAX,
         };
         Self::of(&raster_scales(pixels, base, grids, threads), &window)
     }
 
-    /// Measures points, with boxes whose sides are the extent divided by powers of two.
+    /// Measures points as a sample of a set, with boxes that are at least `finest`.
     ///
-    /// Used are boxes of which at least 8 make the extent, as long as there are 8 points a box.
+    /// Used are boxes that are at most half the extent, of which the least cover has 4 or more, as long
+    /// as half of the points would miss no more than one in 12 of them.
     #[must_use]
-    pub fn of_points(points: &Points, grids: &[Grid], threads: NonZero<usize>) -> Self {
+    pub fn of_sample(sample: &Sample, finest: f64) -> Self {
+        let sizes = sample.sizes();
+        let enough = &sizes[..sample.enough()];
         let window = Window {
-            finest: 0.0,
-            coarsest: points.bounds().size().max_element() / 8.0,
-            least_boxes: 1,
-            most_boxes: points.most_boxes(),
+            finest: finest.max(enough.last().copied().unwrap_or(f64::INFINITY)),
+            coarsest: sizes.first().copied().unwrap_or_default(),
+            least_boxes: 4,
         };
-        Self::of(&points.scales(grids, threads), &window)
-    }
-
-    /// Measures points that lie no farther than `detail` from a set, as near all of it.
-    ///
-    /// Used are boxes of which at least 8 make the extent, and that are at least 4 details large.
-    #[must_use]
-    pub fn of_grown(points: &Points, detail: f64, grids: &[Grid], threads: NonZero<usize>) -> Self {
-        let window = Window {
-            finest: 4.0 * detail,
-            coarsest: points.bounds().size().max_element() / 8.0,
-            least_boxes: 1,
-            most_boxes: u64::MAX,
-        };
-        Self::of(&points.scales(grids, threads), &window)
+        Self::by(&sample.scales(), &window, |readings| {
+            averaged(readings, PLANE).or_else(|| estimate(readings))
+        })
     }
 
     /// Measures the slope of ln count on ln (1 / size), weighted by how well grids agree, over all
@@ -170,7 +162,7 @@ impl BoxCounting {
         let used = |scale: &Scale| {
             scale.size * SLACK >= window.finest
                 && scale.size <= window.coarsest * SLACK
-                && (window.least_boxes..=window.most_boxes).contains(&scale.count)
+                && scale.count >= window.least_boxes
         };
         let readings = scales
             .iter()
@@ -179,6 +171,7 @@ impl BoxCounting {
                 size: scale.size,
                 log: log(scale),
                 scatter: scale.scatter,
+                growth: scale.growth,
                 growth_error: scale.growth_error,
             });
         let estimate = estimate(&readings.collect::<Vec<_>>());

@@ -15,7 +15,10 @@ pub struct Scale {
     pub count: u64,
     /// The standard deviation of the natural logarithm of the count among all grids.
     pub scatter: f64,
-    /// The standard error of the growth of that logarithm since the size before.
+    /// How much the logarithm of the count grows since the size before: of the least covers, or on the
+    /// mean of all grids where counts come from a sample.
+    pub growth: f64,
+    /// The standard error of the growth.
     pub growth_error: f64,
     /// Whether the count comes from a sample of boxes.
     pub sampled: bool,
@@ -121,7 +124,8 @@ pub(super) fn on_all<T: Send>(
 
 /// Counts the boxes of all sizes on all grids, and keeps the least count of every size.
 ///
-/// `count` tells the counts for all sizes on one grid. The result does not depend on the threads.
+/// `count` tells the counts for the sizes on one grid; where it ends early, so do the sizes. The result
+/// does not depend on the threads.
 pub(super) fn least(
     sizes: &[f64],
     grids: &[Grid],
@@ -130,22 +134,25 @@ pub(super) fn least(
 ) -> Vec<Scale> {
     let counts = on_all(grids, threads, |_, grid| count(grid));
     let logs = |number: usize| counts.iter().map(move |counts| logarithm(counts[number]));
+    let least = |number: usize| {
+        let counts = counts.iter().map(|counts| counts[number]);
+        counts.min().unwrap_or(0)
+    };
     let scale = |(number, &size): (usize, &f64)| {
+        let last = number.checked_sub(1);
         let growth = |last| logs(number).zip(logs(last)).map(|(log, last)| log - last);
-        let growth = number.checked_sub(1).map(|last| deviation(growth(last)));
+        let of_least = |last| logarithm(least(number)) - logarithm(least(last));
         Scale {
             size,
-            count: counts
-                .iter()
-                .map(|counts| counts[number])
-                .min()
-                .unwrap_or(0),
+            count: least(number),
             scatter: deviation(logs(number)),
-            growth_error: growth.unwrap_or_default(),
+            growth: last.map(of_least).unwrap_or_default(),
+            growth_error: last.map(|last| deviation(growth(last))).unwrap_or_default(),
             sampled: false,
         }
     };
-    sizes.iter().enumerate().map(scale).collect()
+    let told = counts.iter().map(Vec::len).min().unwrap_or_default();
+    sizes.iter().take(told).enumerate().map(scale).collect()
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]

@@ -59,24 +59,45 @@ struct Part {
 struct Placed {
     map: DAffine2,
     scale: f64,
+    /// Whether it is lengthened in all directions alike.
+    is_similar: bool,
     object: usize,
 }
 
 impl Placed {
-    fn of(instance: &Instance) -> Self {
+    fn new(map: DAffine2, object: usize) -> Self {
+        const TOLERANCE: f64 = 1e-12;
+        let scale = norm(&map.matrix2);
+        let area = map.matrix2.determinant().abs();
         Self {
-            map: instance.frame.map,
-            scale: norm(&instance.frame.map.matrix2),
-            object: instance.object,
+            map,
+            scale,
+            is_similar: scale * scale - area <= TOLERANCE * area,
+            object,
         }
+    }
+
+    /// An object's own set.
+    fn whole(object: usize) -> Self {
+        Self::new(DAffine2::IDENTITY, object)
     }
 
     /// A copy inside this one.
     #[inline]
     fn compose(&self, inner: &Self) -> Self {
+        let map = self.map * inner.map;
+        let is_similar = self.is_similar && inner.is_similar;
+        // Where maps are no similarities, the product of their norms is far above that of a long
+        // product of maps.
+        let scale = if is_similar {
+            self.scale * inner.scale
+        } else {
+            norm(&map.matrix2)
+        };
         Self {
-            map: self.map * inner.map,
-            scale: self.scale * inner.scale,
+            map,
+            scale,
+            is_similar,
             object: inner.object,
         }
     }
@@ -84,6 +105,15 @@ impl Placed {
 
 /// A box that is entered by no more than twice this part of its side may be missed.
 const GRAZED: f64 = 1.0 / 8.0;
+
+/// Copies that a cover may look at.
+const MOST_LOOKED_AT: usize = 1 << 23;
+
+/// What a cover marks, and how many copies it may still look at.
+struct Marking {
+    bits: Bits,
+    left: usize,
+}
 
 /// A distance that is nothing beside the unit.
 const NEGLIGIBLE: f64 = 1e-17;
@@ -115,7 +145,7 @@ impl LimitSet {
         let part = |object| Part {
             children: fertile(graph, object)
                 .filter(kept)
-                .map(Placed::of)
+                .map(|instance| Placed::new(instance.frame.map, instance.object))
                 .collect(),
             ..Part::default()
         };
@@ -126,7 +156,7 @@ impl LimitSet {
                 .instances
                 .iter()
                 .filter(kept)
-                .map(Placed::of)
+                .map(|instance| Placed::new(instance.frame.map, instance.object))
                 .collect(),
             bounds: Bounds::EMPTY,
         };
@@ -193,7 +223,8 @@ impl LimitSet {
     }
 
     /// How the set is covered by boxes of sides that are parts of its extent, each `base` times
-    /// smaller than the one before, down to some `most` boxes (or 2^14 in a row).
+    /// smaller than the one before, down to some `most` boxes (or 2^14 in a row), or to where too many
+    /// copies would have to be looked at.
     ///
     /// # Panics
     ///
@@ -216,9 +247,12 @@ impl LimitSet {
         let mut sizes = Vec::new();
         let mut size = extent * (1.0 + 2e-9) / base;
         while size >= FINEST * extent {
-            sizes.push(size);
             let (map, boxes) = Grid::ALONG.map(&self.bounds, size, largest);
-            if self.cover(&map, boxes).count() > most {
+            let Some(cover) = self.cover(&map, boxes) else {
+                break;
+            };
+            sizes.push(size);
+            if cover.count() > most {
                 break;
             }
             size /= base;
@@ -227,14 +261,14 @@ impl LimitSet {
             let turned = self.turned_bounds(grid);
             let count = |&size: &f64| {
                 let (map, boxes) = grid.map(&turned, size, largest);
-                self.cover(&map, boxes).count()
+                Some(self.cover(&map, boxes)?.count())
             };
-            sizes.iter().map(count).collect()
+            sizes.iter().map_while(count).collect()
         })
     }
 
     /// The box of the turned set.
-    fn turned_bounds(&self, grid: &Grid) -> Bounds {
+    pub(super) fn turned_bounds(&self, grid: &Grid) -> Bounds {
         let turn = DAffine2::from_mat2(grid.turn());
         let turned = |copy: &Placed| Placed {
             map: turn * copy.map,
@@ -245,67 +279,75 @@ impl LimitSet {
     }
 
     /// The boxes that the set meets, on a grid that `map` leads to: its boxes have side 1 and corners
-    /// at whole numbers from (0, 0) to `boxes`. What lies outside is left out.
+    /// at whole numbers from (0, 0) to `boxes`. What lies outside is left out. `None` where too many
+    /// copies would have to be looked at: long ones that lie side by side, or over each other.
     ///
     /// Every box that is marked holds a point of the set. A box that the set enters by no more than a
     /// quarter of its side may be missed.
     #[must_use]
-    pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Bits {
-        let mut bits = Bits::new(boxes[0], boxes[1]);
-        let grid = Placed {
-            map: *map,
-            scale: norm(&map.matrix2),
-            object: 0,
+    pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Option<Bits> {
+        let grid = Placed::new(*map, 0);
+        let mut stack: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
+        let mut marking = Marking {
+            bits: Bits::new(boxes[0], boxes[1]),
+            left: MOST_LOOKED_AT,
         };
-        let start: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
         // A box that one copy hardly enters is most often met by another: looked into later, few are
         // left to be looked into at all.
         let mut later = Vec::new();
-        self.mark(start, &mut bits, |_, copy| {
-            later.push(copy);
-            false
-        });
-        self.mark(later, &mut bits, |radius, _| radius > GRAZED);
-        bits
+        while !stack.is_empty() {
+            self.mark(&mut stack, Some(&mut later), &mut marking)?;
+            self.mark(&mut later, None, &mut marking)?;
+        }
+        Some(marking.bits)
     }
 
-    /// Marks the boxes that copies meet. Of a copy in no more than two columns and rows of boxes, of
-    /// which some are not marked, `goes_on` tells whether it is looked into.
+    /// Marks the boxes that copies meet. Copies in no more than two columns and rows of boxes, of which
+    /// some are not marked, are put off until `later`, as long as these are not too many, or else are
+    /// looked into.
     fn mark(
         &self,
-        mut stack: Vec<Placed>,
-        bits: &mut Bits,
-        mut goes_on: impl FnMut(f64, Placed) -> bool,
-    ) {
+        stack: &mut Vec<Placed>,
+        mut later: Option<&mut Vec<Placed>>,
+        marking: &mut Marking,
+    ) -> Option<()> {
         const WIDEST: i64 = 8;
+        const MOST_LATER: usize = 1 << 18;
         while let Some(copy) = stack.pop() {
+            marking.left = marking.left.checked_sub(1)?;
             let part = &self.objects[copy.object];
             let point = copy.map.transform_point2(part.point);
             let radius = part.radius * copy.scale;
             let [low, high] = [point - radius, point + radius].map(boxed);
             let span = (high[0] - low[0]).max(high[1] - low[1]);
             if span <= 1 {
-                bits.mark(boxed(point));
+                marking.bits.mark(boxed(point));
             }
             // Where copies overlap, all of a large one may be known already.
-            if span <= WIDEST && bits.are_marked(low, high) {
+            if span <= WIDEST && marking.bits.are_marked(low, high) {
                 continue;
             }
-            if span <= 1 && !goes_on(radius, copy) {
-                continue;
+            if span <= 1 {
+                if let Some(later) = later.as_deref_mut() {
+                    later.push(copy);
+                    if later.len() == MOST_LATER {
+                        return Some(());
+                    }
+                    continue;
+                }
+                if radius <= GRAZED {
+                    continue;
+                }
             }
             stack.extend(part.children.iter().map(|inner| copy.compose(inner)));
         }
+        Some(())
     }
 
     /// A point for every object: the one that a fixed address leads to, which is no corner.
     fn find_points(&mut self) {
         for start in 0..self.objects.len() {
-            let mut copy = Placed {
-                map: DAffine2::IDENTITY,
-                scale: 1.0,
-                object: start,
-            };
+            let mut copy = Placed::whole(start);
             for level in 0..MOST_SWEEPS {
                 let children = &self.objects[copy.object].children;
                 if children.is_empty() || copy.scale <= NEGLIGIBLE {
@@ -327,12 +369,7 @@ impl LimitSet {
             part.radius = radius;
         }
         let middle = |object| {
-            let itself = Placed {
-                map: DAffine2::IDENTITY,
-                scale: 1.0,
-                object,
-            };
-            let bounds = Self::extent(&self.objects, &[itself]);
+            let bounds = Self::extent(&self.objects, &[Placed::whole(object)]);
             bounds.min().midpoint(bounds.max())
         };
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();

@@ -1,14 +1,21 @@
-//! How a set's mass is spread: generalised dimensions and lacunarity.
+//! How a set's mass is spread over boxes, and its lacunarity.
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 
 use super::bits::Bits;
+use super::cover::Grid;
 use super::limit::LimitSet;
 use super::points::Points;
-use super::regression::{Estimate, Reading, estimate};
+use super::sample::histogram;
 
 /// Boxes in a row of the finest grid, at most.
 const MOST_BOXES: usize = 2048;
+
+/// Boxes in a row of grids for limit sets; where one cannot be filled, the next is tried.
+pub const FINENESS: [usize; 4] = [1024, 512, 256, 128];
+
+/// The largest boxes that tell a spectrum, as a part of the extent.
+pub(super) const COARSEST: f64 = 1.0 / 4.0;
 
 /// The mass in every box of a grid.
 #[derive(Clone, Debug)]
@@ -18,18 +25,6 @@ pub struct Masses {
     /// The side of a box, in the units of the set.
     size: f64,
     masses: Vec<u32>,
-}
-
-/// A dimension of the spectrum D_q (Hentschel & Procaccia 1983), and its evidence.
-#[derive(Clone, Debug)]
-pub struct Generalised {
-    /// The order: 0 counts boxes, 1 is the information dimension, 2 the correlation dimension.
-    pub order: f64,
-    /// The dimension; none if there are fewer than three sizes.
-    pub estimate: Option<Estimate>,
-    /// By the side of the boxes, from the largest on: ln Σ p^q / (1 − q), or −Σ p ln p for q = 1,
-    /// where p are the parts of the mass in the boxes.
-    pub entropies: Vec<(f64, f64)>,
 }
 
 /// Lacunarity for boxes of one size.
@@ -44,26 +39,26 @@ pub struct Lacunarity {
 }
 
 impl Masses {
-    /// Of a picture: every set pixel has a mass of 1.
+    /// Of a picture: every set pixel has a mass of 1. The grid begins so many pixels before it.
     #[must_use]
-    pub fn of_pixels(pixels: &Bits) -> Self {
+    pub fn of_pixels(pixels: &Bits, [before, above]: [usize; 2]) -> Self {
         let longest = pixels.width().max(pixels.height());
         let side = longest.div_ceil(MOST_BOXES).next_power_of_two();
         let (width, height) = (
-            pixels.width().div_ceil(side),
-            pixels.height().div_ceil(side),
+            (pixels.width() + before).div_ceil(side),
+            (pixels.height() + above).div_ceil(side),
         );
         #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
         let mut grid = Self::empty(width, height, side as f64);
         for row in 0..pixels.height() {
-            let masses = &mut grid.masses[row / side * width..][..width];
+            let masses = &mut grid.masses[(row + above) / side * width..][..width];
             for (number, &word) in pixels.row(row).iter().enumerate() {
                 let mut left = word;
                 while left != 0 {
                     let bit = left.trailing_zeros() as usize;
                     // All bits of a box that lie in this word.
-                    let column = (64 * number + bit) / side;
-                    let end = (column + 1) * side - 64 * number;
+                    let column = (64 * number + bit + before) / side;
+                    let end = (column + 1) * side - before - 64 * number;
                     let mask = if end >= 64 { u64::MAX } else { (1 << end) - 1 };
                     masses[column] += (left & mask).count_ones();
                     left &= !mask;
@@ -76,30 +71,29 @@ impl Masses {
     /// Of points: every one has a mass of 1.
     #[must_use]
     pub fn of_points(points: &Points) -> Self {
-        let bounds = points.bounds();
         // As many boxes as there may be points in them.
-        let few = (points.len() / 4).clamp(4, MOST_BOXES).next_power_of_two();
-        let (map, mut grid) = Self::over(bounds.min(), bounds.size(), few.min(MOST_BOXES));
-        for &point in points.as_slice() {
-            let number = grid.number(map.transform_point2(point));
-            grid.masses[number] = grid.masses[number].saturating_add(1);
+        let few = (points.places().count() / 4).clamp(4, MOST_BOXES);
+        let (own, turned) = points.own(&Grid::ALONG);
+        let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(MOST_BOXES));
+        for (at, points) in points.places() {
+            let number = grid.number(map.transform_point2(at));
+            grid.masses[number] = grid.masses[number].saturating_add(points);
         }
         grid
     }
 
-    /// Of a limit set: every box of the finest grid that the set meets has a mass of 1.
+    /// Of a limit set: every box of a grid of so many in a row that the set meets has a mass of 1.
+    /// `None` where the set cannot be covered by so small boxes.
     #[must_use]
-    pub fn of_limit(set: &LimitSet) -> Self {
-        const BOXES: usize = 1024;
-        let bounds = set.bounds();
-        let (map, mut grid) = Self::over(bounds.min(), bounds.size(), BOXES);
-        let bits = set.cover(&map, [grid.width, grid.height]);
-        for row in 0..grid.height {
-            for column in 0..grid.width {
-                grid.masses[row * grid.width + column] = u32::from(bits.get(column, row));
+    pub fn of_limit(set: &LimitSet, grid: &Grid, boxes: usize) -> Option<Self> {
+        let (map, mut masses) = Self::over(grid, &set.turned_bounds(grid), boxes);
+        let bits = set.cover(&map, [masses.width, masses.height])?;
+        for row in 0..masses.height {
+            for column in 0..masses.width {
+                masses.masses[row * masses.width + column] = u32::from(bits.get(column, row));
             }
         }
-        grid
+        Some(masses)
     }
 
     fn empty(width: usize, height: usize, size: f64) -> Self {
@@ -111,20 +105,13 @@ impl Masses {
         }
     }
 
-    /// A grid over an extent that is not 0, and the map to it.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        clippy::cast_sign_loss,
-        reason = "grids are small"
-    )]
-    fn over(corner: DVec2, extent: DVec2, boxes: usize) -> (DAffine2, Self) {
-        const HAIR: f64 = 1.0 + 1e-9;
-        let size = extent.max_element() * HAIR / boxes as f64;
-        let map =
-            DAffine2::from_scale(DVec2::splat(1.0 / size)) * DAffine2::from_translation(-corner);
-        let side = |extent: f64| ((extent / size) as usize + 1).min(boxes);
-        (map, Self::empty(side(extent.x), side(extent.y), size))
+    /// A grid with so many boxes along what is turned against it, and the map to it.
+    fn over(grid: &Grid, turned: &Bounds, boxes: usize) -> (DAffine2, Self) {
+        let extent = turned.size().max_element();
+        #[expect(clippy::cast_precision_loss, reason = "grids are small")]
+        let size = extent * (1.0 + 4e-9) / boxes as f64;
+        let (map, [width, height]) = grid.map(turned, size, extent * COARSEST);
+        (map, Self::empty(width, height, size))
     }
 
     #[expect(
@@ -138,7 +125,7 @@ impl Masses {
     }
 
     /// The masses in boxes twice as large.
-    fn folded(&self) -> Self {
+    pub(super) fn folded(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut folded = Self::empty(width, height, 2.0 * self.size);
         for (row, masses) in self.masses.chunks_exact(self.width).enumerate() {
@@ -150,67 +137,36 @@ impl Masses {
         folded
     }
 
-    /// The spectrum of dimensions for orders q, each by a regression over all sizes of boxes that
-    /// are at least `finest` and at most a quarter of the grid.
-    #[must_use]
-    pub fn spectrum(&self, orders: &[f64], finest: f64) -> Vec<Generalised> {
-        let mut grids = vec![self.clone()];
-        while let Some(last) = grids.last()
-            && last.width.max(last.height) > 4
-        {
-            grids.push(last.folded());
-        }
-        grids.retain(|grid| grid.size >= finest);
-        grids.reverse();
+    /// The side of a box, in the units of the set.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The Rényi entropies of some orders of the masses (Rényi 1961), in nats.
+    pub(super) fn entropies(&self, orders: &[f64]) -> Vec<f64> {
+        let total: f64 = self.masses.iter().map(|&mass| f64::from(mass)).sum();
+        // Few masses are different where there are many boxes.
+        let masses = self.masses.iter().copied();
+        let masses = histogram(masses.filter(|&mass| mass > 0));
         let of = |&order: &f64| {
-            let entropies: Vec<_> = grids
-                .iter()
-                .map(|grid| (grid.size, grid.entropy(order)))
-                .collect();
-            let readings = entropies.iter().map(|&(size, entropy)| Reading {
-                size,
-                log: entropy,
-                scatter: 0.0,
-                growth_error: 0.0,
+            let information = (order - 1.0).abs() < 1e-9;
+            let parts = masses.iter().map(|&(mass, times)| {
+                let part = f64::from(mass) / total;
+                let times = f64::from(times);
+                if information {
+                    -times * part * libm::log(part)
+                } else {
+                    times * libm::pow(part, order)
+                }
             });
-            Generalised {
-                order,
-                estimate: estimate(&readings.collect::<Vec<_>>()),
-                entropies,
+            let sum: f64 = parts.sum();
+            if information {
+                sum
+            } else {
+                libm::log(sum) / (1.0 - order)
             }
         };
         orders.iter().map(of).collect()
-    }
-
-    /// The Rényi entropy of the masses (Rényi 1961), in nats.
-    fn entropy(&self, order: f64) -> f64 {
-        let total: f64 = self.masses.iter().map(|&mass| f64::from(mass)).sum();
-        // Few masses are different where there are many boxes.
-        let mut masses: Vec<u32> = self
-            .masses
-            .iter()
-            .copied()
-            .filter(|&mass| mass > 0)
-            .collect();
-        masses.sort_unstable();
-        let runs = masses.chunk_by(|a, b| a == b);
-        let information = (order - 1.0).abs() < 1e-9;
-        let parts = runs.map(|run| {
-            let part = f64::from(run[0]) / total;
-            #[expect(clippy::cast_precision_loss, reason = "grids are small")]
-            let times = run.len() as f64;
-            if information {
-                -times * part * libm::log(part)
-            } else {
-                times * libm::pow(part, order)
-            }
-        });
-        let sum: f64 = parts.sum();
-        if information {
-            sum
-        } else {
-            libm::log(sum) / (1.0 - order)
-        }
     }
 
     /// Lacunarity by gliding boxes (Allain & Cloitre 1991), of 1, 2, 4 … boxes of the grid.

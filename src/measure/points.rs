@@ -1,11 +1,9 @@
 //! Points of the plane, covered by boxes.
 
-use std::num::NonZero;
-
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
 
 use super::bits::Bits;
-use super::cover::{Grid, Scale, least};
+use super::cover::Grid;
 
 /// Why points cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,10 +22,25 @@ pub enum NoExtent {
 }
 
 /// Points of the plane that lie at more than one place.
+///
+/// They are kept on a lattice of 2³⁰ places a side, in the order of Morton, so that the order in which
+/// they came is forgotten. Grids lie on them along their own principal axes: however the points are
+/// moved, turned or scaled, the same boxes hold the same points.
 #[derive(Clone, Debug)]
 pub struct Points {
-    points: Vec<DVec2>,
+    places: Vec<Place>,
     bounds: Bounds,
+    /// The direction of the longest principal axis, in radians.
+    angle: f64,
+    levels: u32,
+}
+
+/// A place of the lattice, and how many points lie at it.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    column: u32,
+    row: u32,
+    points: u32,
 }
 
 /// Boxes in a row that are still marked as bits (32 MiB); where there are more, keys are sorted.
@@ -36,7 +49,7 @@ const MOST_BITS: usize = 1 << 14;
 /// Halvings of the extent beyond which doubles say little.
 const MOST_LEVELS: u32 = 30;
 
-/// So many points a box, at least, tell that a box without points is empty.
+/// Sizes are listed down to where there are no more points a box than so many.
 const POINTS_A_BOX: u64 = 8;
 
 impl Points {
@@ -49,11 +62,28 @@ impl Points {
         let mut bounds = Bounds::EMPTY;
         points.iter().for_each(|&point| bounds.add(point));
         match bounds.size().max_element() {
-            _ if points.is_empty() => Err(NoExtent::None),
-            size if !size.is_finite() || !bounds.is_finite() => Err(NoExtent::Infinite),
-            0.0 => Err(NoExtent::One),
-            _ => Ok(Self { points, bounds }),
+            _ if points.is_empty() => return Err(NoExtent::None),
+            size if !size.is_finite() || !bounds.is_finite() => return Err(NoExtent::Infinite),
+            0.0 => return Err(NoExtent::One),
+            _ => {}
         }
+        let levels = levels(&points, &bounds);
+        let mut keys: Vec<u64> = points.iter().map(|&point| key(&bounds, point)).collect();
+        drop(points);
+        keys.sort_unstable();
+        let place = |same: &[u64]| Place {
+            column: gathered(same[0]),
+            row: gathered(same[0] >> 1),
+            points: u32::try_from(same.len()).unwrap_or(u32::MAX),
+        };
+        let mut points = Self {
+            places: keys.chunk_by(|a, b| a == b).map(place).collect(),
+            bounds,
+            angle: 0.0,
+            levels,
+        };
+        points.angle = points.principal_axis();
+        Ok(points)
     }
 
     /// The box that holds them.
@@ -62,68 +92,94 @@ impl Points {
         self.bounds
     }
 
-    /// The points.
-    #[must_use]
-    pub fn as_slice(&self) -> &[DVec2] {
-        &self.points
+    /// How many halvings of the extent lead to boxes that are too many for the points.
+    pub(super) fn levels(&self) -> u32 {
+        self.levels
     }
 
-    /// How many there are, equal ones included.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.points.len()
+    /// Where points lie, and how many at each place.
+    pub(super) fn places(&self) -> impl Iterator<Item = (DVec2, u32)> {
+        let extent = self.bounds.size().max_element();
+        let places = self.places.iter();
+        places.map(move |place| {
+            let part = DVec2::new(place.column.into(), place.row.into()) / LATTICE;
+            (self.bounds.min() + part * extent, place.points)
+        })
     }
 
-    /// There are always some.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
-    /// The count of boxes beyond which points are too few to tell.
-    #[must_use]
-    pub fn most_boxes(&self) -> u64 {
-        self.points.len() as u64 / POINTS_A_BOX
-    }
-
-    /// How the points are covered by boxes whose sides are the extent divided by powers of two, down
-    /// to where boxes are too many for the points.
-    #[must_use]
-    pub fn scales(&self, grids: &[Grid], threads: NonZero<usize>) -> Vec<Scale> {
-        let extent = self.bounds.size().max_element() * (1.0 + 4e-9);
-        let side = |level: u32| extent / libm::exp2(f64::from(level));
-        let counts = |grid: &Grid, levels: u32| {
-            let (map, boxes) = grid.map(&self.turned_bounds(grid), side(levels), side(1));
-            let mut counts = counts(&self.points, &map, boxes, levels);
-            counts.reverse();
-            counts
+    /// A grid that lies on the principal axes as the given one lies on the axes of the plane, and the
+    /// box of the points turned against it.
+    pub(super) fn own(&self, grid: &Grid) -> (Grid, Bounds) {
+        let own = Grid {
+            angle: grid.angle - self.angle,
+            ..*grid
         };
-        let coarse = MOST_BITS.trailing_zeros();
-        let first = counts(&Grid::ALONG, coarse);
-        let enough = |&count: &u64| count > self.most_boxes();
-        let levels = match first.iter().position(enough) {
-            Some(level) => u32::try_from(level + 1).unwrap_or(coarse),
-            None => {
-                let deeper = counts(&Grid::ALONG, MOST_LEVELS);
-                let level = deeper.iter().position(enough).unwrap_or(deeper.len() - 1);
-                u32::try_from(level + 1).unwrap_or(MOST_LEVELS)
-            }
-        };
-        let sizes: Vec<f64> = (1..=levels).map(side).collect();
-        least(&sizes, grids, threads, |grid| counts(grid, levels))
-    }
-
-    fn turned_bounds(&self, grid: &Grid) -> Bounds {
-        if grid.angle == 0.0 {
-            return self.bounds;
-        }
-        let turn = grid.turn();
+        let turn = own.turn();
         let mut bounds = Bounds::EMPTY;
-        self.points
-            .iter()
-            .for_each(|&point| bounds.add(turn * point));
-        bounds
+        self.places().for_each(|(at, _)| bounds.add(turn * at));
+        (own, bounds)
     }
+
+    /// The direction in which points are spread the most, and farther out on its positive side; 0 if
+    /// there is no such direction.
+    fn principal_axis(&self) -> f64 {
+        const ROUND: f64 = 1e-9;
+        let extent = self.bounds.size().max_element();
+        let mean = |of: &dyn Fn(DVec2) -> f64| {
+            let (mut sum, mut all) = (0.0, 0.0);
+            for (at, points) in self.places() {
+                let weight = f64::from(points);
+                sum += weight * of((at - self.bounds.min()) / extent);
+                all += weight;
+            }
+            sum / all
+        };
+        let middle = DVec2::new(mean(&|at| at.x), mean(&|at| at.y));
+        let xx = mean(&|at| (at.x - middle.x) * (at.x - middle.x));
+        let xy = mean(&|at| (at.x - middle.x) * (at.y - middle.y));
+        let yy = mean(&|at| (at.y - middle.y) * (at.y - middle.y));
+        if libm::hypot(xx - yy, 2.0 * xy) <= ROUND * (xx + yy) {
+            return 0.0;
+        }
+        let angle = libm::atan2(2.0 * xy, xx - yy) / 2.0;
+        let (sin, cos) = libm::sincos(angle);
+        let skewness = mean(&|at| libm::pow((at - middle).dot(DVec2::new(cos, sin)), 3.0));
+        if skewness < 0.0 {
+            angle + std::f64::consts::PI
+        } else {
+            angle
+        }
+    }
+}
+
+/// Places of the lattice in a row.
+const LATTICE: f64 = (1u64 << MOST_LEVELS) as f64;
+
+/// The key of the place that a point lies at.
+fn key(bounds: &Bounds, point: DVec2) -> u64 {
+    let part = (point - bounds.min()) / bounds.size().max_element();
+    let [column, row] = boxed(
+        &DAffine2::from_mat2(DMat2::from_diagonal(DVec2::splat(LATTICE))),
+        part,
+    );
+    spread(column) | spread(row) << 1
+}
+
+/// How many halvings lead to fewer points a box than are listed.
+fn levels(points: &[DVec2], bounds: &Bounds) -> u32 {
+    let most = points.len() as u64 / POINTS_A_BOX;
+    let extent = bounds.size().max_element() * (1.0 + 4e-9);
+    let first = |levels: u32| {
+        let size = extent / libm::exp2(f64::from(levels));
+        let (map, boxes) = Grid::ALONG.map(bounds, size, extent / 2.0);
+        let counts = counts(points, &map, boxes, levels);
+        let enough = counts.iter().rev().position(|&count| count > most);
+        enough.and_then(|level| u32::try_from(level + 1).ok())
+    };
+    let coarse = MOST_BITS.trailing_zeros();
+    first(coarse)
+        .or_else(|| first(MOST_LEVELS))
+        .unwrap_or(MOST_LEVELS)
 }
 
 /// The numbers of boxes that hold points: on a grid, and on those of boxes 2, 4, 8 … times as large,
@@ -192,3 +248,23 @@ fn spread(number: u32) -> u64 {
     bits = (bits | bits << 2) & 0x3333_3333_3333_3333;
     (bits | bits << 1) & 0x5555_5555_5555_5555
 }
+
+/// Every other bit of a key, as a number.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "32 bits are left")]
+fn gathered(key: u64) -> u32 {
+    let mut bits = key & 0x5555_5555_5555_5555;
+    for (step, mask) in GATHERED.iter().enumerate() {
+        bits = (bits | bits >> (1 << step)) & mask;
+    }
+    bits as u32
+}
+
+/// Where bits lie after each step of gathering.
+const GATHERED: [u64; 5] = [
+    0x3333_3333_3333_3333,
+    0x0f0f_0f0f_0f0f_0f0f,
+    0x00ff_00ff_00ff_00ff,
+    0x0000_ffff_0000_ffff,
+    0x0000_0000_ffff_ffff,
+];

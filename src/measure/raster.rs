@@ -45,13 +45,14 @@ pub fn raster_scales(
     })
 }
 
+/// How far a grid begins before a picture, in pixels.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
     clippy::cast_sign_loss,
     reason = "the shift is below the largest box"
 )]
-fn whole(shift: crate::geometry::DVec2, largest: usize) -> [usize; 2] {
+pub(super) fn whole(shift: crate::geometry::DVec2, largest: usize) -> [usize; 2] {
     (shift * largest as f64)
         .to_array()
         .map(|shift| shift as usize)

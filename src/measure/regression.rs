@@ -4,7 +4,9 @@
 //! line, and the residuals of neighbouring sizes go together. So the slope is told in two ways. One
 //! is that of the finer half of the sizes. The other is that of all sizes with a correction to
 //! scaling, y = a + D x + c exp(−θ x) with x = ln (1 / size), where θ is what fits best (as for
-//! critical exponents: Wegner 1972); it is believed if c is more than three standard errors from 0.
+//! critical exponents: Wegner 1972); it is believed if c is more than three standard errors above 0:
+//! there are boxes of a rim, say, beside those of the set. (Where slopes fall as boxes get smaller, small
+//! boxes have more likely lost thin parts of a picture.)
 //! The first lags behind a bend and the second runs ahead of it: the estimate is their mean. Where
 //! there is no such bend, it is the first, and the second is the slope of all sizes. How far the second
 //! lies from the estimate is part of its error.
@@ -17,15 +19,17 @@ pub(super) struct Reading {
     pub(super) log: f64,
     /// The standard deviation of the logarithm among grids.
     pub(super) scatter: f64,
-    /// The standard error of its growth since the size before.
+    /// How much it grows since the size before.
+    pub(super) growth: f64,
+    /// The standard error of that.
     pub(super) growth_error: f64,
 }
 
 /// A dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The dimension. Of pictures and points: the slope of the finer half of the sizes, or its mean
-    /// with the slope of all of them with a correction to scaling, where that is significant. Of limit
+    /// The dimension. Of pictures: the slope of the finer half of the sizes, or its mean with the slope
+    /// of all of them with a correction to scaling, where that is significant. Of points, and of limit
     /// sets that are followed to small sizes: the mean over models and ranges, by their likelihood.
     pub value: f64,
     /// Its standard error: that of the regression, made larger as far as residuals of neighbouring
@@ -60,7 +64,7 @@ const LEAST_FACTOR: f64 = 0.05;
 /// A correction to scaling takes so many sizes, at least.
 const LEAST_SIZES: usize = 5;
 
-/// A coefficient that is so many standard errors from 0 is significant.
+/// A coefficient that is so many standard errors above 0 is significant.
 const SIGNIFICANT: f64 = 3.0;
 
 /// The slope of readings, from the largest size to the smallest; none if there are fewer than three.
@@ -165,7 +169,7 @@ impl Points {
         let significance = bend.as_ref().map_or(0.0, |bend| {
             let rest = self.rest(bend, &[&ones, &x]);
             let norm = self.dot(&rest, &rest);
-            self.dot(&rest, &self.y).abs() / (norm * factor).sqrt()
+            self.dot(&rest, &self.y) / (norm * factor).sqrt()
         });
         Fit {
             slope: self.dot(&slope, &self.y) / norm,
@@ -262,6 +266,7 @@ mod tests {
                 size: libm::exp(-x),
                 log: log(x),
                 scatter: 0.0,
+                growth: log(x) - log(x - std::f64::consts::LN_2),
                 growth_error: 0.0,
             }
         };

@@ -1,7 +1,7 @@
 //! Laws of box counting.
 
 use kfrac::geometry::{DAffine2, DVec2};
-use kfrac::measure::{Bits, BoxCounting, Points, counts, raster_scales};
+use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised, Points, counts, raster_scales};
 
 use super::{grids, number, picture};
 
@@ -107,15 +107,36 @@ fn sorted_keys_count_as_bits_do() {
     }
 }
 
+/// Points of a gasket in an upright triangle, by the chaos game.
+fn gasket(count: usize) -> Vec<DVec2> {
+    let mut at = DVec2::ZERO;
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75f64.sqrt()]].map(DVec2::from_array);
+    let points = numbers(11).map(|number| {
+        at = (at + corners[(number % 3) as usize]) / 2.0;
+        at
+    });
+    points.skip(60).take(count).collect()
+}
+
+/// A number from 0 to 1.
+fn part(number: u64) -> f64 {
+    number as f64 / (1u64 << 31) as f64
+}
+
+fn of_points(points: Vec<DVec2>, base: usize) -> Estimate {
+    let points = Points::new(points).unwrap();
+    let sample = points.sample(number(base), &grids(), number(2));
+    BoxCounting::of_sample(&sample, 0.0).estimate.unwrap()
+}
+
 #[test]
 fn order_and_threads_change_nothing() {
     let points = dust(20_000);
     let mut reversed = points.clone();
     reversed.reverse();
     let of = |points: &[DVec2], threads| {
-        Points::new(points.to_vec())
-            .unwrap()
-            .scales(&grids(), number(threads))
+        let points = Points::new(points.to_vec()).unwrap();
+        points.sample(number(2), &grids(), number(threads)).scales()
     };
     let once = of(&points, 1);
     assert_eq!(once, of(&reversed, 1));
@@ -127,42 +148,73 @@ fn order_and_threads_change_nothing() {
 
 #[test]
 fn a_similarity_changes_no_dimension() {
-    let points = dust(40_000);
-    let of = |map: &DAffine2| {
-        let moved = points
-            .iter()
-            .map(|&point| map.transform_point2(point))
-            .collect();
-        let points = Points::new(moved).unwrap();
-        BoxCounting::of_points(&points, &grids(), number(2))
-            .estimate
-            .unwrap()
+    for points in [dust(40_000), gasket(40_000)] {
+        let of = |scale: f64, angle: f64, shift: [f64; 2]| {
+            let map = DAffine2::from_scale_angle_translation(
+                DVec2::splat(scale),
+                angle,
+                DVec2::from_array(shift),
+            );
+            let moved = points.iter().map(|&point| map.transform_point2(point));
+            of_points(moved.collect(), 2)
+        };
+        let here = of(1.0, 0.0, [0.0; 2]);
+        for moved in [
+            of(1024.0, 0.0, [4096.0, -2048.0]),
+            of(0.003, 0.3, [5.0, 7.0]),
+            of(0.003, 1.2, [5.0, 7.0]),
+            of(17.0, 4.0, [0.0, 1.0]),
+        ] {
+            let apart = (moved.value - here.value).abs();
+            assert!(apart < 1e-3, "{moved:?} {here:?}");
+        }
+    }
+}
+
+#[test]
+fn what_a_sample_misses_is_made_up_for() {
+    let gasket_has = 3f64.log2();
+    let dust_has = 4f64.ln() / 3f64.ln();
+    let filled = |count: usize| -> Vec<DVec2> {
+        let parts: Vec<f64> = numbers(5).take(2 * count).map(part).collect();
+        parts.chunks(2).map(DVec2::from_slice).collect()
     };
-    let here = of(&DAffine2::IDENTITY);
-    let exact = libm::log(4.0) / libm::log(3.0);
+    let line = |count: usize| -> Vec<DVec2> {
+        let parts = numbers(5).take(count).map(part);
+        parts.map(|part| DVec2::new(0.8, 0.6) * part).collect()
+    };
+    for (points, base, dimension, tolerance) in [
+        (gasket(10_000), 2, gasket_has, 0.03),
+        (gasket(100_000), 2, gasket_has, 0.02),
+        (dust(10_000), 2, dust_has, 0.06),
+        (dust(100_000), 2, dust_has, 0.03),
+        (dust(100_000), 3, dust_has, 0.03),
+        (filled(10_000), 2, 2.0, 0.08),
+        (filled(100_000), 2, 2.0, 0.02),
+        (line(10_000), 2, 1.0, 0.02),
+        (line(100_000), 2, 1.0, 0.02),
+    ] {
+        super::assert_is(&of_points(points, base), dimension, tolerance);
+    }
+}
+
+#[test]
+fn points_that_come_often_are_no_more_points_of_the_set() {
+    let points = gasket(5_000);
+    let once = of_points(points.clone(), 2);
+    let often = of_points(points.repeat(20), 2);
     assert!(
-        (here.value - exact).abs() <= 2.0 * here.std_error,
-        "{here:?}"
+        (once.value - often.value).abs() < 1e-9,
+        "{once:?} {often:?}"
     );
-    let moved = of(&DAffine2::from_scale_angle_translation(
-        DVec2::splat(1024.0),
-        0.0,
-        DVec2::new(4096.0, -2048.0),
-    ));
-    assert!(
-        (moved.value - here.value).abs() < 1e-3,
-        "{moved:?} {here:?}"
-    );
-    for angle in [0.3, 1.2, 4.0] {
-        let turned = of(&DAffine2::from_scale_angle_translation(
-            DVec2::splat(0.003),
-            angle,
-            DVec2::new(5.0, 7.0),
-        ));
-        let apart = (turned.value - here.value).abs();
-        assert!(
-            apart <= 2.0 * (turned.std_error + here.std_error),
-            "{turned:?} {here:?}"
-        );
+    assert_eq!(once.sizes, often.sizes);
+}
+
+#[test]
+fn the_measure_of_a_gasket_has_one_dimension_of_all_orders() {
+    let points = Points::new(gasket(100_000)).unwrap();
+    let sample = points.sample(number(2), &grids(), number(2));
+    for it in Generalised::of_sample(&sample, &[0.5, 1.0, 2.0, 3.0], 0.0) {
+        super::assert_is(&it.estimate.unwrap(), 3f64.log2(), 0.03);
     }
 }

@@ -14,15 +14,26 @@ use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::import::{Channel, Picture, read_points};
 use crate::measure::exact::dimensions_of_graph;
-use crate::measure::{Bits, BoxCounting, LimitSet, Masses, NoLimit, Points, grown};
+use crate::measure::{
+    Bits, BoxCounting, FINENESS, Generalised, Grid, LimitSet, Masses, NoLimit, Points, grown,
+};
 
 use super::super::Failure;
 use super::super::rule::Loaded;
 use super::super::stop;
 use super::{Arguments, Measured};
 
-/// Graphs whose number of objects does not settle are resolved for so many steps.
-pub(super) const STEPS: u32 = 64;
+/// Graphs whose number of objects does not settle are resolved for so many steps, or for fewer where
+/// that is too many.
+const STEPS: [u32; 4] = [64, 20, 12, 6];
+
+/// The graph of a rule, and for how many steps it is resolved.
+pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
+    let at = |steps: u32| Ok((loaded.compile(steps)?, steps));
+    let [most, fewer @ ..] = STEPS;
+    let fewer = fewer.into_iter();
+    fewer.fold(at(most), |tried, steps| tried.or_else(|_| at(steps)))
+}
 
 /// Files of pictures are no longer than this.
 const MOST_BYTES: u64 = 1 << 31;
@@ -121,7 +132,7 @@ impl Kind {
 }
 
 fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> {
-    let graph = loaded.compile(STEPS)?;
+    let (graph, steps) = compiled(loaded)?;
     let title = loaded.model.heading().description.title.clone();
     let mut measured = Measured {
         name: loaded.name.clone(),
@@ -136,17 +147,29 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     };
     let set = match LimitSet::of(&graph) {
         Ok(set) => set,
-        Err(NoLimit::NotFixed | NoLimit::Endless) => return of_growth(arguments, &graph, measured),
+        Err(NoLimit::NotFixed | NoLimit::Endless) => {
+            return of_growth(arguments, &graph, steps, measured);
+        }
         Err(error) => return Ok(measured.without(&error)),
     };
     let (grids, threads) = (arguments.grids(), arguments.threads());
     measured.counting = BoxCounting::of_limit(&set, arguments.base, &grids, threads);
     if measured.counting.boxes.is_empty() {
+        if measured.counting.estimate.is_none() {
+            let reason = "nothing is measured: too many copies lie over each other";
+            measured.warnings.push(reason.into());
+        }
         return Ok(measured);
     }
-    let masses = Masses::of_limit(&set);
-    measured.spectrum = masses.spectrum(&arguments.orders, 0.0);
-    measured.lacunarity = masses.lacunarity();
+    measured.tell(Generalised::of_limit(
+        &set,
+        &arguments.orders,
+        &grids,
+        threads,
+    ));
+    let mut masses = FINENESS.into_iter();
+    let masses = masses.find_map(|boxes| Masses::of_limit(&set, &Grid::ALONG, boxes));
+    measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
     Ok(measured)
 }
 
@@ -154,13 +177,14 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
 fn of_growth(
     arguments: &Arguments,
     graph: &Graph,
+    steps: u32,
     mut measured: Measured,
 ) -> Result<Measured, Failure> {
     const MOST_POINTS: usize = 1 << 20;
     let growth = Growth {
         cancel: Some(stop::flag()),
         seed: arguments.seed,
-        ..Growth::steps(STEPS)
+        ..Growth::steps(steps)
     };
     let grown = match grown(graph, &growth, MOST_POINTS) {
         Ok(grown) => grown,
@@ -177,11 +201,8 @@ fn of_growth(
         Ok(points) => points,
         Err(error) => return Ok(measured.without(&error)),
     };
-    let (grids, threads) = (arguments.grids(), arguments.threads());
-    measured.counting = BoxCounting::of_grown(&points, grown.detail, &grids, threads);
-    let masses = Masses::of_points(&points);
-    measured.spectrum = masses.spectrum(&arguments.orders, 4.0 * grown.detail);
-    measured.lacunarity = masses.lacunarity();
+    let base = whole(arguments.base, "points")?;
+    measured.sampled(&points, base, 4.0 * grown.detail, arguments);
     Ok(measured)
 }
 
@@ -213,11 +234,10 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Mea
             part(set, all)
         ));
     }
-    let base = whole(arguments.base)?;
-    let counting = BoxCounting::of_pixels(&pixels, base, &arguments.grids(), arguments.threads());
-    let finest = counting.estimate.map_or(1.0, |estimate| estimate.range[0]);
-    let masses = Masses::of_pixels(&pixels);
-    Ok(Measured {
+    let base = whole(arguments.base, "pictures")?;
+    let (grids, threads) = (arguments.grids(), arguments.threads());
+    let counting = BoxCounting::of_pixels(&pixels, base, &grids, threads);
+    let mut measured = Measured {
         name: name.into(),
         title: name.into(),
         set: format!(
@@ -227,10 +247,13 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Mea
         unit: Some("pixels"),
         exact: None,
         counting,
-        spectrum: masses.spectrum(&arguments.orders, finest),
-        lacunarity: masses.lacunarity(),
+        spectrum: Vec::new(),
+        lacunarity: Masses::of_pixels(&pixels, [0; 2]).lacunarity(),
         warnings,
-    })
+    };
+    let orders = &arguments.orders;
+    measured.tell(Generalised::of_pixels(&pixels, orders, &grids, threads));
+    Ok(measured)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
@@ -238,18 +261,17 @@ fn part(some: u64, all: u64) -> f64 {
     100.0 * some as f64 / all as f64
 }
 
-/// The base for pictures.
+/// The base of boxes that fold: a whole number.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "bases are small"
 )]
-fn whole(base: Option<f64>) -> Result<NonZero<usize>, Failure> {
+fn whole(base: Option<f64>, of: &str) -> Result<NonZero<usize>, Failure> {
     let base = base.unwrap_or(2.0);
     let whole = NonZero::new(base as usize).filter(|whole| base.fract() == 0.0 && whole.get() > 1);
-    whole.ok_or_else(|| {
-        Failure::Usage("--base: boxes of pictures grow by a whole number from 2 on".into())
-    })
+    let message = || format!("--base: boxes of {of} grow by a whole number from 2 on");
+    whole.ok_or_else(|| Failure::Usage(message()))
 }
 
 fn of_points(
@@ -257,9 +279,7 @@ fn of_points(
     name: &str,
     points: Vec<crate::geometry::DVec2>,
 ) -> Result<Measured, Failure> {
-    if arguments.base.is_some_and(|base| base != 2.0) {
-        return Err(Failure::Usage("--base: boxes of points grow by 2".into()));
-    }
+    let base = whole(arguments.base, "points")?;
     let count = points.len();
     let mut measured = Measured {
         name: name.into(),
@@ -273,13 +293,31 @@ fn of_points(
         warnings: Vec::new(),
     };
     let points = Points::new(points).with_context(|| name.to_owned())?;
-    measured.counting = BoxCounting::of_points(&points, &arguments.grids(), arguments.threads());
-    let finest = measured
-        .counting
-        .estimate
-        .map_or(0.0, |estimate| estimate.range[0]);
-    let masses = Masses::of_points(&points);
-    measured.spectrum = masses.spectrum(&arguments.orders, finest);
-    measured.lacunarity = masses.lacunarity();
+    measured.sampled(&points, base, 0.0, arguments);
     Ok(measured)
+}
+
+impl Measured {
+    /// Tells a spectrum; of order 0, what boxes have told.
+    fn tell(&mut self, spectrum: Vec<Generalised>) {
+        let told = |it: Generalised| match it.order {
+            0.0 => Generalised::of_boxes(&self.counting),
+            _ => it,
+        };
+        self.spectrum = spectrum.into_iter().map(told).collect();
+    }
+
+    /// Measures points as a sample of a set, with boxes that are at least `finest`.
+    fn sampled(
+        &mut self,
+        points: &Points,
+        base: NonZero<usize>,
+        finest: f64,
+        arguments: &Arguments,
+    ) {
+        let sample = points.sample(base, &arguments.grids(), arguments.threads());
+        self.counting = BoxCounting::of_sample(&sample, finest);
+        self.tell(Generalised::of_sample(&sample, &arguments.orders, finest));
+        self.lacunarity = Masses::of_points(points).lacunarity();
+    }
 }

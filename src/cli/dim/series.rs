@@ -12,7 +12,7 @@ use crate::render::{self, Labels, RenderError};
 
 use super::super::rule::Loaded;
 use super::super::{Failure, output};
-use super::input::STEPS;
+use super::input::compiled;
 
 /// Rules that differ in one parameter, and what is known of them.
 pub(super) struct Series {
@@ -27,7 +27,7 @@ impl Series {
         let (setting, first) = &family[0];
         let title = first.model.heading().description.title.clone();
         let samples = family.iter().map(|(setting, loaded)| {
-            let graph = loaded.compile(STEPS)?;
+            let (graph, _) = compiled(loaded)?;
             Ok((setting.value, dimensions_of_graph(&graph)))
         });
         Ok(Self {

@@ -13,7 +13,7 @@ use rand_pcg::rand_core::Rng;
 use crate::geometry::DVec2;
 use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
 
-use super::{GRAZED, LimitSet, Placed, norm};
+use super::{GRAZED, LimitSet, Placed};
 
 /// Copies in the boxes of a size that are followed, and the least number of such boxes. As long as
 /// there are fewer, counts are exact.
@@ -69,8 +69,11 @@ impl<'s> Descent<'s> {
         if self.looked_at > MOST_COPIES {
             return None;
         }
-        let met = self.cells.iter().filter(|cell| self.set.meets(cell));
-        let met = met.count();
+        let mut left = MOST_COPIES;
+        let mut met = 0usize;
+        for cell in &self.cells {
+            met += usize::from(self.set.meets(cell, &mut left)?);
+        }
         #[expect(clippy::cast_precision_loss, reason = "some thousands of boxes")]
         (met > 0).then_some((met as f64 * self.weight, self.weight > 1.0))
     }
@@ -133,6 +136,9 @@ impl<'s> Descent<'s> {
                 let (low, high) = (middle[axis] - radius, middle[axis] + radius);
                 within(low)..within(high + 1.0).min(boxes[axis])
             });
+            if self.looked_at > MOST_COPIES {
+                break;
+            }
             if radius > LARGEST {
                 if !columns.is_empty() && !rows.is_empty() {
                     let children = part.children.iter().rev();
@@ -219,11 +225,7 @@ impl LimitSet {
         let sizes: Vec<f64> = sizes.take_while(|size| *size > FINEST * extent).collect();
         let counts = on_all(grids, threads, |number, grid| {
             let (map, boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
-            let map = Placed {
-                map,
-                scale: norm(&map.matrix2),
-                object: 0,
-            };
+            let map = Placed::new(map, 0);
             let start = self.start.iter().map(|copy| map.compose(copy)).collect();
             let mut descent = Descent::new(self, start, boxes, number);
             let mut counts = Vec::new();
@@ -241,17 +243,19 @@ impl LimitSet {
         joined(&sizes, &counts)
     }
 
-    /// Whether the unit square holds a point of the set; `copies` are what comes near it.
-    fn meets(&self, copies: &[Placed]) -> bool {
+    /// Whether the unit square holds a point of the set; `copies` are what comes near it. `None` where
+    /// more than what is left would have to be looked at.
+    fn meets(&self, copies: &[Placed], left: &mut usize) -> Option<bool> {
         let lies_in = |copy: &Placed| {
             let point = copy.map.transform_point2(self.objects[copy.object].point);
             point.cmpge(DVec2::ZERO).all() && point.cmplt(DVec2::ONE).all()
         };
         if copies.iter().any(lies_in) {
-            return true;
+            return Some(true);
         }
         let mut stack = copies.to_vec();
         while let Some(copy) = stack.pop() {
+            *left = left.checked_sub(1)?;
             let part = &self.objects[copy.object];
             let middle = copy.map.transform_point2(part.middle);
             let radius = part.reach * copy.scale;
@@ -262,12 +266,12 @@ impl LimitSet {
             for inner in &part.children {
                 let inner = copy.compose(inner);
                 if lies_in(&inner) {
-                    return true;
+                    return Some(true);
                 }
                 stack.push(inner);
             }
         }
-        false
+        Some(false)
     }
 }
 
@@ -289,8 +293,9 @@ fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
         };
         let error = deviation(growth.iter().copied());
         let sampled = counts.iter().any(|counts| counts[level].1);
+        let last = log;
         log = if sampled {
-            log + mean(&growth)
+            last + mean(&growth)
         } else {
             logs(level).fold(f64::INFINITY, f64::min)
         };
@@ -298,6 +303,7 @@ fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
             size: sizes[level],
             count: rounded(log),
             scatter: deviation(logs(level)),
+            growth: if level > 0 { log - last } else { 0.0 },
             growth_error: if sampled { error / grids.sqrt() } else { error },
             sampled,
         });

@@ -1,0 +1,299 @@
+//! Points as a sample of a set: what its boxes hold, and how many of them the sample misses.
+//!
+//! A box that the set meets is seen if a point of the sample lies in it, so the counts of small boxes
+//! fall short. What is missed is told from what a half and a quarter of the points would miss
+//! (rarefaction: Hurlbert 1971): it dies out as a power of their number, by a half where a smooth
+//! density is cut by the rims of boxes, by less where the set is thin there.
+
+use std::num::NonZero;
+
+use super::cover::{Grid, Scale, deviation, mean, on_all};
+use super::points::Points;
+
+/// Where half of the points would miss a larger part of the boxes, points are too few.
+const MOST_MISSED: f64 = 0.08;
+
+/// What part of the missed boxes is missed with twice the points.
+const LEFT: [f64; 2] = [1.0 / 2.0, 2.0 / 3.0];
+
+/// What boxes of several sizes hold, on several grids.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// From the largest on.
+    sizes: Vec<f64>,
+    /// By grid and size.
+    tallies: Vec<Vec<Tally>>,
+}
+
+/// The boxes of one size on one grid.
+#[derive(Clone, Debug)]
+struct Tally {
+    /// Numbers of different places in a box, and of boxes with so many.
+    places: Vec<(u32, u32)>,
+    /// Numbers of points in a box, and of boxes with so many.
+    points: Vec<(u32, u32)>,
+}
+
+/// A box that holds points.
+#[derive(Clone, Copy)]
+struct Held {
+    /// Its row and column.
+    key: u64,
+    places: u32,
+    points: u32,
+}
+
+impl Points {
+    /// What boxes hold whose sides are the extent divided by powers of a base.
+    ///
+    /// # Panics
+    ///
+    /// If the base is 1.
+    #[must_use]
+    pub fn sample(&self, base: NonZero<usize>, grids: &[Grid], threads: NonZero<usize>) -> Sample {
+        assert!(base.get() > 1, "boxes get smaller");
+        let (_, turned) = self.own(&Grid::ALONG);
+        let extent = turned.size().max_element() * (1.0 + 4e-9);
+        let base = u32::try_from(base.get()).unwrap_or(u32::MAX);
+        let powers = (1..).map(|level| libm::pow(f64::from(base), f64::from(level)));
+        let finest = libm::exp2(f64::from(self.levels()));
+        let sizes: Vec<f64> = powers
+            .take_while(|power| *power <= finest)
+            .map(|power| extent / power)
+            .collect();
+        let tallies = on_all(grids, threads, |_, grid| match sizes.last() {
+            Some(&finest) => self.tallies(grid, finest, sizes[0], base, sizes.len()),
+            None => Vec::new(),
+        });
+        Sample { sizes, tallies }
+    }
+
+    fn tallies(&self, grid: &Grid, size: f64, largest: f64, base: u32, sizes: usize) -> Vec<Tally> {
+        let (own, turned) = self.own(grid);
+        let (map, _) = own.map(&turned, size, largest);
+        let mut boxes: Vec<Held> = Vec::new();
+        for (at, points) in self.places() {
+            let at = map.transform_point2(at);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "points lie on the grid, and casts from floats saturate"
+            )]
+            let key = u64::from(at.y as u32) << 32 | u64::from(at.x as u32);
+            let held = Held {
+                key,
+                places: 1,
+                points,
+            };
+            join(&mut boxes, held);
+        }
+        let mut tallies = Vec::new();
+        for level in 0..sizes {
+            if level > 0 {
+                boxes
+                    .iter_mut()
+                    .for_each(|held| held.key = coarser(held.key, base));
+            }
+            boxes.sort_unstable_by_key(|held| held.key);
+            let finer = std::mem::take(&mut boxes);
+            finer.into_iter().for_each(|held| join(&mut boxes, held));
+            tallies.push(Tally::of(&boxes));
+        }
+        tallies.reverse();
+        tallies
+    }
+}
+
+/// Puts a box behind others, or what it holds into the last of them, if that is the same.
+fn join(boxes: &mut Vec<Held>, held: Held) {
+    match boxes.last_mut() {
+        Some(last) if last.key == held.key => {
+            last.places += held.places;
+            last.points = last.points.saturating_add(held.points);
+        }
+        _ => boxes.push(held),
+    }
+}
+
+/// The box `base` times as large that holds a box.
+fn coarser(key: u64, base: u32) -> u64 {
+    let base = u64::from(base);
+    let (row, column) = (key >> 32, key & 0xffff_ffff);
+    row / base << 32 | column / base
+}
+
+impl Tally {
+    fn of(boxes: &[Held]) -> Self {
+        Self {
+            places: histogram(boxes.iter().map(|held| held.places)),
+            points: histogram(boxes.iter().map(|held| held.points)),
+        }
+    }
+
+    /// How many boxes a part of the places would meet, on the mean of all choices.
+    fn met_by(&self, part: f64) -> f64 {
+        let met = |places| 1.0 - libm::pow(1.0 - part, f64::from(places));
+        let boxes = self.places.iter();
+        boxes
+            .map(|&(places, boxes)| f64::from(boxes) * met(places))
+            .sum()
+    }
+}
+
+/// Numbers, and how often each of them comes.
+pub(super) fn histogram(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
+    let mut numbers: Vec<u32> = numbers.collect();
+    numbers.sort_unstable();
+    let runs = numbers.chunk_by(|a, b| a == b);
+    let counted = runs.map(|run| (run[0], u32::try_from(run.len()).unwrap_or(u32::MAX)));
+    counted.collect()
+}
+
+/// How many boxes of one size are met on every grid.
+struct Met {
+    seen: Vec<f64>,
+    /// With those that the points have missed.
+    all: Vec<f64>,
+    /// The part of the boxes that half of the points would miss.
+    missed_by_half: f64,
+    /// The variance of the logarithm of a number among samples: a box that half of the points would
+    /// miss is there by chance.
+    chance: f64,
+}
+
+impl Met {
+    /// The least cover, and the growth since the size before.
+    fn scale(&self, size: f64, before: Option<&Self>) -> Scale {
+        let (growth, growth_error) = before.map(|it| self.growth(it)).unwrap_or_default();
+        let least = self.seen.iter().copied().fold(f64::INFINITY, f64::min);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of boxes"
+        )]
+        let count = least as u64;
+        Scale {
+            size,
+            count,
+            scatter: deviation(self.seen.iter().map(|&it| libm::log(it))),
+            growth,
+            growth_error,
+            sampled: false,
+        }
+    }
+
+    /// How the logarithm grows on the mean of all grids, and the standard error of that.
+    fn growth(&self, before: &Self) -> (f64, f64) {
+        let by = |this: &[f64], last: &[f64]| -> Vec<f64> {
+            let both = this.iter().zip(last);
+            both.map(|(a, b)| libm::log(a / b)).collect()
+        };
+        let growth = by(&self.all, &before.all);
+        let of_grids = deviation(growth.iter().copied()) / count(growth.len()).sqrt();
+        // What is added for the boxes that are missed is believed by half.
+        let of_missed = (mean(&growth) - mean(&by(&self.seen, &before.seen))) / 2.0;
+        let of_chance = (self.chance + before.chance).sqrt();
+        let error = libm::hypot(libm::hypot(of_grids, of_missed), of_chance);
+        (mean(&growth), error)
+    }
+}
+
+impl Sample {
+    /// The sides of the boxes, from the largest on.
+    pub(super) fn sizes(&self) -> &[f64] {
+        &self.sizes
+    }
+
+    /// The number of sizes at which there are enough points.
+    pub(super) fn enough(&self) -> usize {
+        let missed = |number: &usize| self.met(*number).missed_by_half;
+        let all = 0..self.sizes.len();
+        all.take_while(|number| missed(number) <= MOST_MISSED)
+            .count()
+    }
+
+    fn met(&self, number: usize) -> Met {
+        let by = |part: f64| -> Vec<f64> {
+            let tallies = self.tallies.iter();
+            tallies
+                .map(|tallies| tallies[number].met_by(part))
+                .collect()
+        };
+        let (seen, half, quarter) = (by(1.0), by(0.5), by(0.25));
+        let sum = |of: &[f64]| of.iter().sum::<f64>();
+        let [first, second] = [sum(&half) - sum(&quarter), sum(&seen) - sum(&half)];
+        let left = if first > 0.0 { second / first } else { 0.0 }.clamp(LEFT[0], LEFT[1]);
+        let all = seen.iter().zip(&half);
+        let all = all.map(|(seen, half)| seen + (seen - half) * left / (1.0 - left));
+        Met {
+            all: all.collect(),
+            missed_by_half: second / sum(&seen),
+            chance: second * count(seen.len()) / (sum(&seen) * sum(&seen)),
+            seen,
+        }
+    }
+
+    /// The least covers, and how counts grow on the mean of all grids, with the boxes that are missed.
+    #[must_use]
+    pub fn scales(&self) -> Vec<Scale> {
+        let met: Vec<Met> = (0..self.sizes.len())
+            .map(|number| self.met(number))
+            .collect();
+        let before = std::iter::once(None).chain(met.iter().map(Some));
+        let sizes = self.sizes.iter().zip(&met).zip(before);
+        sizes
+            .map(|((&size, met), before)| met.scale(size, before))
+            .collect()
+    }
+
+    /// The entropies of an order of the points' distribution over boxes of a size, by grid.
+    ///
+    /// Sums of powers are told without bias by falling factorials (Grassberger 1988).
+    pub(super) fn entropies(&self, number: usize, order: f64) -> Vec<f64> {
+        let entropy = |tallies: &Vec<Tally>| entropy(&tallies[number].points, order);
+        self.tallies.iter().map(entropy).collect()
+    }
+}
+
+/// The Rényi entropy of boxes with so many points, in nats.
+fn entropy(boxes: &[(u32, u32)], order: f64) -> f64 {
+    let boxes = || {
+        boxes
+            .iter()
+            .map(|&(points, boxes)| (f64::from(points), f64::from(boxes)))
+    };
+    let total: f64 = boxes().map(|(points, boxes)| points * boxes).sum();
+    if (order - 1.0).abs() < 1e-9 {
+        let mean = boxes().map(|(points, boxes)| boxes * points * digamma(points));
+        return digamma(total) - mean.sum::<f64>() / total;
+    }
+    let all = falling(total, order);
+    let parts = boxes().map(|(points, boxes)| boxes * libm::exp(falling(points, order) - all));
+    libm::log(parts.sum::<f64>()) / (1.0 - order)
+}
+
+/// The logarithm of n (n − 1) … (n − q + 1), or Γ(n + 1) / Γ(n + 1 − q) where q is not whole.
+fn falling(number: f64, order: f64) -> f64 {
+    if number + 1.0 - order <= 0.0 {
+        return f64::NEG_INFINITY;
+    }
+    libm::lgamma(number + 1.0) - libm::lgamma(number + 1.0 - order)
+}
+
+/// The derivative of ln Γ (Abramowitz & Stegun 6.3.5 and 6.3.18), to some 12 digits.
+fn digamma(mut at: f64) -> f64 {
+    let mut before = 0.0;
+    while at < 12.0 {
+        before -= 1.0 / at;
+        at += 1.0;
+    }
+    let square = 1.0 / (at * at);
+    let series =
+        square * (1.0 / 12.0 - square * (1.0 / 120.0 - square * (1.0 / 252.0 - square / 240.0)));
+    before + libm::log(at) - 0.5 / at - series
+}
+
+#[expect(clippy::cast_precision_loss, reason = "grids are few")]
+fn count(number: usize) -> f64 {
+    number as f64
+}
