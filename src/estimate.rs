@@ -30,7 +30,8 @@ use crate::style::{ColorBy, Width};
 pub struct Estimate {
     /// The size of the SVG in bytes.
     pub svg_bytes: f64,
-    /// The size of a PNG in bytes, within a factor of some 3; more where lines lie over each other.
+    /// The size of a PNG in bytes, within a factor of some 3; much less is needed where lines lie over
+    /// each other, shapes side by side, or edges along rows and columns.
     pub png_bytes: f64,
     /// The time that making the SVG takes, in seconds: a guess within a factor of
     /// some 3, for one processor of 2026.
@@ -163,13 +164,14 @@ impl<'a> Estimator<'a> {
             Width::Pixels(width) if width > THIN => 2.0,
             _ => 1.0,
         };
-        // Of many colours, each pixel is told by three bytes, of which runs are as long; else by one.
-        let bytes = match self.options.style.color_by {
-            ColorBy::None => 1.0,
-            _ => 3.0,
+        // Of many colours, each pixel is told by three bytes, else by one; where edges lie along rows and
+        // columns, three are no more than one.
+        let [bytes, edges] = match self.options.style.color_by {
+            ColorBy::None => [1.0, EDGE * edges],
+            _ => [3.0, 2.0 * EDGE * edges],
         };
         let pixels = width * height;
-        bytes * pixels / RUN + (EDGE * edges * outlines).min(pixels)
+        bytes * pixels / RUN + (edges * outlines).min(bytes * pixels)
     }
 
     /// The number of classes of colour, each of which is a walk.

@@ -77,7 +77,6 @@ fn sizes_of_png_are_estimated() {
         ("koch-snowflake", 6),
         ("dragon", 10),
         ("pythagoras", 8),
-        ("carpet", 3),
         ("gosper", 3),
     ] {
         let rule = resolved(&document(name), &[]);

@@ -1,4 +1,5 @@
-//! What other programs read in our vector graphics: SVG, PDF and DXF, as they are and as plots.
+//! What other programs read in our vector graphics, SVG, PDF and DXF, as they are and as plots, and in
+//! tables.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -9,6 +10,8 @@ mod paper;
 mod plots;
 #[path = "vectors/readers.rs"]
 mod readers;
+#[path = "vectors/tables.rs"]
+mod tables;
 
 use std::num::NonZero;
 use std::sync::Arc;

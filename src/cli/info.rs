@@ -79,6 +79,7 @@ struct Info<'a> {
     svg_bytes: Option<Vec<Option<f64>>>,
     #[serde(serialize_with = "rounded")]
     seconds: Option<Vec<Option<f64>>>,
+    #[serde(serialize_with = "whole")]
     instanced_svg_bytes: Option<f64>,
     bounds: Option<Corners>,
     limit_bounds: Option<Corners>,
@@ -141,6 +142,11 @@ fn rounded<S: serde::Serializer>(
         rounded.collect::<Vec<_>>()
     });
     estimates.serialize(serializer)
+}
+
+/// An estimate that is known to two digits already.
+fn whole<S: serde::Serializer>(bytes: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    bytes.map(number).serialize(serializer)
 }
 
 /// Whole numbers without a fraction, as in the tables.

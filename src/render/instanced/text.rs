@@ -218,7 +218,7 @@ mod tests {
             "matrix(.5 -.0000022360679775 .25 .000004472135955 -.000000000001 3)"
         );
         let flat = DAffine2::from_cols_array(&[0.0, 0.0, 0.0, 0.16, 0.0, 0.0]);
-        assert_eq!(transform(&flat), "matrix(-.0000016 0 0 .16 0 0)");
+        assert_eq!(transform(&flat), "matrix(.0000016 0 0 .16 0 0)");
     }
 
     #[test]
