@@ -74,6 +74,18 @@ impl Set {
         Self(self.0.set("seed", seed.into().0))
     }
 
+    /// Values of the parameters of a [fractal](Set::fractal), by name.
+    pub fn parameters(
+        self,
+        values: impl IntoIterator<Item = (impl Into<String>, impl Into<Number>)>,
+    ) -> Self {
+        let values = values.into_iter();
+        let values = values.fold(Entries::default(), |entries, (name, value)| {
+            entries.add(name, value.into().0)
+        });
+        Self(self.0.set("set", values.value()))
+    }
+
     /// Where a [fractal](Set::fractal) stands.
     pub fn placed(self, map: impl Into<Map>) -> Self {
         Self(self.0.set("map", map.into().entries.value()))

@@ -80,6 +80,7 @@ impl Assignment {
             name: self.name.clone(),
             value,
             written: None,
+            place: None,
         }
     }
 

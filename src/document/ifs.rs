@@ -154,6 +154,8 @@ pub struct FractalDocument {
     pub steps: Option<Number>,
     /// What its random draws depend on; 0 if left out.
     pub seed: Option<Number>,
+    /// Its parameters that are set, with their values.
+    pub set: Vec<(Written<String>, Number)>,
     /// Where it stands.
     pub map: Option<MapDocument>,
     /// Where it was named.

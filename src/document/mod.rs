@@ -224,4 +224,6 @@ pub struct Setting {
     pub value: f64,
     /// How the value is written, where that tells more of its digits.
     pub written: Option<Expression>,
+    /// Where the value is written, if that is in a file.
+    pub place: Option<Place>,
 }

@@ -1,6 +1,7 @@
 //! Other fractals as sets: approximants of them, grown here and now.
 
-use crate::document::FractalDocument;
+use crate::diagnostic::did_you_mean;
+use crate::document::{FractalDocument, Setting};
 use crate::geometry::DAffine2;
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
@@ -24,7 +25,8 @@ impl<K> Resolver<K> {
             whole
         });
         let map = document.map.as_ref().map(|map| self.affine(map));
-        let model = match resolve(&document.file, &[]) {
+        let settings = self.settings(document)?;
+        let model = match resolve(&document.file, &settings) {
             Ok((model, _)) => model,
             Err(mistakes) => {
                 self.mistakes += 1;
@@ -75,5 +77,32 @@ impl<K> Resolver<K> {
             format!("this one is grown by {steps} step{s}"),
         );
         None
+    }
+
+    /// The parameters that are set; `None` if something is wrong, which is said.
+    fn settings(&mut self, document: &FractalDocument) -> Option<Vec<Setting>> {
+        let params = &document.file.heading().params;
+        let names = params.iter().map(|param| param.name.value.as_str());
+        let settings = document.set.iter().map(|(name, number)| {
+            let value = self.constant(number);
+            if !names.clone().any(|known| known == name.value) {
+                let hint = match did_you_mean(&name.value, names.clone()) {
+                    Some(hint) => hint,
+                    None if params.is_empty() => "it has none".into(),
+                    None => format!("it has: {}", names.clone().collect::<Vec<_>>().join(", ")),
+                };
+                let message = format!("this fractal has no parameter '{}'", name.value);
+                self.error_with_hint(&name.place, message, hint);
+                return None;
+            }
+            Some(Setting {
+                name: name.value.clone(),
+                value: value?,
+                written: None,
+                place: Some(number.place.clone()),
+            })
+        });
+        let settings: Vec<_> = settings.collect();
+        settings.into_iter().collect()
     }
 }

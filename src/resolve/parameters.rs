@@ -86,7 +86,9 @@ impl<K> Resolver<K> {
                 (Some(low), None) => format!("at least {low}"),
                 (None, high) => format!("at most {}", high.unwrap_or(f64::INFINITY)),
             };
-            let at = set.map_or(&written.value.place, |_| &written.name.place);
+            let at = set.map_or(&written.value.place, |set| {
+                set.place.as_ref().unwrap_or(&written.name.place)
+            });
             if let Some((where_to, limit)) = beyond {
                 let message = format!("'{name}' is {given}, {where_to} value {limit}");
                 self.error_with_hint(at, message, allowed);

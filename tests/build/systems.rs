@@ -39,6 +39,7 @@ condensation:
   - {ellipse: {centre: [0, 1], axes: [2, 1], rotate: 30}, weight: 3}
   - {disk: {centre: [0, 0], radius: 1/2}}
   - {fractal: random-tree, steps: 2, seed: 5, map: {scale: 1/2, rotate: lean}}
+  - {fractal: pythagoras, steps: 2, set: {angle: lean + 5}}
   - {point: [1, 2]}
 initial: {polygon: [[0, 0], [1, 0], [0, 1]]}
 steps: 4
@@ -68,6 +69,7 @@ dimension: 1.5
         .condensation(Set::ellipse((0, 1), (2, 1), 30).weight(3))
         .condensation(Set::disk((0, 0), 0.5))
         .condensation(Set::fractal("random-tree", 2).seed(5).placed(placed))
+        .condensation(Set::fractal("pythagoras", 2).parameters([("angle", "lean + 5")]))
         .condensation(Set::point((1, 2)))
         .initial(Set::polygon([(0, 0), (1, 0), (0, 1)]))
         .steps(4)

@@ -98,6 +98,7 @@ impl Entry {
             name: name.clone(),
             value,
             written: None,
+            place: None,
         });
         common::resolved(&common::document(&self.rule), &settings.collect::<Vec<_>>())
     }

@@ -57,6 +57,7 @@ fn a_random_tree_that_does_not_sway_is_the_simple_tree() {
         name: name.into(),
         value: 0.0,
         written: None,
+        place: None,
     });
     let graph = compiled(&resolved(&document("random-tree"), &still), 4);
     for n in 0..=4 {

@@ -4,11 +4,12 @@ use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, Shape
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
-use crate::document::{Number, Point};
+use crate::document::{Number, Point, Written};
 use crate::model::Kind;
 use crate::resolve::MOST_STEPS;
 
 use super::ifs::{PLACE, read_placing};
+use super::parameters::written;
 use super::{first_line, read};
 
 /// The keys of an initial set.
@@ -67,7 +68,7 @@ pub(super) const FORMS: [Member; 7] = [
 ];
 
 /// The keys that go with `fractal`.
-pub(super) const OF_FRACTAL: [Member; 3] = [
+pub(super) const OF_FRACTAL: [Member; 4] = [
     key(
         "steps",
         Form::Whole(0, Some(MOST_STEPS)),
@@ -77,6 +78,11 @@ pub(super) const OF_FRACTAL: [Member; 3] = [
         "seed",
         Form::Whole(0, None),
         "What the random draws of the fractal depend on; 0 if left out.",
+    ),
+    key(
+        "set",
+        Form::Names(&Form::Number, 0),
+        "Values of the fractal's parameters by name, in place of those of its file.",
     ),
     key(
         "map",
@@ -93,37 +99,43 @@ const WAYS: [Way; 7] = [
     alone(
         &["point"],
         &[
-            "segment", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+            "segment", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
+            "map",
         ],
     ),
     alone(
         &["segment"],
         &[
-            "point", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+            "point", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
+            "map",
         ],
     ),
     alone(
         &["polyline"],
         &[
-            "point", "segment", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "map",
+            "point", "segment", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
+            "map",
         ],
     ),
     alone(
         &["polygon"],
         &[
-            "point", "segment", "polyline", "disk", "ellipse", "fractal", "steps", "seed", "map",
+            "point", "segment", "polyline", "disk", "ellipse", "fractal", "steps", "seed", "set",
+            "map",
         ],
     ),
     alone(
         &["disk"],
         &[
-            "point", "segment", "polyline", "polygon", "ellipse", "fractal", "steps", "seed", "map",
+            "point", "segment", "polyline", "polygon", "ellipse", "fractal", "steps", "seed",
+            "set", "map",
         ],
     ),
     alone(
         &["ellipse"],
         &[
-            "point", "segment", "polyline", "polygon", "disk", "fractal", "steps", "seed", "map",
+            "point", "segment", "polyline", "polygon", "disk", "fractal", "steps", "seed", "set",
+            "map",
         ],
     ),
     alone(
@@ -248,6 +260,8 @@ fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
 fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option<FormDocument> {
     let steps = reader.optional_number(fields.take("steps"));
     let seed = reader.optional_number(fields.take("seed"));
+    let set = fields.take("set");
+    let set = set.map_or_else(Vec::new, |node| read_values(reader, node));
     let map = fields.take("map").and_then(|node| {
         let fields = reader.fields(node, &PLACE)?;
         Some(read_placing(reader, &fields))
@@ -270,9 +284,25 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
         file,
         steps,
         seed,
+        set,
         map,
         place: fields.place_of("fractal").clone(),
     })))
+}
+
+/// Values of parameters by name.
+fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number)> {
+    match &node.value {
+        Value::Mapping(values) => values
+            .iter()
+            .map(|(key, node)| (written(key), reader.number(node)))
+            .collect(),
+        _ => {
+            let hint = "{fractal: pythagoras, set: {angle: 30}}";
+            reader.mismatch(node, "a mapping of parameters to their values", hint);
+            Vec::new()
+        }
+    }
 }
 
 fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {
