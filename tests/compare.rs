@@ -225,6 +225,20 @@ fn a_picture_shows_the_difference() {
     assert_eq!(colours, expected.into());
 }
 
+/// A picture marks pixels, and keeps no points.
+#[test]
+fn a_picture_needs_no_points_that_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("difference.png");
+    let mut arguments = vec!["compare", "dragon", "dragon-ifs", "--tolerance", "0.1"];
+    arguments.extend(["--max-points", "2000", "--size", "200", "-o"]);
+    arguments.push(file.to_str().unwrap());
+    let output = kfrac(&arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("0 of A alone, 0 of B alone"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_compared_is_told() {
     for (arguments, status, said) in [

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::catalogue::Catalogue;
 use crate::document::{Document, Setting};
-use crate::figure::difference;
+use crate::figure::difference::{self, Pixels};
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::measure::{
@@ -232,19 +232,23 @@ impl Arguments {
         let mut bounds = *subjects[0].bounds();
         bounds.add_all(subjects[1].bounds());
         let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
-        let points = |which: usize| {
-            let points = subjects[which].cover(difference::pixel(&canvas), self.max_points);
-            points.map_err(|error| match error {
+        let [width, height] = canvas.size().map(|side| side as usize);
+        let most = MOST_POINTS_A_PIXEL.saturating_mul(width.saturating_mul(height));
+        let pixels = |which: usize| -> Result<Pixels, Failure> {
+            let mut pixels = Pixels::new(canvas);
+            let visited = subjects[which].visit(pixels.radius(), most, &mut |it| pixels.add(it));
+            visited.map_err(|error| match error {
                 NoCover::TooMany(_) => anyhow!(
                     "{} cannot be drawn: its pixels take too many points; a smaller --size \
-                     takes fewer, and --max-points allows more",
+                     takes fewer",
                     both[which].loaded.name
                 )
                 .into(),
                 error => explain(error, &both[which].loaded),
-            })
+            })?;
+            Ok(pixels)
         };
-        let (first, second) = (points(0)?, points(1)?);
+        let (first, second) = (pixels(0)?, pixels(1)?);
         let options = render::Options {
             format,
             style: Style {
@@ -274,6 +278,10 @@ impl Arguments {
         Ok(())
     }
 }
+
+/// The most points that are looked for in a picture, as a multiple of its pixels: more than discs of
+/// half a pixel take.
+const MOST_POINTS_A_PIXEL: usize = 16;
 
 /// Steps that graphs are compiled for where the limit is asked for.
 const STEPS: u32 = 64;

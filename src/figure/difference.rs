@@ -19,20 +19,19 @@ pub const COLOURS: [Colour; 3] = [
 
 /// Draws the pixels that hold points of two sets; tells the number of pixels of every colour.
 ///
-/// The points must lie closer than a pixel: see [`pixel`]. A pixel counts as one of both sets if one
-/// beside it, corners included, is of the other: so rounding and points that stand for discs make
-/// no difference.
+/// A pixel counts as one of both sets if one beside it, corners included, is of the other: so rounding
+/// and points that stand for discs make no difference.
 ///
 /// # Errors
 ///
 /// If the picture is too large, or `out` fails.
 pub fn write(
     canvas: Canvas,
-    sets: [&[DVec2]; 2],
+    sets: [&Pixels; 2],
     options: &Options,
     out: &mut impl Write,
 ) -> Result<[u64; 3], RenderError> {
-    let planes = sets.map(|points| plane(&canvas, points));
+    let planes = sets.map(|pixels| pixels.plane.as_slice());
     let difference = Difference {
         canvas,
         classes: classes(&canvas, &planes),
@@ -52,22 +51,36 @@ pub fn write(
     Ok(counts)
 }
 
-/// The radius to cover sets by for a picture: half a pixel.
-#[must_use]
-pub fn pixel(canvas: &Canvas) -> f64 {
-    0.5 / canvas.scale()
+/// The pixels of a picture that hold points of a set.
+#[derive(Clone, Debug)]
+pub struct Pixels {
+    canvas: Canvas,
+    plane: Vec<bool>,
 }
 
-/// No set.
-const NONE: u8 = 3;
+impl Pixels {
+    /// None yet.
+    #[must_use]
+    pub fn new(canvas: Canvas) -> Self {
+        let [width, height] = canvas.size().map(|side| side as usize);
+        Self {
+            canvas,
+            plane: vec![false; width * height],
+        }
+    }
 
-fn plane(canvas: &Canvas, points: &[DVec2]) -> Vec<bool> {
-    let [width, height] = canvas.size().map(|side| side as usize);
-    let mut plane = vec![false; width * height];
-    for &point in points {
-        let pixel = canvas.pixel(point);
+    /// The radius to cover sets by whose points are added: half a pixel.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        0.5 / self.canvas.scale()
+    }
+
+    /// Adds a point; one beyond the picture is left out.
+    pub fn add(&mut self, point: DVec2) {
+        let [width, height] = self.canvas.size().map(|side| side as usize);
+        let pixel = self.canvas.pixel(point);
         if pixel.min_element() < 0.0 {
-            continue;
+            return;
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -76,14 +89,16 @@ fn plane(canvas: &Canvas, points: &[DVec2]) -> Vec<bool> {
         )]
         let [column, row] = [pixel.x, pixel.y].map(|at| at as usize);
         if column < width && row < height {
-            plane[row * width + column] = true;
+            self.plane[row * width + column] = true;
         }
     }
-    plane
 }
 
+/// No set.
+const NONE: u8 = 3;
+
 /// For every pixel, in which set it is.
-fn classes(canvas: &Canvas, planes: &[Vec<bool>; 2]) -> Vec<u8> {
+fn classes(canvas: &Canvas, planes: &[&[bool]; 2]) -> Vec<u8> {
     let [width, height] = canvas.size().map(|side| side as usize);
     let near = |plane: &[bool], place: usize| {
         let (column, row) = (place % width, place / width);
@@ -93,8 +108,8 @@ fn classes(canvas: &Canvas, planes: &[Vec<bool>; 2]) -> Vec<u8> {
     };
     let class = |place: usize| match [planes[0][place], planes[1][place]] {
         [true, true] => 2,
-        [true, false] if near(&planes[1], place) => 2,
-        [false, true] if near(&planes[0], place) => 2,
+        [true, false] if near(planes[1], place) => 2,
+        [false, true] if near(planes[0], place) => 2,
         [true, false] => 0,
         [false, true] => 1,
         [false, false] => NONE,

@@ -87,7 +87,23 @@ impl<'a> Subject<'a> {
     ///
     /// If it takes more than `most` points.
     pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<DVec2>, NoCover> {
-        let mut region = Region::new(&self.bounds, radius, most);
+        let mut points = Vec::new();
+        self.visit(radius, most, &mut |point| points.push(point))?;
+        Ok(points)
+    }
+
+    /// The same points one by one, which takes little memory.
+    ///
+    /// # Errors
+    ///
+    /// If it takes more than `most` points.
+    pub fn visit(
+        &self,
+        radius: f64,
+        most: usize,
+        visit: &mut dyn FnMut(DVec2),
+    ) -> Result<(), NoCover> {
+        let mut region = Region::new(&self.bounds, radius, most, visit);
         match &self.set {
             Set::Limit => cover_limit(self.graph, &mut region)?,
             Set::Approximant(growth) => {
@@ -101,7 +117,7 @@ impl<'a> Subject<'a> {
                 })?;
             }
         }
-        Ok(region.points)
+        Ok(())
     }
 }
 
@@ -127,7 +143,7 @@ fn reaches(graph: &Graph) -> Vec<f64> {
     })
 }
 
-fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
+fn cover_limit(graph: &Graph, region: &mut Region<'_>) -> Result<(), NoCover> {
     let alive = graph.alive(true);
     let middle = graph.middle();
     let reaches = reaches(graph);
@@ -140,8 +156,16 @@ fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
         }
         let object = &graph.objects()[number];
         let frame = Frame { map, ..Frame::UNIT };
-        if frame.stretch() * reaches[number] <= region.radius {
-            region.add(map.transform_point2(middle))?;
+        let (middle, reach) = (
+            map.transform_point2(middle),
+            frame.stretch() * reaches[number],
+        );
+        if region.covers(middle, reach) {
+            region.work(1)?;
+            continue;
+        }
+        if reach <= region.radius {
+            region.add(middle)?;
             continue;
         }
         match &object.replacement {
@@ -158,12 +182,12 @@ fn cover_limit(graph: &Graph, region: &mut Region) -> Result<(), NoCover> {
     Ok(())
 }
 
-struct Approximant<'a> {
+struct Approximant<'a, 'v> {
     graph: &'a Graph,
-    region: &'a mut Region,
+    region: &'a mut Region<'v>,
 }
 
-impl Visitor for Approximant<'_> {
+impl Visitor for Approximant<'_, '_> {
     type Error = TooMany;
 
     fn begin(&mut self, _: Fractal) -> Result<(), TooMany> {

@@ -12,32 +12,40 @@ pub struct TooMany {
 }
 
 /// The points of a set, so far.
-pub(super) struct Region {
-    pub(super) points: Vec<DVec2>,
-    /// How near points that are added must be to the set, and it to them.
+pub(super) struct Region<'a> {
+    visit: &'a mut dyn FnMut(DVec2),
+    /// How near points that are added must be to what they stand for.
     pub(super) radius: f64,
     most: usize,
+    /// The points that have been visited.
+    visited: usize,
     /// What has been done, in points that were added or copies that were looked into.
     worked: usize,
-    seen: Option<Seen>,
+    covered: Option<Covered>,
 }
 
 /// More is not done, as a multiple of the points that are allowed.
 const WORK_A_POINT: usize = 16;
 
-/// Squares of a grid in which there is a point.
-struct Seen {
+/// What a point stands for is no farther from it than this multiple of the radius within which the set
+/// must be of points. The rest is left for what is covered by points nearby.
+const NEAR: f64 = 0.5;
+
+/// Squares of a grid of which nothing is farther from a point than a radius.
+struct Covered {
     corner: DVec2,
     side: f64,
     columns: usize,
+    rows: usize,
     bits: Vec<u64>,
 }
 
-impl Seen {
-    /// The side of squares, as a multiple of the radius, and what is left of that for points: few
-    /// points and few copies to look into.
+impl Covered {
+    /// The side of squares, as a multiple of the radius.
     const SIDE: f64 = 0.35;
-    const REST: f64 = 1.0 - Self::SIDE * std::f64::consts::SQRT_2;
+
+    /// Larger discs are not looked for, nor are rows of squares that do not fit into a word.
+    const WIDEST: usize = 16;
 
     /// Grids of more squares than this are not made: 128 mebibytes.
     const MOST: f64 = 1e9;
@@ -60,28 +68,76 @@ impl Seen {
             corner,
             side,
             columns,
-            bits: vec![0; (columns * rows).div_ceil(64)],
+            rows,
+            // A row that ends in the last word is read with the next one.
+            bits: vec![0; (columns * rows).div_ceil(64) + 1],
         })
     }
 
-    /// Whether a point is the first one in its square.
-    fn is_first(&mut self, point: DVec2) -> bool {
-        let place = (point - self.corner) / self.side;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "casts from floats saturate"
-        )]
-        let [column, row] = [place.x as usize, place.y as usize];
-        let square = row * self.columns + column.min(self.columns - 1);
-        let Some(bits) = self.bits.get_mut(square / 64) else {
-            return true;
-        };
-        let bit = 1 << (square % 64);
-        let is_first = *bits & bit == 0;
-        *bits |= bit;
-        is_first
+    /// Whether all squares are covered that a disc comes near to, of which there are few.
+    fn has(&self, middle: DVec2, radius: f64) -> bool {
+        let middle = (middle - self.corner) / self.side;
+        let radius = radius / self.side;
+        let [low, high] = [middle - radius, middle + radius];
+        let (left, right) = (within(low.x, self.columns), within(high.x, self.columns));
+        let (bottom, top) = (within(low.y, self.rows), within(high.y, self.rows));
+        if right - left >= Self::WIDEST || top - bottom >= Self::WIDEST {
+            return false;
+        }
+        let mask = (1 << (right - left + 1)) - 1;
+        (bottom..=top).all(|row| {
+            let (word, shift) = self.place(row, left);
+            self.two(word) >> shift & mask == mask
+        })
     }
+
+    /// Covers the squares that lie in a disc.
+    fn add(&mut self, middle: DVec2, radius: f64) {
+        let middle = (middle - self.corner) / self.side;
+        let radius = radius / self.side;
+        let (bottom, top) = (
+            within(middle.y - radius, self.rows),
+            within(middle.y + radius, self.rows),
+        );
+        for row in bottom..=top {
+            #[expect(clippy::cast_precision_loss, reason = "rows are few")]
+            let below = row as f64 - middle.y;
+            let away = below.abs().max((below + 1.0).abs());
+            let half = (radius * radius - away * away).sqrt();
+            let (left, right) = ((middle.x - half).ceil(), (middle.x + half).floor());
+            // Of a row that the disc does not hold, the half is no number.
+            if right - left >= 1.0 {
+                let left = within(left, self.columns);
+                let count = within(right, self.columns) - left;
+                let (word, shift) = self.place(row, left);
+                let mask: u128 = ((1 << count) - 1) << shift;
+                #[expect(clippy::cast_possible_truncation, reason = "two halves of a word")]
+                let halves = [mask as u64, (mask >> 64) as u64];
+                self.bits[word] |= halves[0];
+                self.bits[word + 1] |= halves[1];
+            }
+        }
+    }
+
+    /// The word that holds a square, and its bit.
+    fn place(&self, row: usize, column: usize) -> (usize, usize) {
+        let square = row * self.columns + column;
+        (square / 64, square % 64)
+    }
+
+    fn two(&self, word: usize) -> u128 {
+        u128::from(self.bits[word]) | u128::from(self.bits[word + 1]) << 64
+    }
+}
+
+/// The square of a row, or the row, that a coordinate lies in; the nearest for those beyond.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn within(coordinate: f64, count: usize) -> usize {
+    (coordinate as usize).min(count - 1)
 }
 
 /// The radius of a disc about a point that holds an outline.
@@ -97,29 +153,45 @@ pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
         .fold(0.0, f64::max)
 }
 
-impl Region {
+impl<'a> Region<'a> {
     /// No point yet of a set in a box. In the end, none of the set may be farther than `radius` from
-    /// a point, nor any point from the set.
-    pub(super) fn new(bounds: &Bounds, radius: f64, most: usize) -> Self {
-        let seen = Seen::new(bounds, radius);
+    /// a point that has been visited, nor any point from the set.
+    pub(super) fn new(
+        bounds: &Bounds,
+        radius: f64,
+        most: usize,
+        visit: &'a mut dyn FnMut(DVec2),
+    ) -> Self {
         Self {
-            points: Vec::new(),
-            // A point that is left out is no farther from another than a square is wide.
-            radius: seen.as_ref().map_or(radius, |_| Seen::REST * radius),
+            visit,
+            visited: 0,
+            radius: NEAR * radius,
             most,
             worked: 0,
-            seen,
+            covered: Covered::new(bounds, radius),
         }
     }
 
+    /// Adds a point that stands for some of the set, no farther from it than the radius.
     pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
-        if self.seen.as_mut().is_none_or(|seen| seen.is_first(point)) {
-            self.points.push(point);
-            if self.points.len() > self.most {
+        if !self.covers(point, self.radius) {
+            self.visited += 1;
+            if self.visited > self.most {
                 return Err(TooMany { most: self.most });
+            }
+            (self.visit)(point);
+            let radius = self.radius / NEAR;
+            if let Some(covered) = &mut self.covered {
+                covered.add(point, radius);
             }
         }
         self.work(1)
+    }
+
+    /// Whether a disc is covered already: where copies overlap, few must be looked into.
+    pub(super) fn covers(&self, middle: DVec2, radius: f64) -> bool {
+        let covered = self.covered.as_ref();
+        covered.is_some_and(|covered| covered.has(middle, radius))
     }
 
     pub(super) fn work(&mut self, work: usize) -> Result<(), TooMany> {
