@@ -5,6 +5,8 @@
 
 #[path = "systems/fractals.rs"]
 mod fractals;
+#[path = "systems/same.rs"]
+mod same;
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -77,6 +79,13 @@ fn elements(graph: &Graph, steps: u32) -> Vec<Element> {
     let mut all = All(Vec::new());
     walk(graph, &Growth::steps(steps), &mut all).unwrap();
     all.0
+}
+
+/// Those of them that are visible.
+fn drawn(graph: &Graph, steps: u32) -> Vec<Element> {
+    let mut all = elements(graph, steps);
+    all.retain(|element| graph.objects()[element.object].visible);
+    all
 }
 
 fn maps(system: &System) -> Vec<DAffine2> {
@@ -296,7 +305,7 @@ fn condensation_sets_are_drawn_at_every_level() {
     let graph = Graph::of_system(&system);
     let middle = DVec2::new(0.5, 0.0);
     for steps in 0..5 {
-        let mut points: Vec<f64> = elements(&graph, steps)
+        let mut points: Vec<f64> = drawn(&graph, steps)
             .iter()
             .map(|element| element.frame.map.transform_point2(middle).x)
             .collect();
@@ -311,7 +320,7 @@ fn condensation_sets_are_drawn_at_every_level() {
     }
     // Of two sets without an initial set, both are there from the beginning.
     let graph = Graph::of_system(&named("tree-libeskind-hadas"));
-    let counts = [0, 1, 2].map(|steps| elements(&graph, steps).len());
+    let counts = [0, 1, 2].map(|steps| drawn(&graph, steps).len());
     assert_eq!(counts, [2, 8, 26]);
 }
 

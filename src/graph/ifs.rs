@@ -22,9 +22,11 @@ impl Graph {
     /// every map; in a recurrent system, inside f_j there are the images f_i of what stands inside
     /// f_i, over the edges from i to j, for f_j is applied after f_i. So approximant 0 is the initial
     /// set I, approximant 1 the union of all f_j(I), approximant 2 that of all f_j(f_i(I)), and so on.
-    /// Condensation sets are infertile. Where no initial set is given, the first condensation set is
-    /// it, and the others are drawn from the beginning. Of an initial set of several outlines the
-    /// others are objects that vanish when the first one is replaced.
+    /// Condensation sets are infertile. Where no initial set is given but they are, they are drawn
+    /// from the beginning, beside objects that are not drawn themselves. Of an initial set of several
+    /// outlines the others are objects that vanish when the first one is replaced.
+    ///
+    /// A map that is listed again, with the same maps before it, makes the same images: it is left out.
     #[must_use]
     pub fn of_system(system: &System) -> Self {
         Self::compile_system(system, false)
@@ -46,10 +48,7 @@ impl Graph {
         let mut graph = Compiler::new(system, tells_last).run();
         graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
-        let initial = ifs
-            .initial()
-            .or_else(|| Some(&ifs.condensation().first()?.shape))
-            .map_or_else(|| filling(limit), outline);
+        let initial = ifs.initial().map_or_else(|| filling(limit), outline);
         let mut whole = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() {
             initial.add_to(&mut whole, &DAffine2::IDENTITY, 0.0);
@@ -123,8 +122,9 @@ struct Compiler<'s> {
     chained: bool,
     /// Whether there are objects for every map that may be applied last.
     tells_last: bool,
-    /// The maps that may be applied before each.
+    /// The maps that may be applied before each, and all maps, without those that are listed again.
     before: Vec<Vec<usize>>,
+    maps: Vec<usize>,
 }
 
 impl<'s> Compiler<'s> {
@@ -137,6 +137,16 @@ impl<'s> Compiler<'s> {
             None => before = vec![(0..count).collect(); count],
         }
         before.iter_mut().for_each(|maps| maps.sort_unstable());
+        let maps = ifs.maps();
+        let is_same =
+            |a: usize, b: usize| maps[a].affine == maps[b].affine && before[a] == before[b];
+        let first = |map: usize| (0..map).find(|&other| is_same(other, map)).unwrap_or(map);
+        let firsts: Vec<usize> = (0..count).map(first).collect();
+        for maps in &mut before {
+            maps.iter_mut().for_each(|map| *map = firsts[*map]);
+            maps.sort_unstable();
+            maps.dedup();
+        }
         let sets = ifs.condensation().iter();
         Self {
             ifs,
@@ -149,6 +159,7 @@ impl<'s> Compiler<'s> {
             chained: system.chained,
             tells_last,
             before,
+            maps: (0..count).filter(|&map| firsts[map] == map).collect(),
         }
     }
 
@@ -188,8 +199,7 @@ impl<'s> Compiler<'s> {
 
     fn run(&self) -> Graph {
         let maps = self.ifs.maps().len();
-        let all: Vec<usize> = (0..maps).collect();
-        let whole = self.production(None, &all);
+        let whole = self.production(None, &self.maps);
         let mut objects = vec![Object {
             replacement: Replacement::Fixed(Arc::new(whole)),
             ..self.object(INITIAL, None, None)
@@ -241,7 +251,9 @@ impl<'s> Compiler<'s> {
     fn object(&self, base_element: usize, map: Option<usize>, last_map: Option<usize>) -> Object {
         Object {
             base_element,
-            visible: true,
+            visible: base_element != INITIAL
+                || self.sets.is_empty()
+                || self.ifs.initial().is_some(),
             origin: map,
             last_map,
             tint: None,
@@ -256,7 +268,7 @@ impl<'s> Compiler<'s> {
     fn drawn_with_first(&self) -> std::ops::Range<usize> {
         match self.ifs.initial() {
             Some(_) => self.sets.len()..self.outlines(),
-            None => 1.min(self.sets.len())..self.sets.len(),
+            None => 0..self.sets.len(),
         }
     }
 

@@ -155,7 +155,10 @@ impl Resolver<OfInstancing> {
                     "with all their levels the objects hold more than {MOST_INSTANCES} instances and \
                      sides of shapes"
                 );
-                let hint = "let fewer levels, or smaller objects, be instanced";
+                let last = objects.last().map_or("", |object| &object.name);
+                let hint = format!(
+                    "let fewer levels, or smaller objects, be instanced; {last} comes last"
+                );
                 self.error_with_hint(&document.heading.place, message, hint);
             }
             if self.diagnostics.has_errors() {

@@ -1,0 +1,57 @@
+//! Maps that are listed twice, and sets of every level.
+
+use super::*;
+
+const TWICE: &str = "maps:\n  - {scale: 1/3}\n  - {scale: 1/3, shift: [2/3, 0]}\n  - {scale: 1/3, shift: [2/3, 0]}\n";
+
+/// It makes nothing that is not there; but it is picked twice as often.
+#[test]
+fn a_map_that_is_listed_twice_is_one() {
+    let twice = system(TWICE);
+    let once = named("cantor");
+    let [graph, expected] = [&twice, &once].map(|system| Graph::of_system(system));
+    for steps in 0..5 {
+        assert_eq!(
+            elements(&graph, steps).len(),
+            elements(&expected, steps).len()
+        );
+        assert_eq!(
+            elements(&Graph::telling_last_maps(&twice).unwrap(), steps).len(),
+            1 << steps
+        );
+    }
+    let dimension = |graph| similarity_dimension(graph).value.unwrap();
+    assert_close("dimension", dimension(&graph), dimension(&expected), 1e-12);
+    assert_eq!(graph.limit_bounds(), expected.limit_bounds());
+    assert_close(
+        "mean",
+        twice.ifs().measure().unwrap().moments.mean.x,
+        2.0 / 3.0,
+        1e-12,
+    );
+    // Not if other maps may be applied before it.
+    let apart = system(&format!("{TWICE}edges: {{1: [1, 2], 2: [1, 3], 3: [2]}}\n"));
+    assert_eq!(elements(&Graph::of_system(&apart), 2).len(), 5);
+    let alike = system(&format!("{TWICE}edges: {{1: [1, 2, 3], 2: [1], 3: [1]}}\n"));
+    let fewer =
+        system("maps: [{scale: 1/3}, {scale: 1/3, shift: [2/3, 0]}]\nedges: {1: [1, 2], 2: [1]}\n");
+    let [alike, fewer] = [alike, fewer].map(|system| elements(&Graph::of_system(&system), 5).len());
+    assert_eq!(alike, fewer);
+}
+
+/// All sets of level k are born in step k, the first one of several as the others.
+#[test]
+fn the_sets_of_a_level_are_born_in_one_step() {
+    let maps = "maps: [{scale: 1/2}, {scale: 1/2, shift: [1, 0]}]\n";
+    let sets =
+        "condensation: [{disk: {radius: 1}}, {segment: [[0, 0], [1, 1]]}, {point: [0, 1]}]\n";
+    let graph = Graph::of_system(&system(&format!("{maps}{sets}")));
+    let mut counts = BTreeMap::new();
+    for element in drawn(&graph, 4) {
+        assert!(!element.fertile);
+        let level = -element.frame.map.x_axis.x.log2();
+        assert_close("level", f64::from(element.born), level, 1e-12);
+        *counts.entry(element.born).or_insert(0) += 1;
+    }
+    assert_eq!(counts, (0..5).map(|level| (level, 3 << level)).collect());
+}
