@@ -496,6 +496,22 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     for caption in ["frame = 1: ", "frame = 2: ", "frame = 3: "] {
         assert!(sheet.contains(caption), "{caption}");
     }
+    let parts = [
+        "--set",
+        "re=0.3..0.5",
+        "--set",
+        "im=0,0.5",
+        "--samples",
+        "2",
+    ];
+    let pair = ["sheet", "complex-pair", "--steps", "2", "-o", "-"];
+    let (code, sheet, said) = kfrac(&[&pair[..], &parts].concat());
+    assert_eq!(code, Some(0), "{said}");
+    for caption in ["re = 0.3, im = 0: ", "re = 0.5, im = 0.5: "] {
+        assert!(sheet.contains(caption), "{caption}");
+    }
+    let (code, _, said) = kfrac(&[&pair[..], &parts[..5], &["3"]].concat());
+    assert!(code == Some(2) && said.contains("do not go with"), "{said}");
     let (code, _, said) = kfrac(&["info", "pythagoras", "--set", "angle=20,40"]);
     assert!(code == Some(2) && said.contains("kfrac sheet"), "{said}");
     let (code, table, said) = kfrac(&[

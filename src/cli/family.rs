@@ -108,21 +108,36 @@ fn plain(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 
-/// The settings that are the same for all pictures, and those of the parameter that is swept.
+/// The settings that are the same for all members, and for every member those of the parameters that are
+/// swept: two or more together, such as the parts of a complex number, with as many values each.
 pub(super) fn split(
     assignments: &[Assignment],
     samples: u32,
-) -> Result<(Vec<Setting>, Vec<Setting>), Failure> {
+) -> Result<(Vec<Setting>, Vec<Vec<Setting>>), Failure> {
     let mut fixed = Vec::new();
-    let mut swept = Vec::new();
+    let mut swept: Vec<Vec<Setting>> = Vec::new();
     for assignment in assignments {
-        match assignment.several(samples) {
-            None => fixed.push(assignment.setting()?),
-            Some(several) if swept.is_empty() => swept = several,
-            Some(_) => {
-                let message = format!("--set {}: one parameter is swept already", assignment.name);
-                return Err(Failure::Usage(message));
-            }
+        let Some(several) = assignment.several(samples) else {
+            fixed.push(assignment.setting()?);
+            continue;
+        };
+        if swept.is_empty() {
+            swept = vec![Vec::new(); several.len()];
+        } else if swept.len() != several.len() {
+            let message = format!(
+                "--set {}: {} values do not go with the {} of {}",
+                assignment.name,
+                several.len(),
+                swept.len(),
+                swept[0][0].name
+            );
+            return Err(Failure::Usage(message));
+        } else if swept[0].iter().any(|it| it.name == assignment.name) {
+            let message = format!("--set {0}: {0} is swept already", assignment.name);
+            return Err(Failure::Usage(message));
+        }
+        for (member, setting) in swept.iter_mut().zip(several) {
+            member.push(setting);
         }
     }
     Ok((fixed, swept))
@@ -130,13 +145,13 @@ pub(super) fn split(
 
 #[cfg(test)]
 mod tests {
-    use super::{assignment, split};
+    use super::{Setting, assignment, split};
 
     #[test]
     fn values_are_one_or_several() {
         let values = |text: &str| {
             let (fixed, swept) = split(&[assignment(text).unwrap()], 3).unwrap();
-            let all = fixed.into_iter().chain(swept);
+            let all = fixed.into_iter().chain(swept.into_iter().flatten());
             all.map(|setting| setting.value).collect::<Vec<_>>()
         };
         assert_eq!(values("a=180/4"), [45.0]);
@@ -146,7 +161,15 @@ mod tests {
         for wrong in ["a", "a=", "a=1,", "a=1..", "a=1/0", "a=x,2"] {
             assert!(assignment(wrong).is_err(), "{wrong}");
         }
-        let two = ["a=1,2", "b=1,2"].map(|text| assignment(text).unwrap());
-        assert!(split(&two, 3).is_err());
+        let together = |texts: &[&str]| {
+            let all: Vec<_> = texts.iter().map(|text| assignment(text).unwrap()).collect();
+            let (_, swept) = split(&all, 3).ok()?;
+            let values = |member: &Vec<Setting>| member.iter().map(|it| it.value).collect();
+            Some(swept.iter().map(values).collect::<Vec<Vec<f64>>>())
+        };
+        let path = together(&["re=0..1", "c=7", "im=5,6,8"]).unwrap();
+        assert_eq!(path, [[0.0, 5.0], [0.5, 6.0], [1.0, 8.0]]);
+        assert_eq!(together(&["re=1,2", "im=1,2,3"]), None);
+        assert_eq!(together(&["re=1,2", "re=1,2"]), None);
     }
 }

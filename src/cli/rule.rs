@@ -52,6 +52,9 @@ pub(super) struct RuleArguments {
     pub(super) omit: Vec<u32>,
 }
 
+/// A member of a family, with the settings that make it.
+pub(super) type Member = (Vec<Setting>, Loaded);
+
 /// A rule that has been read.
 pub(super) struct Loaded {
     /// What messages call it.
@@ -175,25 +178,24 @@ impl RuleArguments {
         self.resolve(document, settings?, quiet)
     }
 
-    /// The same for several values of a parameter, each with the setting that makes it; a range has so
-    /// many. Without one, there is none.
+    /// The same for several values of a parameter, or of some together, each with the settings that make
+    /// it; a range has so many. Without one, there is none.
     pub(super) fn load_family(
         &self,
         catalogue: &Catalogue,
         quiet: bool,
         samples: u32,
-    ) -> Result<Vec<(Setting, Loaded)>, Failure> {
+    ) -> Result<Vec<Member>, Failure> {
         let (fixed, swept) = family::split(&self.set, samples)?;
         if swept.is_empty() {
             return Ok(Vec::new());
         }
         let document = Document::read(&open(&self.rule, catalogue)?, catalogue)?;
-        let members = swept.into_iter().enumerate().map(|(number, setting)| {
-            let mut settings = fixed.clone();
-            settings.push(setting.clone());
+        let members = swept.into_iter().enumerate().map(|(number, own)| {
+            let settings = [fixed.as_slice(), &own].concat();
             let mut loaded = self.resolve(document.clone(), settings, quiet || number > 0)?;
             loaded.settings.clone_from(&fixed);
-            Ok((setting, loaded))
+            Ok((own, loaded))
         });
         members.collect()
     }

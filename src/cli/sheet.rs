@@ -15,7 +15,7 @@ use crate::wording;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
-use super::rule::{Loaded, RuleArguments};
+use super::rule::{Loaded, Member, RuleArguments};
 use super::steps::Several;
 use super::{Failure, format, help, length, output, steps, text};
 
@@ -23,6 +23,7 @@ use super::{Failure, format, help, length, output, steps, text};
 ///
 /// All are drawn to one scale, each with its step and its number of elements under it. Where --set
 /// gives a parameter several values, as angle=10,20,30 or angle=0..90, it is one step for each of them.
+/// Several parameters that are swept go together, the first values first, and have as many values.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -59,6 +60,8 @@ Examples:
       Draws the first approximants of the Koch curve, into koch-sheet.svg
   kfrac sheet pythagoras --set angle=20..70 --samples 6
       Draws the tree for six angles
+  kfrac sheet complex-pair --set re=0.3..0.6 --set im=0.2..0.5 --samples 8 --columns 4
+      Draws a fractal for eight values of a complex number: both of its parts at once
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
       Draws three of them in a row, larger, as pixels
 ";
@@ -72,7 +75,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             .rule
             .load_family(catalogue, arguments.growth.quiet, arguments.samples)?;
     if !family.is_empty() {
-        let grown = |(setting, loaded): (_, Loaded)| (setting, loaded.grown(&arguments.growth));
+        let grown = |(settings, loaded): Member| (settings, loaded.grown(&arguments.growth));
         let family: Vec<_> = family.into_iter().map(grown).collect();
         return arguments.draw_family(&family, format, start);
     }
@@ -126,14 +129,14 @@ impl Arguments {
         style
     }
 
-    /// Draws one step for every value of a parameter.
+    /// Draws one step for every value of a parameter, or of some together.
     fn draw_family(
         &self,
-        family: &[(Setting, Loaded)],
+        family: &[Member],
         format: render::Format,
         start: Instant,
     ) -> Result<(), Failure> {
-        let (first, loaded) = &family[0];
+        let (swept, loaded) = &family[0];
         let step = match self.steps.as_ref().map(Several::as_slice) {
             None => steps::choose(None, loaded)?,
             Some([step]) => *step,
@@ -151,17 +154,23 @@ impl Arguments {
         }
         let default = self.rule.file("-sheet", format.name());
         let path = self.output.as_ref().unwrap_or(&default);
-        let values: Vec<_> = family.iter().map(|(it, _)| it.value.to_string()).collect();
-        let sweep = ("set", format!("{}={}", first.name, values.join(",")));
-        let shown = format!("Step {step} for values of {}", first.name);
-        let which = vec![sweep, ("steps", step.to_string())];
+        let sweep = |(number, first): (usize, &Setting)| {
+            let values = family.iter().map(|(all, _)| all[number].value.to_string());
+            let values: Vec<_> = values.collect();
+            ("set", format!("{}={}", first.name, values.join(",")))
+        };
+        let mut which: Vec<_> = swept.iter().enumerate().map(sweep).collect();
+        which.push(("steps", step.to_string()));
+        let names: Vec<_> = swept.iter().map(|setting| setting.name.as_str()).collect();
+        let names = names.join(" and ");
+        let shown = format!("Step {step} for values of {names}");
         let options = self.options(loaded, &shown, which, format);
         let (written, bytes) = output::write(path, self.growth.quiet, |out, progress| {
             let cells = family
                 .iter()
                 .zip(&graphs)
-                .map(|((it, _), graph)| sheet::Cell {
-                    name: format!("{} = {}", it.name, rounded(it.value)),
+                .map(|((settings, _), graph)| sheet::Cell {
+                    name: caption(settings),
                     graph,
                     growth: self.growth.to(step, progress),
                 });
@@ -175,7 +184,7 @@ impl Arguments {
                 "{}: {} of {} at step {step}, {}, {width} x {height} pixels, {}, {:.2} s",
                 output::called(path),
                 wording::counted(&family.len().into(), "value"),
-                first.name,
+                names,
                 wording::counted(&written.elements.into(), "element"),
                 wording::bytes(bytes),
                 start.elapsed().as_secs_f64(),
@@ -209,6 +218,13 @@ impl Arguments {
             ..render::Options::default()
         }
     }
+}
+
+/// What is under a member of a family.
+fn caption(settings: &[Setting]) -> String {
+    let all = settings.iter();
+    let all = all.map(|setting| format!("{} = {}", setting.name, rounded(setting.value)));
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// A value as a caption has it, to six digits.

@@ -1,4 +1,6 @@
-//! Maps that are listed twice, and sets of every level.
+//! Maps that are listed twice, sets of every level, and frames of a family.
+
+use kfrac::document::Setting;
 
 use super::*;
 
@@ -54,4 +56,50 @@ fn the_sets_of_a_level_are_born_in_one_step() {
         *counts.entry(element.born).or_insert(0) += 1;
     }
     assert_eq!(counts, (0..5).map(|level| (level, 3 << level)).collect());
+}
+
+/// Figure 8 of Libeskind-Hadas & Maragos 1987: its table for the three frames, in radians.
+#[test]
+fn the_tree_bends_as_the_frames_of_the_paper() {
+    let with = |name: &str, value: f64| {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.rule("tree-libeskind-hadas").unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let setting = Setting {
+            name: name.into(),
+            value,
+            written: None,
+            place: None,
+        };
+        let Model::Ifs(system) = document.resolve(&[setting]).unwrap().0 else {
+            panic!("this is a system")
+        };
+        maps(&system)
+    };
+    let frames = [
+        (1.0, [-0.1, -0.7, 0.6], [0.0, 50.0]),
+        (2.0, [-0.2, -0.8, 0.7], [0.0, 50.0]),
+        (3.0, [-0.3, -0.9, 0.8], [5.0, 55.0]),
+    ];
+    for (frame, angles, top) in frames {
+        let scales = [[0.7, 0.85], [0.3, 0.4], [0.25, 0.4]];
+        let shifts = [top, [5.0, 20.0], [-5.0, 30.0]];
+        let bent = with("angle", -f64::to_degrees(angles[0]));
+        for (number, map) in with("frame", frame).into_iter().enumerate() {
+            let ([x, y], (sin, cos)) = (scales[number], f64::sin_cos(angles[number]));
+            let expected = [
+                x * cos,
+                x * sin,
+                -y * sin,
+                y * cos,
+                shifts[number][0],
+                shifts[number][1],
+            ];
+            for (own, expected) in map.to_cols_array().into_iter().zip(expected) {
+                assert_close("frame", own, expected, 1e-12);
+            }
+            // The angle alone turns, and moves nothing.
+            assert!(bent[number].matrix2.abs_diff_eq(map.matrix2, 1e-12));
+        }
+    }
 }

@@ -5,12 +5,11 @@ use std::path::Path;
 
 use serde_json::json;
 
-use crate::document::Setting;
 use crate::figure::dimension;
 use crate::measure::exact::{Dimensions, Grown, dimensions_of_graph};
 use crate::render::{self, Labels, RenderError};
 
-use super::super::rule::Loaded;
+use super::super::rule::Member;
 use super::super::{Failure, output};
 use super::input::compiled;
 
@@ -23,12 +22,16 @@ pub(super) struct Series {
 }
 
 impl Series {
-    pub(super) fn of(family: &[(Setting, Loaded)]) -> Result<Self, Failure> {
-        let (setting, first) = &family[0];
+    pub(super) fn of(family: &[Member]) -> Result<Self, Failure> {
+        let (settings, first) = &family[0];
+        let [setting] = settings.as_slice() else {
+            let message = "dimensions are told along one parameter, not along several together";
+            return Err(Failure::Usage(message.into()));
+        };
         let title = first.model.heading().description.title.clone();
-        let samples = family.iter().map(|(setting, loaded)| {
+        let samples = family.iter().map(|(settings, loaded)| {
             let (graph, _) = compiled(loaded)?;
-            Ok((setting.value, dimensions_of_graph(&graph)))
+            Ok((settings[0].value, dimensions_of_graph(&graph)))
         });
         Ok(Self {
             name: first.name.clone(),
