@@ -79,7 +79,7 @@ impl Points {
                 clippy::cast_sign_loss,
                 reason = "points lie on the grid, and casts from floats saturate"
             )]
-            let key = u64::from(at.y as u32) << 32 | u64::from(at.x as u32);
+            let key = (u64::from(at.y as u32) << 32) | u64::from(at.x as u32);
             let held = Held {
                 key,
                 places: 1,
@@ -119,7 +119,7 @@ fn join(boxes: &mut Vec<Held>, held: Held) {
 fn coarser(key: u64, base: u32) -> u64 {
     let base = u64::from(base);
     let (row, column) = (key >> 32, key & 0xffff_ffff);
-    row / base << 32 | column / base
+    ((row / base) << 32) | (column / base)
 }
 
 impl Tally {
