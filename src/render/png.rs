@@ -12,7 +12,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coverage::{RoundPen, Sheet};
+pub(super) use coverage::{RoundPen, Sheet, Stamp};
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 

@@ -19,9 +19,9 @@ use crate::mix::{MixMap, MixSet};
 use crate::rule::Piece;
 
 use super::hidden::Hidden;
-use super::png::Sheet;
+use super::png::{Sheet, Stamp};
 use super::scene::Scene;
-use super::surface::{FINE, Position, Stamp, Stamped, Stencil, position};
+use super::surface::{FINE, Position, Stamped, Stencil, position};
 
 /// Places to a pixel, along either axis: as many of these as there are runs for; for lines, half as many.
 const PHASES: [f64; 2] = [128.0, 64.0];

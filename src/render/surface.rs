@@ -5,7 +5,7 @@ use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
 use super::filled::Filled;
-use super::png::RoundPen;
+use super::png::{RoundPen, Stamp};
 
 /// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
 ///
@@ -89,17 +89,6 @@ pub(crate) struct Tuft {
     pub(crate) area: f32,
     /// Their width, in pixels.
     pub(crate) width: f32,
-}
-
-/// What is covered of some pixels, drawn once to be put in many places.
-#[derive(Debug)]
-pub(crate) struct Stamp {
-    /// Its upper left pixel, seen from that on which it is put,
-    pub(crate) corner: [i64; 2],
-    /// and how many of them are in a row.
-    pub(crate) width: usize,
-    /// What is covered of each, by rows: samples as bits.
-    pub(crate) cells: Box<[u64]>,
 }
 
 /// A stamp, and the pixel on which it is put.

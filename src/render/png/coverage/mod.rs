@@ -23,7 +23,7 @@ pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
 pub(crate) use polygon::{MOST_VERTICES, is_small, smoothed};
-pub(crate) use stamp::Sheet;
+pub(crate) use stamp::{Sheet, Stamp};
 
 /// A position in hundredths of a pixel.
 type Position = [i64; 2];

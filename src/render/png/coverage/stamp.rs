@@ -2,7 +2,17 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use super::{MARGIN, Plane, Position, RoundPen, bounding, cover, flattened, index, smoothed};
-use crate::render::surface::Stamp;
+
+/// What is covered of some pixels, drawn once to be put in many places.
+#[derive(Debug)]
+pub(crate) struct Stamp {
+    /// Its upper left pixel, seen from that on which it is put,
+    pub(crate) corner: [i64; 2],
+    /// and how many of them are in a row.
+    pub(crate) width: usize,
+    /// What is covered of each, by rows: samples as bits.
+    pub(crate) cells: Box<[u64]>,
+}
 
 /// A small plane apart from any picture, on which a stamp is drawn.
 pub(crate) struct Sheet {
@@ -117,8 +127,8 @@ impl Plane {
 mod tests {
     use std::sync::Arc;
 
+    use super::super::FINE;
     use super::{Plane, RoundPen, Sheet};
-    use crate::render::png::coverage::FINE;
 
     fn drained(plane: &mut Plane) -> Vec<(usize, u32)> {
         let mut covered = Vec::new();
