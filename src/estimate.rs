@@ -66,6 +66,18 @@ const WIDE_PATH: f64 = 34.0;
 /// cannot be made, or not without growing more than that.
 #[must_use]
 pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
+    /// From so many steps on, as many more take as much more as the last ones did.
+    const SPAN: u32 = 16;
+    let [before, known] = [steps.min(SPAN), steps.min(2 * SPAN)];
+    let bytes = instanced_bytes_written(graph, options, known)?;
+    if known == steps {
+        return Some(bytes);
+    }
+    let a_step = (bytes - instanced_bytes_written(graph, options, before)?) / f64::from(SPAN);
+    Some(bytes + a_step * f64::from(steps - known))
+}
+
+fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
     const MOST_GROWN: u64 = 20_000;
     struct Length(u64);
     impl Write for Length {

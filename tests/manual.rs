@@ -59,7 +59,7 @@ fn examples_work() {
             let words = own.split_whitespace().skip(1);
             let words = words.map(|word| word.replace('*', "other").replace('\'', ""));
             // Large enough to be drawn in bands; a wall's worth of pixels takes minutes without optimisation.
-            let words = words.map(|word| word.replace("60000", "9000"));
+            let words = words.map(|word| word.replace("60000", "4900"));
             let output = kfrac().args(words).current_dir(folder.path()).output();
             let output = output.unwrap();
             assert!(output.status.success(), "{example}: {output:?}");

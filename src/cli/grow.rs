@@ -58,7 +58,7 @@ pub(super) struct Arguments {
     /// The picture's long side in pixels or millimetres, or WIDTHxHEIGHT
     ///
     /// The other side follows from the shape; where both are given, the shape is fitted into them.
-    /// A PNG of more than 67 million pixels is drawn in bands, with less than 300 MB of memory.
+    /// A PNG of more than 17 million pixels is drawn in bands, with less than 300 MB of memory.
     /// 200mm and 210mmx297mm are sizes in millimetres, which a PNG does not have; a pixel is then,
     /// and in PDF and DXF always, 1/96 inch.
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]

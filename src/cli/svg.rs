@@ -82,7 +82,9 @@ pub(super) fn described(instanced: &Instanced) -> String {
     reason = "numbers from 0 to a million"
 )]
 fn count(number: f64) -> String {
-    if number < 1e6 {
+    if number.is_infinite() {
+        "more than 1e308".into()
+    } else if number < 1e6 {
         wording::grouped(&(number as u64).into())
     } else {
         format!("about {number:.1e}")

@@ -147,7 +147,7 @@ pub struct Options {
     /// steps and not with the elements. Other formats do not look at this; detail and plots are not
     /// for it.
     pub instanced: bool,
-    /// The most pixels of a PNG that is drawn in one piece, 2^26 unless said otherwise. A larger one
+    /// The most pixels of a PNG that is drawn in one piece, 2^24 unless said otherwise. A larger one
     /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
     /// without growing it; and twice, unless its colours are soon known to be many.
     pub in_one_piece: u64,
@@ -174,7 +174,7 @@ impl Default for Options {
             unit: Unit::Pixel,
             plot: false,
             instanced: false,
-            in_one_piece: 1 << 26,
+            in_one_piece: 1 << 24,
             band: 1 << 21,
             detail: None,
             labels: Labels::default(),

@@ -3,118 +3,27 @@
 //! A sketch is made by any thread, without knowing what was drawn before; the painter puts the
 //! sketches of all spans together, in order.
 
+mod mark;
+mod runs;
+
+pub(super) use mark::{Kind, Line, Look, Mark, Sketch, class_width, width_class};
+
 use std::io;
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, Enter, Fractal, Run, Stick, Subtree, Visitor};
+use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
-use super::WIDTHS_AN_OCTAVE;
 use super::aim::Aim;
 use super::classes::Share;
 use super::comb::Comb;
 use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
 use super::stamps::{LONGEST_RUN, Painted, Stamps};
-use super::surface::{FINE, Position, Stamped, Tuft, position};
-
-/// What tells paths apart: a new one is begun where this changes.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Look {
-    pub(super) kind: Kind,
-    /// The width of a stroke where widths differ, in steps of an eighth of an octave.
-    pub(super) width: i32,
-    /// Its colour, where what is drawn is tinted.
-    pub(super) colour: Option<Colour>,
-}
-
-impl Look {
-    /// Of tufts: a stroke as thin as there are.
-    pub(super) const TUFTS: Self = Self {
-        kind: Kind::Line,
-        width: 0,
-        colour: None,
-    };
-
-    /// Of the areas of fractals.
-    pub(super) const AREA: Self = Self {
-        kind: Kind::Area,
-        width: 0,
-        colour: None,
-    };
-}
-
-/// What a path holds.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Kind {
-    /// Open lines.
-    Line,
-    /// Closed paths of lines, stroked and filled.
-    Ring,
-    /// Fractals that are closed chains, filled without a stroke.
-    Area,
-    /// Closed base elements.
-    Polygon,
-}
-
-/// Elements in a row, each joined to the one before, that look alike.
-#[derive(Clone, Copy)]
-pub(super) struct Line {
-    pub(super) look: Look,
-    /// Whether the first one joins what comes before.
-    pub(super) joined: bool,
-    /// Whether the first one starts, and the last one ends, where its frame does.
-    pub(super) meets_frame: [bool; 2],
-}
-
-/// What is to be drawn through the next points of a sketch.
-#[derive(Clone, Copy)]
-pub(super) enum Mark {
-    /// A fractal begins.
-    Begin,
-    /// Elements of a class come.
-    Class(u64),
-    /// A line begins at a point.
-    Line(Line),
-    /// A polygon begins at a point.
-    Polygon(Look),
-    /// Polygons that look alike, by number, each of so many vertices.
-    Polygons {
-        look: Look,
-        vertices: usize,
-        count: usize,
-    },
-    /// The outline of a fractal begins or goes on at a point.
-    Area,
-    /// Straight lines to so many points.
-    Lines(usize),
-    /// A curve, by three points.
-    Curve,
-    /// So many tufts.
-    Tufts(usize),
-    /// So many stamps of what looks alike.
-    Stamps { look: Look, count: usize },
-    /// The polygon is closed; whether it has returned to its start.
-    Close { returned: bool },
-    /// An open element that is not drawn, by its end, and whether its frame ends there.
-    Skip { meets_frame: bool },
-    /// An element that nothing can be joined to, not drawn.
-    Break,
-    /// The fractal ends; as [`Visitor::end`].
-    End(bool),
-}
-
-/// Marks, and the points, tufts and stamps that they are about.
-#[derive(Default)]
-pub(super) struct Sketch {
-    pub(super) marks: Vec<Mark>,
-    pub(super) points: Vec<Position>,
-    pub(super) tufts: Vec<Tuft>,
-    pub(super) stamps: Vec<Stamped>,
-}
+use super::surface::{FINE, Position, position};
 
 /// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
 fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
@@ -371,129 +280,6 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// Lines of one class that end in these points, one after another.
-    fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) {
-        self.see(first);
-        let map = self.scene.canvas.map(run.map());
-        let rest = ends[1..].iter();
-        let rest = rest.map(|&end| position(map.transform_point2(end) * FINE));
-        self.sketch.points.extend(rest);
-        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
-            *count += ends.len() - 1;
-        }
-    }
-
-    /// Lines of one class that need not join.
-    fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
-        self.see(first);
-        let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
-        self.draw_sticks(run, rest);
-    }
-
-    /// Draws lines, and says of each whether it joins the one before.
-    fn draw_sticks<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = (&'b Stick, bool)>) {
-        let map = self.scene.canvas.map(run.map());
-        let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
-        let whole = self.octave(run.map().matrix2.x_axis.length());
-        let kind = self.kind();
-        for (stick, joined) in sticks {
-            let look = Look {
-                kind,
-                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
-                colour: None,
-            };
-            let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
-                Some(Mark::Line(line)) => joined && line.look == look,
-                _ => false,
-            };
-            if !goes_on {
-                self.mark(Mark::Line(Line {
-                    look,
-                    joined,
-                    meets_frame: [true; 2],
-                }));
-                self.open = Some(self.sketch.marks.len() - 1);
-                self.sketch.points.push(fine(stick.ends[0]));
-            }
-            self.go_to(fine(stick.ends[1]));
-        }
-    }
-
-    /// Some elements of a run, by number, from which lines lead to no others.
-    fn some(&mut self, run: &Run<'_>, elements: impl Iterator<Item = (usize, Element)>) {
-        let mut next = 0;
-        for (number, element) in elements {
-            if number != next {
-                self.pass_by(Mark::Break);
-            }
-            next = number + 1;
-            self.see(&element);
-        }
-        if next as u64 != run.count() {
-            self.pass_by(Mark::Break);
-        }
-    }
-
-    /// Lines of one class, short and thin ones as tufts; whether there are any.
-    fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
-        let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
-            return false;
-        };
-        let map = self.scene.canvas.map(run.map());
-        let (combed, longer) = comb.comb(sticks, map.matrix2.x_axis.length());
-        if combed.is_bald() {
-            return false;
-        }
-        let apart = combed.apart.iter().flat_map(|apart| {
-            let lines = sticks[apart.clone()].iter().enumerate();
-            lines.map(|(number, stick)| (stick, number > 0 && stick.joined))
-        });
-        self.draw_sticks(run, apart);
-        let before = self.sketch.tufts.len();
-        self.sketch.tufts.extend(combed.tufts(map, longer));
-        self.mark(Mark::Tufts(self.sketch.tufts.len() - before));
-        self.pass_by(Mark::Skip { meets_frame: true });
-        let end = position(map.transform_point2(last.ends[1]) * FINE);
-        self.sketch.points.push(end);
-        true
-    }
-
-    /// What of a run is painted, by a stamp; whether there is one.
-    fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
-        let stamps = self.stamps.as_ref();
-        let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {
-            return false;
-        };
-        let graph = self.scene.graph;
-        let is_open = |element: &Element| {
-            let object = &graph.objects()[element.object];
-            object.visible && !graph.base_elements()[object.base_element].is_closed()
-        };
-        let end = run.last().filter(is_open);
-        let kind = if end.is_some() {
-            Kind::Line
-        } else {
-            Kind::Polygon
-        };
-        let look = Look {
-            kind,
-            ..Look::TUFTS
-        };
-        self.sketch.stamps.push(stamped);
-        // What joins the run goes on where it ends; of other runs nobody needs to know.
-        match (self.sketch.marks.last_mut(), end) {
-            (Some(Mark::Stamps { look: last, count }), None) if *last == look => *count += 1,
-            (_, end) => {
-                self.mark(Mark::Stamps { look, count: 1 });
-                if let Some(end) = end {
-                    self.pass_by(Mark::Skip { meets_frame: true });
-                    self.start_at(end.frame.ends()[1]);
-                }
-            }
-        }
-        true
-    }
-
     fn width_class(&self, element: &Element) -> i32 {
         let Scene { graph, style, .. } = self.scene;
         if let (Width::Pixels(width), Some(_)) = (style.width, graph.widest()) {
@@ -574,33 +360,6 @@ impl<'a> Sketcher<'a> {
             _ => self.pass_by(Mark::Break),
         }
     }
-}
-
-/// The width of a relative stroke in steps, from the logarithm of its width; not less than one
-/// hundredth of a pixel.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "casts from floats saturate"
-)]
-pub(super) fn width_class(octave: f64) -> i32 {
-    // Rounded, as it is not negative.
-    (WIDTHS_AN_OCTAVE * octave.max(0.0) + 0.5) as i32
-}
-
-/// The width of a class in hundredths of a pixel: there are eight to an octave.
-pub(super) fn class_width(class: i32) -> f64 {
-    // exp2 of eighths, for there may be a path for every element.
-    const EIGHTHS: [f64; 8] = [
-        1.0,
-        1.090_507_732_665_257_7,
-        1.189_207_115_002_721,
-        1.296_839_554_651_009_6,
-        std::f64::consts::SQRT_2,
-        1.542_210_825_407_940_7,
-        1.681_792_830_507_429,
-        1.834_008_086_409_342_4,
-    ];
-    libm::ldexp(EIGHTHS[class.rem_euclid(8) as usize], class.div_euclid(8))
 }
 
 impl Visitor for Sketcher<'_> {
@@ -699,22 +458,5 @@ impl Visitor for Sketcher<'_> {
     fn end(&mut self, joined: bool) -> io::Result<()> {
         self.mark(Mark::End(joined));
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{WIDTHS_AN_OCTAVE, class_width, width_class};
-
-    #[test]
-    fn classes_of_widths_are_steps_of_octaves() {
-        for class in 0..100 {
-            let octave = f64::from(class) / WIDTHS_AN_OCTAVE;
-            assert!((class_width(class) / libm::exp2(octave) - 1.0).abs() < 1e-15);
-            for off in [-0.06, 0.06] {
-                assert_eq!(width_class(octave + off), class);
-            }
-        }
-        assert_eq!(width_class(-5.0), 0);
     }
 }

@@ -1,0 +1,133 @@
+//! Runs of elements, many at once.
+
+use crate::geometry::DVec2;
+use crate::grow::{Element, Run, Stick};
+use crate::render::stamps::Painted;
+use crate::render::surface::{FINE, position};
+
+use super::{Kind, Line, Look, Mark, Sketcher, width_class};
+
+impl Sketcher<'_> {
+    /// Lines of one class that end in these points, one after another.
+    pub(super) fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) {
+        self.see(first);
+        let map = self.scene.canvas.map(run.map());
+        let rest = ends[1..].iter();
+        let rest = rest.map(|&end| position(map.transform_point2(end) * FINE));
+        self.sketch.points.extend(rest);
+        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
+            *count += ends.len() - 1;
+        }
+    }
+
+    /// Lines of one class that need not join.
+    pub(super) fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
+        self.see(first);
+        let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
+        self.draw_sticks(run, rest);
+    }
+
+    /// Draws lines, and says of each whether it joins the one before.
+    fn draw_sticks<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = (&'b Stick, bool)>) {
+        let map = self.scene.canvas.map(run.map());
+        let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
+        let whole = self.octave(run.map().matrix2.x_axis.length());
+        let kind = self.kind();
+        for (stick, joined) in sticks {
+            let look = Look {
+                kind,
+                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+                colour: None,
+            };
+            let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
+                Some(Mark::Line(line)) => joined && line.look == look,
+                _ => false,
+            };
+            if !goes_on {
+                self.mark(Mark::Line(Line {
+                    look,
+                    joined,
+                    meets_frame: [true; 2],
+                }));
+                self.open = Some(self.sketch.marks.len() - 1);
+                self.sketch.points.push(fine(stick.ends[0]));
+            }
+            self.go_to(fine(stick.ends[1]));
+        }
+    }
+
+    /// Some elements of a run, by number, from which lines lead to no others.
+    pub(super) fn some(&mut self, run: &Run<'_>, elements: impl Iterator<Item = (usize, Element)>) {
+        let mut next = 0;
+        for (number, element) in elements {
+            if number != next {
+                self.pass_by(Mark::Break);
+            }
+            next = number + 1;
+            self.see(&element);
+        }
+        if next as u64 != run.count() {
+            self.pass_by(Mark::Break);
+        }
+    }
+
+    /// Lines of one class, short and thin ones as tufts; whether there are any.
+    pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
+        let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
+            return false;
+        };
+        let map = self.scene.canvas.map(run.map());
+        let (combed, longer) = comb.comb(sticks, map.matrix2.x_axis.length());
+        if combed.is_bald() {
+            return false;
+        }
+        let apart = combed.apart.iter().flat_map(|apart| {
+            let lines = sticks[apart.clone()].iter().enumerate();
+            lines.map(|(number, stick)| (stick, number > 0 && stick.joined))
+        });
+        self.draw_sticks(run, apart);
+        let before = self.sketch.tufts.len();
+        self.sketch.tufts.extend(combed.tufts(map, longer));
+        self.mark(Mark::Tufts(self.sketch.tufts.len() - before));
+        self.pass_by(Mark::Skip { meets_frame: true });
+        let end = position(map.transform_point2(last.ends[1]) * FINE);
+        self.sketch.points.push(end);
+        true
+    }
+
+    /// What of a run is painted, by a stamp; whether there is one.
+    pub(super) fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
+        let stamps = self.stamps.as_ref();
+        let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {
+            return false;
+        };
+        let graph = self.scene.graph;
+        let is_open = |element: &Element| {
+            let object = &graph.objects()[element.object];
+            object.visible && !graph.base_elements()[object.base_element].is_closed()
+        };
+        let end = run.last().filter(is_open);
+        let kind = if end.is_some() {
+            Kind::Line
+        } else {
+            Kind::Polygon
+        };
+        let look = Look {
+            kind,
+            ..Look::TUFTS
+        };
+        self.sketch.stamps.push(stamped);
+        // What joins the run goes on where it ends; of other runs nobody needs to know.
+        match (self.sketch.marks.last_mut(), end) {
+            (Some(Mark::Stamps { look: last, count }), None) if *last == look => *count += 1,
+            (_, end) => {
+                self.mark(Mark::Stamps { look, count: 1 });
+                if let Some(end) = end {
+                    self.pass_by(Mark::Skip { meets_frame: true });
+                    self.start_at(end.frame.ends()[1]);
+                }
+            }
+        }
+        true
+    }
+}
