@@ -43,6 +43,15 @@ fn read(text: &str) -> (Document, Model) {
     (document, model)
 }
 
+fn source((document, model): &(Document, Model)) -> Source<'_> {
+    Source {
+        document,
+        settings: &[],
+        model,
+        omitted: &[],
+    }
+}
+
 fn window(factor: &str, at: &str) -> Window {
     Window {
         size: [SIDE, SIDE],
@@ -121,13 +130,7 @@ impl Visitor for Seen {
 
 /// The elements in the window, in pixels from its middle.
 fn zoomed(of: &(Document, Model), graph: &Graph, window: &Window, seed: u64) -> Seen {
-    let (document, model) = of;
-    let source = Source {
-        document,
-        settings: &[],
-        model,
-        omitted: &[],
-    };
+    let source = source(of);
     let growth = Growth {
         seed,
         ..Growth::default()
@@ -412,12 +415,7 @@ fn exact_overlaps_are_met_once() {
         "kind: ifs\nmaps:\n{maps}{maps}{maps}initial: {{polygon: [[0, 0], [1, 0], [1, 1]]}}\n"
     ));
     let graph = rule.1.compile(1).unwrap();
-    let source = Source {
-        document: &rule.0,
-        settings: &[],
-        model: &rule.1,
-        omitted: &[],
-    };
+    let source = source(&rule);
     let found = zoom(
         &source,
         &graph,
@@ -433,12 +431,7 @@ fn exact_overlaps_are_met_once() {
 fn what_has_no_point_is_refused() {
     let said = |rule: &(Document, Model), factor: &str, at: &str| -> ZoomError {
         let graph = rule.1.compile(64).unwrap();
-        let source = Source {
-            document: &rule.0,
-            settings: &[],
-            model: &rule.1,
-            omitted: &[],
-        };
+        let source = source(rule);
         zoom(&source, &graph, &Growth::default(), &window(factor, at)).unwrap_err()
     };
     let koch = library("koch");

@@ -2,9 +2,9 @@
 
 use kfrac::geometry::DAffine2;
 use kfrac::grow::Growth;
-use kfrac::zoom::{Growth as ZoomGrowth, Source, zoom};
+use kfrac::zoom::{Growth as ZoomGrowth, zoom};
 
-use super::{SCALE, Seen, library, window};
+use super::{SCALE, Seen, library, source, window};
 
 /// A point times 2^100.
 type Point = [i128; 2];
@@ -73,12 +73,7 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
         let at = format!("0.({})", ways.join("."));
         // At a zoom of 2^96, elements of step 200 are 32 pixels long.
         let window = window("2^96", &at);
-        let source = Source {
-            document: &rule.0,
-            settings: &[],
-            model: &rule.1,
-            omitted: &[],
-        };
+        let source = source(&rule);
         let growth = ZoomGrowth {
             steps: Some(STEPS),
             ..ZoomGrowth::default()

@@ -8,10 +8,9 @@ use kfrac::grow::Growth;
 use kfrac::model::Model;
 use kfrac::render::{self, Detail, Format, Look, Options, Size};
 use kfrac::style::{ColorBy, Colour, Style, View, Width};
-use kfrac::zoom::Source;
 use png::Transformations;
 
-use super::{library, point, read};
+use super::{library, point, read, source};
 
 type Rule = (Document, Model);
 
@@ -49,12 +48,7 @@ fn values(picture: Vec<u8>) -> Vec<u8> {
 
 fn zoomed(rule: &Rule, options: &Options, factor: &str, at: &str) -> Vec<u8> {
     let graph = rule.1.compile(64).unwrap();
-    let source = Source {
-        document: &rule.0,
-        settings: &[],
-        model: &rule.1,
-        omitted: &[],
-    };
+    let source = source(rule);
     let look = Look {
         factor: factor.parse().unwrap(),
         at: at.parse().unwrap(),
