@@ -436,6 +436,8 @@ impl Arguments {
 struct Wrote {
     steps: u32,
     elements: u64,
+    /// Whether there are more.
+    has_more: bool,
     fractals: u64,
     pixels: Option<[u32; 2]>,
     plotted: Option<Plotted>,
@@ -449,6 +451,7 @@ impl From<render::Picture> for Wrote {
         Self {
             steps: picture.steps,
             elements: picture.elements,
+            has_more: picture.has_more,
             fractals: picture.fractals,
             pixels: Some(picture.size),
             plotted: picture.plotted,
@@ -463,6 +466,7 @@ impl Wrote {
         Self {
             steps,
             elements: walked.elements,
+            has_more: false,
             fractals: walked.fractals,
             pixels: None,
             plotted: None,
@@ -476,6 +480,9 @@ impl Wrote {
             Some(instanced) => svg::described(instanced),
             None => wording::counted(&self.elements.into(), "element"),
         };
+        if self.has_more {
+            summary.insert_str(0, "more than ");
+        }
         if self.is_part {
             summary.push_str(" visited");
         }

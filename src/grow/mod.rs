@@ -62,6 +62,18 @@ pub struct Element {
     pub joined: bool,
 }
 
+impl Element {
+    /// The element as one that may be replaced.
+    #[must_use]
+    pub fn subtree(&self) -> Subtree {
+        Subtree {
+            frame: self.frame,
+            object: self.object,
+            born: self.born,
+        }
+    }
+}
+
 /// A fractal of an approximant: a list of elements of one age.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fractal {

@@ -80,11 +80,11 @@ impl Filled {
         fence(Release);
     }
 
-    /// Whether a layer covers all pixels that a box meets, in so far as they lie in these rows of the
-    /// picture.
-    pub(crate) fn is_full(&self, layer: u64, middle: DVec2, reach: f64) -> bool {
-        let reach = reach + PAD;
-        let is_small = 2.0 * reach <= LONGEST;
+    /// Whether a layer covers all pixels that a box meets which reaches so far to both sides of its
+    /// middle, in so far as they lie in these rows of the picture.
+    pub(crate) fn is_full(&self, layer: u64, middle: DVec2, reach: [f64; 2]) -> bool {
+        let reach = reach.map(|reach| reach + PAD);
+        let is_small = reach.iter().all(|reach| 2.0 * reach <= LONGEST);
         if !is_small || self.layer.load(Acquire) != layer {
             return false;
         }
@@ -92,7 +92,7 @@ impl Filled {
         let [columns, rows] = [0, 1].map(|axis| {
             let most = self.size[axis] as f64;
             let end = |place: f64| whole(place.clamp(0.0, most));
-            let [from, to] = [middle[axis] - reach, middle[axis] + reach];
+            let [from, to] = [middle[axis] - reach[axis], middle[axis] + reach[axis]];
             end(from.floor()) + self.margin..end(to.floor() + 1.0) + self.margin
         });
         let is_full = rows.into_iter().all(|row| {
@@ -152,35 +152,37 @@ mod tests {
         let (filled, planes) = filled();
         filled.begin(7);
         let middle = DVec2::splat(4.0);
-        assert!(filled.is_full(7, middle, 1.7));
-        assert!(!filled.is_full(7, middle, 1.8));
-        assert!(!filled.is_full(7, DVec2::new(4.0, 4.5), 1.7));
-        assert!(!filled.is_full(7, middle, f64::NAN));
+        assert!(filled.is_full(7, middle, [1.7; 2]));
+        assert!(!filled.is_full(7, middle, [1.8; 2]));
+        assert!(!filled.is_full(7, middle, [1.7, 1.8]));
+        assert!(!filled.is_full(7, middle, [1.8, 0.1]));
+        assert!(!filled.is_full(7, DVec2::new(4.0, 4.5), [1.7; 2]));
+        assert!(!filled.is_full(7, middle, [f64::NAN; 2]));
         planes[0][44].store(0, Relaxed);
-        assert!(!filled.is_full(7, middle, 1.0));
+        assert!(!filled.is_full(7, middle, [1.0; 2]));
     }
 
     #[test]
     fn what_lies_outside_does_not_show() {
         let (filled, planes) = filled();
         filled.begin(7);
-        assert!(filled.is_full(7, DVec2::new(-20.0, 4.0), 3.0));
-        assert!(!filled.is_full(7, DVec2::new(9.0, 4.0), 3.0));
+        assert!(filled.is_full(7, DVec2::new(-20.0, 4.0), [3.0; 2]));
+        assert!(!filled.is_full(7, DVec2::new(9.0, 4.0), [3.0; 2]));
         planes
             .iter()
             .for_each(|cells| cells.iter().for_each(|cell| cell.store(u64::MAX, Relaxed)));
-        assert!(filled.is_full(7, DVec2::new(9.0, 4.0), 3.0));
+        assert!(filled.is_full(7, DVec2::new(9.0, 4.0), [3.0; 2]));
     }
 
     #[test]
     fn only_the_layer_that_is_drawn_is_known() {
         let (filled, _) = filled();
         let middle = DVec2::splat(4.0);
-        assert!(!filled.is_full(7, middle, 1.0));
+        assert!(!filled.is_full(7, middle, [1.0; 2]));
         filled.begin(7);
-        assert!(filled.is_full(7, middle, 1.0));
-        assert!(!filled.is_full(8, middle, 1.0));
+        assert!(filled.is_full(7, middle, [1.0; 2]));
+        assert!(!filled.is_full(8, middle, [1.0; 2]));
         filled.end();
-        assert!(!filled.is_full(7, middle, 1.0));
+        assert!(!filled.is_full(7, middle, [1.0; 2]));
     }
 }

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use crate::geometry::DVec2;
 use crate::grow::Subtree;
 use crate::style::{ColorBy, Width};
 
@@ -62,7 +63,10 @@ impl Hidden {
     /// Whether all that becomes of an element of a class is.
     #[inline]
     pub(super) fn hides(&self, scene: &Scene<'_>, subtree: &Subtree, class: u64) -> bool {
-        let reach = self.reach(scene, subtree.object, subtree.frame.stretch());
+        // What a disc becomes is as wide and as high as the rows of the map are long.
+        let rows = subtree.frame.map.matrix2.transpose();
+        let [x, y] = [rows.x_axis, rows.y_axis].map(DVec2::length);
+        let reach = [x, y].map(|length| self.reach(scene, subtree.object, length));
         let middle = subtree.frame.map.transform_point2(scene.graph.middle());
         let layer = self.first + class;
         self.filled

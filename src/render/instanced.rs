@@ -80,6 +80,7 @@ pub(super) fn write(
         size: canvas.size(),
         steps,
         elements: survey.elements,
+        has_more: false,
         fractals: survey.fractals,
         is_part: false,
         plotted: None,

@@ -2,12 +2,12 @@
 
 use crate::geometry::Bounds;
 use crate::graph::Graph;
-use crate::grow::Growth;
+use crate::grow::{Growth, WalkError};
 use crate::style::Width;
 
 use super::sight::Sight;
 use super::survey::overhang;
-use super::{Canvas, Options, RenderError, Survey};
+use super::{Canvas, Format, Options, RenderError, Survey};
 
 /// Down to what size elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,9 @@ const FIRST_LOOK: f64 = 1.0 / 8.0;
 
 /// If nothing is visible there, so many more looks are taken, each as much closer again.
 const MOST_LOOKS: u32 = 4;
+
+/// So many elements are counted by a walk, even where what is covered already need not be grown.
+const WORTH_COUNTING: u64 = 1 << 21;
 
 /// The detail changes what is drawn, which changes the scale and so the detail: after so many
 /// rounds, the last is good enough.
@@ -215,15 +218,40 @@ impl<'a> Surveyor<'a> {
     /// Learns the rest of what has been looked at.
     fn completed(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
         let survey = if survey.is_bounded {
-            match survey.counted(&self.growth)? {
-                Some(counted) => counted,
-                None => survey.walked(&self.growth, self.options.threads)?,
-            }
+            self.counted(survey)?
         } else {
             survey
         };
         self.check(&survey)?;
         Ok(survey)
+    }
+
+    /// Counts what there is to draw; or some of it, if there is more and what is covered already need not
+    /// be grown. What is visited then is limited while it is drawn.
+    fn counted(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
+        let Options {
+            threads,
+            format,
+            plot,
+            ..
+        } = *self.options;
+        let hides = format == Format::Png && !plot && survey.may_hide();
+        let limited = |most_elements: u64| Growth {
+            most_elements,
+            ..self.growth
+        };
+        let most = self.growth.most_elements;
+        if let Some(counted) = survey.counted(&limited(if hides { u64::MAX } else { most }))? {
+            return Ok(counted);
+        }
+        let uncounted = survey.uncounted(WORTH_COUNTING);
+        match uncounted.filter(|_| hides && most > WORTH_COUNTING) {
+            None => Ok(survey.walked(&self.growth, threads)?),
+            Some(uncounted) => match survey.walked(&limited(WORTH_COUNTING), threads) {
+                Err(WalkError::TooManyElements { .. }) => Ok(uncounted),
+                walked => Ok(walked?),
+            },
+        }
     }
 
     /// Surveys everything down to elements of a number of pixels.

@@ -20,6 +20,7 @@ mod bands;
 mod canvas;
 mod census;
 mod classes;
+mod coarse;
 mod comb;
 mod density;
 mod dxf;
@@ -200,10 +201,14 @@ impl Options {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The number of steps: what growth says, or what it took to come to a detail.
+    /// The number of steps: what growth says, or what it took to come to a detail; no fewer than that
+    /// where there are more elements than have been counted.
     pub steps: u32,
     /// The number of elements, without those outside a window that have not been visited.
     pub elements: u64,
+    /// Whether there are more: to a PNG's detail they need not be counted, for what lies where all is
+    /// covered is not grown.
+    pub has_more: bool,
     /// The number of fractals, likewise.
     pub fractals: u64,
     /// Whether some may not have been visited because they lie outside a window.
@@ -312,6 +317,7 @@ fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plot
         size: canvas.size(),
         steps,
         elements: survey.elements,
+        has_more: survey.has_more,
         fractals: survey.fractals,
         is_part: survey.sight().is_bounded(),
         plotted,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::grow::Seam;
 use crate::style::{Colour, Width};
 
+use super::coarse::Coarse;
 use super::comb::Comb;
 use super::hidden::Hidden;
 use super::pen;
@@ -63,6 +64,13 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             is_first: true,
             vertices: Vec::new(),
         }
+    }
+
+    /// Closed outlines without what is too fine, if they may be drawn so.
+    pub(super) fn coarse(&self) -> Option<&'a Coarse> {
+        let grain = self.tracer.grain()?;
+        let coarse = || Coarse::of(self.scene.graph, grain);
+        self.scene.coarse.get_or_init(coarse).as_ref()
     }
 
     /// What makes tufts, if they may be drawn.

@@ -1,9 +1,10 @@
-//! PNG: the paths of a picture, antialiased. Thin strokes of round pens and small polygons, of
-//! which there may be millions, are drawn as coverage, by any thread; tiny-skia draws the rest.
+//! PNG: the paths of a picture, antialiased. Thin strokes of round pens and polygons that are not
+//! large, of which there may be millions, are drawn as coverage, by any thread; tiny-skia draws the rest.
 
 mod chunk;
 mod coverage;
 mod encode;
+mod flat;
 mod nib;
 mod part;
 mod planes;
@@ -12,7 +13,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coverage::{RoundPen, Sheet, Stamp};
+pub(super) use coverage::{RoundPen, Sheet, Stamp, bounding_within};
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 
@@ -27,14 +28,17 @@ use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
-use self::coverage::{HairPen, MOST_VERTICES, bounding, flattened, is_small, smoothed};
+use self::coverage::{HairPen, MOST_CORNERS, bounding, flattened, has_room};
+use self::flat::FlatStroke;
 use self::nib::{Nib, Nibs};
-use self::part::Part;
-use self::planes::Planes;
+use self::part::{Layers, Part};
 use self::skia::Outline;
 use super::Labels;
 use super::filled::Filled;
-use super::surface::{Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
+use super::surface::{FINE, Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
+
+/// Outlines may lie so far beside where they are, in pixels: twice as far as rounding moves them.
+const GRAIN: f64 = 1.0 / FINE;
 
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
@@ -58,7 +62,7 @@ fn bytes(size: &[u32; 2]) -> f64 {
 /// What is of use for other bands: threads that gave memory back and took it again would keep it, each
 /// for itself.
 #[derive(Default)]
-pub(super) struct Spare(Option<Arc<Planes>>);
+pub(super) struct Spare(Layers);
 
 /// A picture in memory.
 pub(super) struct Png<'t, 'w> {
@@ -72,12 +76,14 @@ pub(super) struct Png<'t, 'w> {
     /// The layer that paths are of.
     layer: u64,
     nibs: Nibs,
-    /// The nib that draws the path as coverage, if one does.
+    /// The nib that draws the path as coverage, if one does,
     nib: Option<Nib>,
+    /// or what draws it by polygons.
+    flat: Option<FlatStroke>,
     /// Where it is, and where the subpath starts.
     at: Position,
     start: Position,
-    /// Whether the path may hold small polygons that are drawn as coverage,
+    /// Whether the path may hold polygons that are drawn as coverage,
     covers: bool,
     /// and the vertices of one that comes.
     ring: Vec<Position>,
@@ -111,9 +117,7 @@ impl<'t, 'w> Png<'t, 'w> {
     ) -> Result<Self, TooManyPixels> {
         let outline = Outline::of_rows(rows.clone());
         let mut png = Self::begin_on(size, rows, outline, background, team)?;
-        if let Some(planes) = spare.0.and_then(Arc::into_inner) {
-            png.part = png.part.on(planes);
-        }
+        png.part = png.part.on(spare.0);
         Ok(png)
     }
 
@@ -139,10 +143,11 @@ impl<'t, 'w> Png<'t, 'w> {
             layer: 0,
             nibs: Nibs::default(),
             nib: None,
+            flat: None,
             at: [0; 2],
             start: [0; 2],
             covers: false,
-            ring: Vec::with_capacity(MOST_VERTICES),
+            ring: Vec::new(),
             outline,
             is_outlined: false,
         })
@@ -169,6 +174,10 @@ impl<'t, 'w> Png<'t, 'w> {
     fn stroke(&mut self, to: impl IntoIterator<Item = Position>) {
         if self.nib.is_some() {
             self.chunk.lines(to);
+        } else if let Some(flat) = &mut self.flat {
+            let chunk = &mut self.chunk;
+            let mut draw = |polygon: &[Position]| chunk.polygon(polygon, true);
+            to.into_iter().for_each(|to| flat.line(to, &mut draw));
         }
     }
 
@@ -186,7 +195,7 @@ impl<'t, 'w> Png<'t, 'w> {
             self.chunk.lead_to(&mut next, nib.clone(), self.at);
         }
         let mut chunk = std::mem::replace(&mut self.chunk, next);
-        chunk.assign(self.part.planes());
+        chunk.assign(self.part.planes_in_use());
         let Ok(()) = self.line.hand_on::<Infallible>(chunk, &mut |_| Ok(()));
     }
 
@@ -195,7 +204,7 @@ impl<'t, 'w> Png<'t, 'w> {
         self.nib = None;
         if self.line.is_idle() {
             // Not worth while to wake another thread.
-            self.chunk.assign(self.part.planes());
+            self.chunk.assign(self.part.planes_in_use());
             self.chunk.cover();
         } else if !self.chunk.is_empty() {
             self.next_chunk();
@@ -204,17 +213,13 @@ impl<'t, 'w> Png<'t, 'w> {
         self.part.settle();
     }
 
-    /// Ends a subpath that may be a small polygon.
+    /// Ends a subpath that may be a polygon that is covered.
     fn end_ring(&mut self) {
         if self.ring.is_empty() {
             return;
         }
-        if is_small(&self.ring) {
-            self.chunk.polygon(&self.ring);
-            self.ring.clear();
-        } else if let Some(smooth) = smoothed(&self.ring).filter(|ring| is_small(ring)) {
-            // Of round shapes there are many that only rounding has dented.
-            self.chunk.polygon(&smooth);
+        if has_room(&self.ring) {
+            self.chunk.polygon(&self.ring, false);
             self.ring.clear();
         } else {
             self.hand_over_ring();
@@ -241,7 +246,7 @@ impl Surface for Png<'_, '_> {
             && let Some(nib) = self.nibs.nib(stroke.pen)
         {
             self.chunk.nib(nib.clone());
-            self.nib = Some(nib);
+            (self.nib, self.flat) = (Some(nib), None);
             (self.covers, self.is_outlined) = (false, false);
             self.part.begin_layer(self.layer);
             return Ok(());
@@ -252,18 +257,28 @@ impl Surface for Png<'_, '_> {
         let may_cover = self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
         self.nib = stroke.and_then(|stroke| self.nibs.nib(stroke.pen));
-        self.covers = may_cover
-            && paint.stroke.is_none()
-            && paint.fill.is_some_and(|fill| fill == fill.opaque());
-        if self.covers || self.nib.is_some() {
-            self.part.begin(paint, self.threads);
+        let flat = stroke.filter(|_| self.nib.is_none());
+        self.flat = flat.and_then(|stroke| FlatStroke::of(stroke.pen, self.part.size()));
+        let strokes = self.nib.is_some() || self.flat.is_some();
+        let is_opaque = paint.fill.is_some_and(|fill| fill == fill.opaque());
+        self.covers = may_cover && is_opaque && (paint.stroke.is_none() || strokes);
+        let stroke = paint.stroke.map(|stroke| stroke.colour);
+        let inks = match (
+            paint.fill.filter(|_| self.covers),
+            stroke.filter(|_| strokes),
+        ) {
+            (Some(fill), Some(stroke)) if fill != stroke => [Some(fill), Some(stroke)],
+            (fill, stroke) => [stroke.or(fill), None],
+        };
+        if self.covers || strokes {
+            self.part.begin(inks, self.threads);
             self.part.begin_layer(self.layer);
         }
         if let Some(nib) = &self.nib {
             self.chunk.nib(nib.clone());
         }
         let rest = Paint {
-            stroke: paint.stroke.filter(|_| self.nib.is_none()),
+            stroke: paint.stroke.filter(|_| !strokes),
             ..*paint
         };
         self.is_outlined = rest != Paint::default();
@@ -276,6 +291,8 @@ impl Surface for Png<'_, '_> {
         (self.start, self.at) = (to, to);
         if self.nib.is_some() {
             self.chunk.start(to);
+        } else if let Some(flat) = &mut self.flat {
+            flat.start(to, &mut |polygon| self.chunk.polygon(polygon, true));
         }
         if self.covers {
             self.end_ring();
@@ -293,7 +310,7 @@ impl Surface for Png<'_, '_> {
             return;
         }
         if !self.ring.is_empty() {
-            if self.ring.len() < MOST_VERTICES {
+            if self.ring.len() < MOST_CORNERS {
                 self.ring.push(to);
                 return;
             }
@@ -321,7 +338,7 @@ impl Surface for Png<'_, '_> {
         }
         if !self.ring.is_empty() {
             let lines = bounding(curve);
-            if lines.len() <= MOST_VERTICES - self.ring.len() {
+            if lines.len() <= MOST_CORNERS - self.ring.len() {
                 self.ring.extend(lines);
                 return;
             }
@@ -331,7 +348,11 @@ impl Surface for Png<'_, '_> {
     }
 
     fn close(&mut self) {
-        self.stroke([self.start]);
+        if let Some(flat) = &mut self.flat {
+            flat.close(&mut |polygon| self.chunk.polygon(polygon, true));
+        } else {
+            self.stroke([self.start]);
+        }
         self.at = self.start;
         if !self.ring.is_empty() {
             self.end_ring();
@@ -342,11 +363,11 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn polygon(&mut self, vertices: &[Position]) -> bool {
-        if !self.covers || !is_small(vertices) {
+        if !self.covers || self.nib.is_some() || self.flat.is_some() || !has_room(vertices) {
             return false;
         }
         self.end_ring();
-        self.chunk.polygon(vertices);
+        self.chunk.polygon(vertices, false);
         self.hand_on_chunk();
         true
     }
@@ -366,6 +387,9 @@ impl Surface for Png<'_, '_> {
             self.end_ring();
             self.outline.end(&mut self.part.pixmap);
         }
+        if let Some(mut flat) = self.flat.take() {
+            flat.end(&mut |polygon| self.chunk.polygon(polygon, true));
+        }
         self.nib = None;
         if self.part.settles_after() {
             self.settle();
@@ -381,6 +405,10 @@ impl Surface for Png<'_, '_> {
         } else {
             0.0
         }
+    }
+
+    fn grain(&self) -> Option<f64> {
+        Some(GRAIN)
     }
 
     fn tufts(&mut self, tufts: &[Tuft]) {

@@ -1,6 +1,6 @@
 use std::convert::Infallible;
 use std::num::NonZero;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::graph::Graph;
 use crate::grow::{Division, Growth, WalkError, walk_with};
@@ -8,9 +8,10 @@ use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
 use super::aim::Aim;
+use super::coarse::Coarse;
 use super::painter::Painter;
 use super::sight::Sight;
-use super::sketch::Sketcher;
+use super::sketch::{Means, Sketcher};
 use super::surface::{Pen, Surface};
 use super::survey::{Ranks, SPAN};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
@@ -32,6 +33,8 @@ pub(crate) struct Scene<'a> {
     pub(super) is_to_detail: bool,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
+    /// Outlines without what is too fine, once a surface has said what that is.
+    pub(super) coarse: OnceLock<Option<Coarse>>,
 }
 
 /// What one walk paints.
@@ -79,6 +82,7 @@ impl<'a> Scene<'a> {
             ranks: survey.ranks.clone(),
             is_to_detail: survey.is_to_detail,
             fills_strokes: together && style.fill.is_some(),
+            coarse: OnceLock::new(),
         }
     }
 }
@@ -111,14 +115,15 @@ impl Drawing for Scene<'_> {
         }
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
-            let comb = painter.comb().map(Arc::new);
             let hidden = painter.hidden(pass).map(Arc::new);
-            let stamps = painter.stamps(pass, hidden.as_ref()).map(Arc::new);
-            let aim = Arc::new(Aim::of(self, pass));
-            let fresh = || {
-                let short = (hidden.clone(), stamps.clone());
-                Sketcher::new(self, pass, comb.clone(), short, aim.clone())
+            let means = Means {
+                comb: painter.comb().map(Arc::new),
+                coarse: painter.coarse(),
+                stamps: painter.stamps(pass, hidden.as_ref()).map(Arc::new),
+                hidden,
+                aim: Arc::new(Aim::of(self, pass)),
             };
+            let fresh = || Sketcher::new(self, pass, means.clone());
             let walked = walk_with(
                 team,
                 self.graph,

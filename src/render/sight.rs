@@ -140,6 +140,13 @@ impl Sight {
         longest.is_none_or(|longest| length * longest >= self.shortest)
     }
 
+    /// After how many steps nothing that becomes of an element of a length is replaced any more, at the
+    /// latest.
+    pub(super) fn steps_of(&self, length: f64) -> Option<u32> {
+        let steps = 0..u32::try_from(self.longest.len()).ok()?;
+        steps.into_iter().find(|&steps| !self.lasts(length, steps))
+    }
+
     /// What a walk does with an element that can be replaced.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {

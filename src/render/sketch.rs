@@ -19,10 +19,11 @@ use crate::style::{ColorBy, Colour, Width};
 
 use super::aim::Aim;
 use super::classes::Share;
+use super::coarse::Coarse;
 use super::comb::Comb;
 use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
-use super::stamps::{LONGEST_RUN, Painted, Stamps};
+use super::stamps::{Painted, Stamps};
 use super::surface::{FINE, Position, position};
 
 /// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
@@ -45,10 +46,26 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
 pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
     let graph = scene.graph;
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
-    drawn.all(|object| {
-        let base_element = &graph.base_elements()[object.base_element];
-        base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
-    })
+    !graph.joins()
+        || drawn.all(|object| {
+            let base_element = &graph.base_elements()[object.base_element];
+            base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
+        })
+}
+
+/// What makes a pass short, each where the surface allows it.
+#[derive(Clone)]
+pub(super) struct Means<'a> {
+    /// What makes tufts,
+    pub(super) comb: Option<Arc<Comb>>,
+    /// outlines without what is too fine,
+    pub(super) coarse: Option<&'a Coarse>,
+    /// what need not be drawn,
+    pub(super) hidden: Option<Arc<Hidden>>,
+    /// what many runs cover, drawn once,
+    pub(super) stamps: Option<Arc<Stamps>>,
+    /// and what the pass is to paint.
+    pub(super) aim: Arc<Aim>,
 }
 
 /// Sketches what one walk over an approximant is for.
@@ -57,45 +74,29 @@ pub(super) struct Sketcher<'a> {
     pass: Pass,
     fractal: Fractal,
     pub(super) sketch: Sketch,
-    /// What makes tufts, where the surface takes them.
-    comb: Option<Arc<Comb>>,
-    /// What need not be drawn, where that can be told,
-    hidden: Option<Arc<Hidden>>,
-    /// what many runs cover, drawn once,
-    stamps: Option<Arc<Stamps>>,
-    /// and the class that all of the span is of, if it is known.
+    means: Means<'a>,
+    /// The class that all of the span is of, if it is known.
     whole: Option<u64>,
     /// The class that the sketch has come to, where it holds all.
     class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
-    /// What the pass is to paint.
-    aim: Arc<Aim>,
 }
 
 impl<'a> Sketcher<'a> {
-    pub(super) fn new(
-        scene: &'a Scene<'a>,
-        pass: Pass,
-        comb: Option<Arc<Comb>>,
-        (hidden, stamps): (Option<Arc<Hidden>>, Option<Arc<Stamps>>),
-        aim: Arc<Aim>,
-    ) -> Self {
+    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, means: Means<'a>) -> Self {
         Self {
             scene,
             pass,
             fractal: Fractal::default(),
             sketch: Sketch::default(),
-            comb,
-            hidden,
-            stamps,
+            means,
             whole: match pass {
                 Pass::Class(class) => Some(class),
                 Pass::Areas | Pass::Along => None,
             },
             class: None,
             open: None,
-            aim,
         }
     }
 
@@ -192,6 +193,17 @@ impl<'a> Sketcher<'a> {
         let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
+        if let Some(corners) = self.corners(element) {
+            self.polygon_of(look, corners.len());
+            let map = self.scene.canvas.map(&map);
+            let place = |corner: &DVec2| position(map.transform_point2(*corner) * FINE);
+            if mirrored {
+                self.sketch.points.extend(corners.iter().rev().map(place));
+            } else {
+                self.sketch.points.extend(corners.iter().map(place));
+            }
+            return;
+        }
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
         if let Some(vertices) = vertices(pieces) {
@@ -209,6 +221,15 @@ impl<'a> Sketcher<'a> {
         }
         let returned = matches!(pieces.last(), Some(Piece::Line(_)));
         self.mark(Mark::Close { returned });
+    }
+
+    /// The corners of what is drawn of an element, in its unit frame, where those will do.
+    fn corners(&self, element: &Element) -> Option<&'a [DVec2]> {
+        let Scene { graph, canvas, .. } = self.scene;
+        let object = &graph.objects()[element.object];
+        let pixels = element.frame.stretch() * canvas.scale();
+        let coarse = self.means.coarse?;
+        coarse.corners(graph, object.base_element, pixels)
     }
 
     /// One more polygon of a number of vertices.
@@ -311,7 +332,7 @@ impl<'a> Sketcher<'a> {
     /// Whether nothing that becomes of an element can be seen any more.
     #[inline]
     fn is_hidden(&self, subtree: &Subtree) -> bool {
-        let (Some(hidden), Some(class)) = (&self.hidden, self.whole) else {
+        let (Some(hidden), Some(class)) = (&self.means.hidden, self.whole) else {
             return false;
         };
         hidden.hides(self.scene, subtree, class)
@@ -347,6 +368,9 @@ impl<'a> Sketcher<'a> {
             }
         };
         match (is_drawn, is_closed) {
+            (true, true) if self.means.coarse.is_some() && self.is_hidden(&element.subtree()) => {
+                self.pass_by(Mark::Break);
+            }
             (true, true) => self.polygon(element, base_element),
             (true, false) => self.line(element, base_element),
             (false, false) if object.visible => {
@@ -370,7 +394,8 @@ impl Visitor for Sketcher<'_> {
     }
 
     fn longest_run(&self) -> u64 {
-        self.stamps.as_ref().map_or(u64::MAX, |_| LONGEST_RUN)
+        let stamps = self.means.stamps.as_ref();
+        stamps.map_or(u64::MAX, |stamps| stamps.longest_run)
     }
 
     fn cuts(&self) -> Option<f64> {
@@ -397,7 +422,7 @@ impl Visitor for Sketcher<'_> {
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.sight.enter(subtree) {
             Enter::Replace
-                if !self.aim.may_paint(self.scene, subtree) || self.is_hidden(subtree) =>
+                if !self.means.aim.may_paint(self.scene, subtree) || self.is_hidden(subtree) =>
             {
                 Enter::Skip
             }
@@ -415,7 +440,7 @@ impl Visitor for Sketcher<'_> {
         let Scene { graph, classes, .. } = self.scene;
         let share = match self.pass {
             Pass::Areas => Share::Some,
-            Pass::Class(_) if self.aim.paints_all_of(run.object()) => Share::All,
+            Pass::Class(_) if self.means.aim.paints_all_of(run.object()) => Share::All,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
             Pass::Along => {
                 let ends = [run.first(), run.last()].map(|element| {
@@ -438,13 +463,14 @@ impl Visitor for Sketcher<'_> {
             (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
             (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
-            _ => match (self.pass, self.aim.steps.clone()) {
+            _ => match (self.pass, self.means.aim.steps.clone()) {
                 (_, Some(steps))
                     if self.stamp(run, Painted::Steps(*steps.start(), *steps.end())) => {}
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
                 (Pass::Class(class), None)
-                    if self.aim.tells_objects() && self.stamp(run, Painted::Class(class)) => {}
-                (Pass::Class(class), None) if self.aim.stands_alone => {
+                    if self.means.aim.tells_objects() && self.stamp(run, Painted::Class(class)) => {
+                }
+                (Pass::Class(class), None) if self.means.aim.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
                     self.some(run, run.chosen(is_of));

@@ -29,10 +29,11 @@ const PHASES: [f64; 2] = [128.0, 64.0];
 /// Steps to a pixel in which linear parts are told apart.
 const LINEAR: f64 = 4096.0;
 
-/// Runs have no more elements than this where there are stamps of them.
-pub(super) const LONGEST_RUN: u64 = 64;
+/// Runs have no more pieces of outlines than this where there are stamps of them, or few elements.
+const LONGEST_RUN: u64 = 64;
+const FEW_ELEMENTS: u64 = 8;
 
-/// Fewer elements than this are drawn one by one, in a run and in a picture.
+/// Fewer pieces than this are drawn one by one, in a run and in a picture.
 const FEWEST_IN_RUN: u64 = 4;
 const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
@@ -74,6 +75,9 @@ pub(super) enum Painted {
 pub(super) struct Stamps {
     stencil: Stencil,
     hidden: Arc<Hidden>,
+    /// The most elements of a run, and the most pieces of one's outline.
+    pub(super) longest_run: u64,
+    pieces: u64,
     phases: f64,
     tables: Vec<RwLock<MixMap<Key, Option<Arc<Stamp>>>>>,
     bytes: AtomicUsize,
@@ -83,11 +87,16 @@ impl Stamps {
     /// Those of a scene, if many of its runs lie alike.
     pub(super) fn new(scene: &Scene<'_>, stencil: Stencil, hidden: Arc<Hidden>) -> Option<Self> {
         let Scene { graph, .. } = scene;
-        let is_large = scene.is_to_detail && scene.elements >= FEWEST_IN_PICTURE;
+        let drawn = graph.objects().iter().filter(|object| object.visible);
+        let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
+        let pieces = pieces.max().unwrap_or(0).max(1) as u64;
+        let longest_run = (LONGEST_RUN / pieces).max(FEW_ELEMENTS);
+        let is_large =
+            scene.is_to_detail && scene.elements.saturating_mul(pieces) >= FEWEST_IN_PICTURE;
         if !is_large || graph.coats() || graph.even_lengths().is_none() {
             return None;
         }
-        let runs = scene.elements / LONGEST_RUN / sides(scene)?;
+        let runs = scene.elements / longest_run / sides(scene)?;
         let part = if stencil.pen.is_some() { 0.5 } else { 1.0 };
         let mut phases = PHASES.into_iter().map(|phases| phases * part);
         let phases = phases.find(|phases| {
@@ -97,6 +106,8 @@ impl Stamps {
         Some(Self {
             stencil,
             hidden,
+            longest_run,
+            pieces,
             phases,
             tables: (0..TABLES).map(|_| RwLock::default()).collect(),
             bytes: AtomicUsize::new(0),
@@ -109,7 +120,7 @@ impl Stamps {
         let reach = self
             .hidden
             .reach(scene, run.object(), run.frame().stretch());
-        if run.count() < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
+        if run.count() * self.pieces < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
             return None;
         }
         let grid = map.translation * self.phases;

@@ -137,6 +137,12 @@ pub(crate) trait Surface {
     /// Ends the path.
     fn end(&mut self) -> io::Result<()>;
 
+    /// How far, in pixels, outlines may lie beside where they are, which then cannot be seen; `None` where
+    /// all of them is kept.
+    fn grain(&self) -> Option<f64> {
+        None
+    }
+
     /// Strokes that are thinner than this, in pixels, may come as tufts where they are short; none
     /// unless said otherwise.
     fn tufts_below(&self, _: &Stroke) -> f64 {

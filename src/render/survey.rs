@@ -35,8 +35,10 @@ pub struct Survey<'g> {
     pub bounds: Bounds,
     /// Whether any outline is stroked.
     pub strokes: bool,
-    /// The number of elements.
+    /// The number of elements; where there are more, so many.
     pub elements: u64,
+    /// Whether there are more elements than have been counted.
+    pub(super) has_more: bool,
     /// The number of fractals.
     pub fractals: u64,
     /// The largest rank of an element in its fractal.
@@ -71,6 +73,7 @@ impl<'g> Survey<'g> {
             bounds: Bounds::EMPTY,
             strokes: false,
             elements: 0,
+            has_more: false,
             fractals: 0,
             largest_index: 0,
             walked: false,
@@ -112,7 +115,7 @@ impl<'g> Survey<'g> {
     #[must_use]
     pub fn classes(&self) -> (Classes, Vec<u64>) {
         let classes = self.classes.after_survey(self.fractals, self.largest_index);
-        if classes.need_no_survey() {
+        if classes.need_no_survey() && !self.has_more {
             let used = (0..).zip(&self.used).filter(|(_, used)| **used);
             let used: BTreeSet<u64> = used.map(|(value, _)| classes.of_value(value)).collect();
             return (classes, used.into_iter().collect());
@@ -193,6 +196,34 @@ impl<'g> Survey<'g> {
         };
         self.is_bounded = true;
         Some(self)
+    }
+
+    /// Whether what is covered already may be left out while this is drawn, on a surface that knows what
+    /// is.
+    pub(super) fn may_hide(&self) -> bool {
+        let numbers_change = match self.style.color_by {
+            ColorBy::Index | ColorBy::Fractal => true,
+            ColorBy::Tint => self.graph.tints(),
+            _ => false,
+        };
+        !numbers_change && !self.graph.seeds
+    }
+
+    /// The survey of more elements than so many, where nothing else needs to be known of them, since
+    /// they are of one colour or their objects tell it.
+    pub(super) fn uncounted(&self, elements: u64) -> Option<Self> {
+        let is_one = self.classes.count() == 1;
+        let is_told = |object: &Object| is_one || self.classes.of_object(object).is_some();
+        let start = self.graph.initiator(0).instances.iter();
+        let longest = start.map(|instance| instance.frame.stretch());
+        let steps = self.sight.steps_of(longest.fold(0.0, f64::max))?;
+        self.graph.objects().iter().all(is_told).then(|| Self {
+            elements,
+            has_more: true,
+            fractals: 1,
+            steps,
+            ..self.clone()
+        })
     }
 
     /// How far what becomes of an object reaches, by object: see [`Graph::reaches`].

@@ -128,6 +128,11 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.has_length = true;
     }
 
+    /// As [`Surface::grain`].
+    pub(crate) fn grain(&self) -> Option<f64> {
+        self.surface.grain()
+    }
+
     /// As [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)

@@ -45,6 +45,7 @@ pub struct BaseElement {
     pieces: Vec<Piece>,
     /// The same outline from its last point to its first.
     backwards: (DVec2, Vec<Piece>),
+    signed_area: f64,
     closed: bool,
 }
 
@@ -75,6 +76,7 @@ impl BaseElement {
         }
         Some(Self {
             backwards: backwards(start, &pieces),
+            signed_area: signed_area(start, &pieces),
             start,
             pieces,
             closed,
@@ -87,6 +89,7 @@ impl BaseElement {
         let (start, pieces) = (DVec2::ZERO, vec![Piece::Line(DVec2::X)]);
         Self {
             backwards: backwards(start, &pieces),
+            signed_area: signed_area(start, &pieces),
             start,
             pieces,
             closed: false,
@@ -193,22 +196,27 @@ impl BaseElement {
     /// that is encircled counter-clockwise.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
-        let mut from = self.start;
-        let mut twice = 0.0;
-        for piece in &self.pieces {
-            // ½∮(x dy − y dx) of a cubic is a sum of cross products of its control points.
-            if let Piece::Cubic(a, b, end) = *piece {
-                twice += (6.0 * (from.perp_dot(a) + b.perp_dot(end))
-                    + 3.0 * (from.perp_dot(b) + a.perp_dot(b) + a.perp_dot(end))
-                    + from.perp_dot(end))
-                    / 10.0;
-            } else {
-                twice += from.perp_dot(piece.end());
-            }
-            from = piece.end();
-        }
-        (twice + from.perp_dot(self.start)) / 2.0
+        self.signed_area
     }
+}
+
+/// The area between an outline and the line back from its end to its start.
+fn signed_area(start: DVec2, pieces: &[Piece]) -> f64 {
+    let mut from = start;
+    let mut twice = 0.0;
+    for piece in pieces {
+        // ½∮(x dy − y dx) of a cubic is a sum of cross products of its control points.
+        if let Piece::Cubic(a, b, end) = *piece {
+            twice += (6.0 * (from.perp_dot(a) + b.perp_dot(end))
+                + 3.0 * (from.perp_dot(b) + a.perp_dot(b) + a.perp_dot(end))
+                + from.perp_dot(end))
+                / 10.0;
+        } else {
+            twice += from.perp_dot(piece.end());
+        }
+        from = piece.end();
+    }
+    (twice + from.perp_dot(start)) / 2.0
 }
 
 fn backwards(start: DVec2, pieces: &[Piece]) -> (DVec2, Vec<Piece>) {

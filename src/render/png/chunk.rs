@@ -1,12 +1,10 @@
 //! A stretch of what is drawn as coverage: made in order, covered by any thread.
 
-use std::sync::Arc;
-
 use crate::render::surface::{Position, Stamped, Tuft};
 
 use super::coverage::Plane;
 use super::nib::Nib;
-use super::planes::Planes;
+use super::part::Layers;
 
 /// Chunks have about this many commands or positions.
 const MANY: usize = 1 << 14;
@@ -20,8 +18,12 @@ enum Command {
     GoOn,
     /// Lines to so many positions, one after another.
     Lines(usize),
-    /// Small polygons of so many vertices each, by number.
-    Polygons { vertices: usize, count: usize },
+    /// Polygons of so many vertices each, by number, and whether they are parts of strokes.
+    Polygons {
+        vertices: usize,
+        count: usize,
+        of_strokes: bool,
+    },
     /// So many tufts.
     Tufts(usize),
     /// So many stamps.
@@ -32,7 +34,7 @@ enum Command {
 #[derive(Default)]
 pub(super) struct Chunk {
     /// Where it is drawn, once it may be.
-    planes: Option<Arc<Planes>>,
+    planes: Layers,
     commands: Vec<Command>,
     points: Vec<Position>,
     tufts: Vec<Tuft>,
@@ -73,15 +75,20 @@ impl Chunk {
         }
     }
 
-    /// Adds a polygon that is small and convex.
-    pub(super) fn polygon(&mut self, vertices: &[Position]) {
+    /// Adds a polygon that [`Plane::polygon`] covers, of a path or of a stroke.
+    pub(super) fn polygon(&mut self, vertices: &[Position], of_stroke: bool) {
         self.points.extend_from_slice(vertices);
         let sides = vertices.len();
         match self.commands.last_mut() {
-            Some(Command::Polygons { vertices, count }) if *vertices == sides => *count += 1,
+            Some(Command::Polygons {
+                vertices,
+                count,
+                of_strokes,
+            }) if *vertices == sides && *of_strokes == of_stroke => *count += 1,
             _ => self.commands.push(Command::Polygons {
                 vertices: sides,
                 count: 1,
+                of_strokes: of_stroke,
             }),
         }
     }
@@ -109,15 +116,19 @@ impl Chunk {
         }
     }
 
-    /// Says where it is to be drawn.
-    pub(super) fn assign(&mut self, planes: Option<Arc<Planes>>) {
+    /// Says where it is to be drawn: lines, and polygons of strokes, on the second planes if there are such.
+    pub(super) fn assign(&mut self, planes: Layers) {
         self.planes = planes;
     }
 
     /// Covers what it covers, and empties it.
     pub(super) fn cover(&mut self) {
-        if let Some(planes) = self.planes.take() {
-            planes.with_one(|plane| self.cover_on(plane));
+        match std::mem::take(&mut self.planes) {
+            [Some(planes), None] => planes.with_one(|plane| self.cover_on(plane, None)),
+            [Some(planes), Some(strokes)] => planes.with_one(|plane| {
+                strokes.with_one(|strokes| self.cover_on(plane, Some(strokes)));
+            }),
+            [None, _] => {}
         }
         self.commands.clear();
         self.points.clear();
@@ -125,7 +136,7 @@ impl Chunk {
         self.stamps.clear();
     }
 
-    fn cover_on(&mut self, plane: &mut Plane) {
+    fn cover_on(&self, plane: &mut Plane, mut strokes: Option<&mut Plane>) {
         let (mut points, mut tufts) = (self.points.as_slice(), self.tufts.as_slice());
         let mut stamps = self.stamps.as_slice();
         let mut next = |count: usize| {
@@ -135,22 +146,29 @@ impl Chunk {
         };
         let (mut nib, mut at) = (None, [0; 2]);
         for command in &self.commands {
+            let over = strokes.as_deref_mut();
             match command {
                 Command::Nib(next) => nib = Some(next.clone()),
                 Command::Start | Command::GoOn => {
                     at = next(1).first().copied().unwrap_or(at);
                     if let (Command::Start, Some(nib)) = (command, &mut nib) {
-                        nib.start(plane, at);
+                        nib.start(over.unwrap_or(&mut *plane), at);
                     }
                 }
                 Command::Lines(count) => {
                     let lines = next(*count);
                     if let Some(nib) = &mut nib {
-                        nib.lines(plane, at, lines);
+                        nib.lines(over.unwrap_or(&mut *plane), at, lines);
                     }
                     at = lines.last().copied().unwrap_or(at);
                 }
-                Command::Polygons { vertices, count } => {
+                Command::Polygons {
+                    vertices,
+                    count,
+                    of_strokes,
+                } => {
+                    let over = over.filter(|_| *of_strokes);
+                    let plane = over.unwrap_or(&mut *plane);
                     for polygon in next(vertices * count).chunks_exact(*vertices) {
                         plane.polygon(polygon);
                     }

@@ -23,10 +23,21 @@ pub(super) struct Part {
     rows: Range<u32>,
     /// Its place in what it is a part of.
     corner: [u32; 2],
-    /// What is covered and not yet coloured, once something has been, and its colour.
+    /// What is covered and not yet coloured: by paths, and by the strokes of those that are filled too,
+    /// which lie on top.
+    layers: [Layer; 2],
+}
+
+/// What is covered in one colour.
+#[derive(Default)]
+struct Layer {
+    /// Once something has been covered.
     planes: Option<Arc<Planes>>,
     ink: Option<Colour>,
 }
+
+/// The planes of a part's layers.
+pub(super) type Layers = [Option<Arc<Planes>>; 2];
 
 impl Part {
     pub(super) fn new(corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
@@ -40,15 +51,22 @@ impl Part {
             size,
             rows,
             corner,
-            planes: None,
-            ink: None,
+            layers: Default::default(),
         })
     }
 
     /// The same with planes that have been used for other rows.
-    pub(super) fn on(self, planes: Planes) -> Self {
-        let planes = planes.moved_to(&self.rows).map(Arc::new);
-        Self { planes, ..self }
+    pub(super) fn on(mut self, layers: Layers) -> Self {
+        for (layer, planes) in self.layers.iter_mut().zip(layers) {
+            let planes = planes.and_then(Arc::into_inner);
+            layer.planes = planes.and_then(|planes| planes.moved_to(&self.rows).map(Arc::new));
+        }
+        self
+    }
+
+    /// Width and height of what it shows rows of.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size
     }
 
     /// Whether the part is small enough to have a plane.
@@ -57,15 +75,21 @@ impl Part {
         pixels <= MOST_COVERED
     }
 
-    /// What paths cover, if any does.
-    pub(super) fn planes(&self) -> Option<Arc<Planes>> {
-        self.planes.clone()
+    /// The planes that there are.
+    pub(super) fn planes(&self) -> Layers {
+        self.layers.each_ref().map(|layer| layer.planes.clone())
+    }
+
+    /// Those of them that paths are drawn on, and the strokes on top of them, if these lie apart.
+    pub(super) fn planes_in_use(&self) -> Layers {
+        let in_use = |layer: &Layer| layer.planes.clone().filter(|_| layer.ink.is_some());
+        self.layers.each_ref().map(in_use)
     }
 
     /// Whether a path of a colour goes on where others were covered, with nothing to be done.
     #[inline]
     pub(super) fn goes_on_in(&self, colour: Colour) -> bool {
-        self.ink == Some(colour)
+        self.layers[0].ink == Some(colour) && self.layers[1].ink.is_none()
     }
 
     /// Whether what has been covered must be coloured before a path begins. Paths of one opaque
@@ -73,59 +97,68 @@ impl Part {
     pub(super) fn settles_before(&self, paint: &Paint) -> bool {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let mut colours = [paint.fill, stroke].into_iter().flatten();
-        self.ink.is_some() && !colours.all(|colour| self.ink == Some(colour))
+        let ink = self.layers[0].ink;
+        ink.is_some() && !colours.all(|colour| ink == Some(colour))
     }
 
-    /// Begins a path that covers something.
-    pub(super) fn begin(&mut self, paint: &Paint, threads: usize) {
-        let stroke = paint.stroke.map(|stroke| stroke.colour);
-        self.ink = stroke.or(paint.fill);
-        self.made_planes(threads);
+    /// Begins a path that covers something, by its colour; or by two, of its area and its stroke.
+    pub(super) fn begin(&mut self, inks: [Option<Colour>; 2], threads: usize) {
+        for (number, ink) in inks
+            .into_iter()
+            .enumerate()
+            .filter(|(_, ink)| ink.is_some())
+        {
+            self.made_planes(number, threads);
+            self.layers[number].ink = ink;
+        }
     }
 
     /// Says of what layer the paths are that are covered.
     #[inline]
     pub(super) fn begin_layer(&self, layer: u64) {
-        if let Some(planes) = &self.planes {
+        if let Some(planes) = &self.layers[0].planes {
             planes.filled().begin(layer);
         }
     }
 
     /// Which pixels are covered all over.
     pub(super) fn filled(&mut self, threads: usize) -> Arc<Filled> {
-        Arc::clone(self.made_planes(threads).filled())
+        Arc::clone(self.made_planes(0, threads).filled())
     }
 
-    fn made_planes(&mut self, threads: usize) -> &Arc<Planes> {
+    fn made_planes(&mut self, layer: usize, threads: usize) -> &Arc<Planes> {
         let planes = || Arc::new(Planes::new(self.size, self.rows.clone(), threads));
-        self.planes.get_or_insert_with(planes)
+        self.layers[layer].planes.get_or_insert_with(planes)
     }
 
     /// Whether what has been covered must be coloured before the next path, whatever that is.
     #[inline]
     pub(super) fn settles_after(&self) -> bool {
-        self.ink.is_some_and(|ink| ink != ink.opaque())
+        let [paths, strokes] = self.layers.each_ref().map(|layer| layer.ink);
+        strokes.is_some() || paths.is_some_and(|ink| ink != ink.opaque())
     }
 
     /// Colours what has been covered, once all threads have.
     pub(super) fn settle(&mut self) {
-        let (Some(planes), Some(ink)) = (&self.planes, self.ink.take()) else {
-            return;
-        };
-        let [red, green, blue, opacity] = ink.rgba();
-        let whole = WHOLE * 255;
         let data = self.pixmap.data_mut();
-        planes.drain(|pixel, covered| {
-            let part = covered * u32::from(opacity);
-            let values = &mut data[4 * pixel..][..4];
-            for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {
-                let mixed = u32::from(ink) * part + u32::from(*value) * (whole - part);
-                #[expect(clippy::cast_possible_truncation, reason = "a mean of bytes")]
-                {
-                    *value = ((mixed + whole / 2) / whole) as u8;
+        for Layer { planes, ink } in &mut self.layers {
+            let (Some(planes), Some(ink)) = (planes, ink.take()) else {
+                continue;
+            };
+            let [red, green, blue, opacity] = ink.rgba();
+            let whole = WHOLE * 255;
+            planes.drain(|pixel, covered| {
+                let part = covered * u32::from(opacity);
+                let values = &mut data[4 * pixel..][..4];
+                for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {
+                    let mixed = u32::from(ink) * part + u32::from(*value) * (whole - part);
+                    #[expect(clippy::cast_possible_truncation, reason = "a mean of bytes")]
+                    {
+                        *value = ((mixed + whole / 2) / whole) as u8;
+                    }
                 }
-            }
-        });
+            });
+        }
     }
 
     /// Lays the part on what it is a part of.

@@ -19,7 +19,7 @@ const STROKE_CHUNK: usize = 1 << 17;
 const FILL_CHUNK: usize = 1 << 20;
 
 /// SVG's limit of a mitre's length, in widths.
-const MITER_LIMIT: f32 = 4.0;
+pub(super) const MITER_LIMIT: f32 = 4.0;
 
 /// A path, in pieces if it is long.
 #[derive(Default)]

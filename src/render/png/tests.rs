@@ -16,7 +16,8 @@ use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
 use crate::render::{Drawing, Options, Scene, Size};
 use crate::style::{Cap, ColorBy, Colour, Join, Style, Width};
 
-use super::Png;
+use super::skia::Outline;
+use super::{Pixmap, Png};
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -87,7 +88,7 @@ fn drawn(threads: usize, draw: impl FnOnce(&mut Png<'_, '_>)) -> Vec<u8> {
 #[test]
 fn the_number_of_threads_does_not_show() {
     let once = paths();
-    let mut all = Vec::new();
+    let mut all = shaped_paths();
     for ink in [[0, 0, 0, 255], [200, 90, 0, 255], [0, 90, 200, 100]] {
         let colour = Colour::of_rgba(ink);
         let of_colour = once.iter().cloned().map(|(mut paint, vertices)| {
@@ -106,6 +107,109 @@ fn the_number_of_threads_does_not_show() {
     for threads in [2, 3, 5] {
         let many = drawn(threads, |png| draw(png, &all));
         assert!(many == one, "on {threads} threads");
+    }
+}
+
+/// Paths of all caps and joins, and of both fill and stroke.
+fn shaped_paths() -> Vec<(Paint, Vec<Position>)> {
+    let mut paths = Vec::new();
+    let zigzag = [
+        [800, 900],
+        [2500, 4100],
+        [3300, 1500],
+        [3400, 4600],
+        [5200, 1200],
+        [7100, 4400],
+    ];
+    for cap in [Cap::Butt, Cap::Square, Cap::Round] {
+        for join in [Join::Miter, Join::Bevel, Join::Round] {
+            for width in [0.7, 1.6, 3.5] {
+                for fill in [None, Some(Colour::of_rgba([200, 90, 0, 255]))] {
+                    let mut paint = stroke(width);
+                    paint.fill = fill;
+                    if let Some(Stroke { pen, .. }) = &mut paint.stroke {
+                        (pen.cap, pen.join) = (cap, join);
+                    }
+                    paths.push((paint, zigzag.to_vec()));
+                }
+            }
+        }
+    }
+    paths
+}
+
+/// tiny-skia knows sixteen shades along one axis and four along the other, and no corners of strokes that
+/// are thinner than a pixel.
+#[test]
+fn strokes_with_corners_are_those_of_the_reference() {
+    let is_wide = |paint: &Paint| paint.stroke.is_some_and(|stroke| stroke.pen.width > 1.0);
+    for (paint, vertices) in shaped_paths()
+        .into_iter()
+        .filter(|(paint, _)| is_wide(paint))
+    {
+        let path = [(paint, vertices)];
+        let drawn = drawn(1, |png| draw(png, &path));
+        let mut reference = Pixmap::new(SIZE[0], SIZE[1]).unwrap();
+        let mut outline = Outline::default();
+        let [(paint, vertices)] = &path;
+        outline.begin(*paint);
+        outline.move_to(vertices[0]);
+        vertices[1..]
+            .iter()
+            .for_each(|&vertex| outline.line_to(vertex));
+        if paint.fill.is_some() {
+            outline.close(&mut reference);
+        }
+        outline.end(&mut reference);
+        let differences = drawn
+            .iter()
+            .zip(reference.data())
+            .map(|(a, b)| a.abs_diff(*b));
+        let most = differences.clone().max().unwrap();
+        let mean = differences.map(f64::from).sum::<f64>() / drawn.len() as f64;
+        assert!(most <= 60 && mean < 0.5, "{most} and {mean} with {paint:?}");
+        assert!(drawn.iter().any(|&value| value > 0));
+    }
+}
+
+/// Many elements in one path, each with fill and stroke: all strokes lie over all fills.
+#[test]
+fn strokes_lie_over_fills() {
+    let fill = Colour::of_rgba([200, 90, 0, 255]);
+    let square = |x: i64| vec![[x, 1000], [x + 2000, 1000], [x + 2000, 3000], [x, 3000]];
+    let mut paint = stroke(1.0);
+    paint.fill = Some(fill);
+    let drawn = drawn(2, |png| {
+        png.begin(&paint).unwrap();
+        for x in [1000, 2000] {
+            let square = square(x);
+            png.move_to(square[0]);
+            png.lines_to(&square[1..]);
+            png.close();
+        }
+        png.end().unwrap();
+        // What comes then is on top.
+        png.begin(&Paint {
+            fill: Some(Colour::BLACK),
+            stroke: None,
+        })
+        .unwrap();
+        assert!(png.polygon(&[[1300, 1300], [1500, 1300], [1500, 1500], [1300, 1500]]));
+        png.end().unwrap();
+    });
+    let pixel = |x: usize, y: usize| &drawn[4 * (y * SIZE[0] as usize + x)..][..4];
+    assert_eq!(pixel(15, 20), [200, 90, 0, 255]);
+    assert_eq!(pixel(14, 14), [0, 0, 0, 255]);
+    // The side of one square in the middle of the other, on both sides of the border of pixels.
+    for x in [19, 20, 29, 30] {
+        let [red, green, blue, alpha] = *pixel(x, 20) else {
+            panic!()
+        };
+        assert!(
+            (90..110).contains(&red) && (40..50).contains(&green),
+            "{red} {green} at {x}"
+        );
+        assert_eq!([blue, alpha], [0, 255]);
     }
 }
 

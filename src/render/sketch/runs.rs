@@ -73,7 +73,7 @@ impl Sketcher<'_> {
 
     /// Lines of one class, short and thin ones as tufts; whether there are any.
     pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
-        let (Some(comb), Some(last)) = (&self.comb, sticks.last()) else {
+        let (Some(comb), Some(last)) = (&self.means.comb, sticks.last()) else {
             return false;
         };
         let map = self.scene.canvas.map(run.map());
@@ -97,7 +97,7 @@ impl Sketcher<'_> {
 
     /// What of a run is painted, by a stamp; whether there is one.
     pub(super) fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
-        let stamps = self.stamps.as_ref();
+        let stamps = self.means.stamps.as_ref();
         let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {
             return false;
         };

@@ -7,30 +7,51 @@ const TOLERANCE: f64 = 1.0;
 const MOST_LINES: f64 = 1e4;
 
 /// A cubic Bézier curve.
-type Curve = [Position; 4];
+type Curve = [[f64; 2]; 4];
 
 /// Where the lines end which a curve is drawn as.
-pub(crate) fn flattened(curve: Curve) -> impl Iterator<Item = Position> {
-    lines(curve, least_lines(curve), 1.0)
+pub(crate) fn flattened(curve: [Position; 4]) -> impl Iterator<Item = Position> {
+    let curve = places(curve);
+    lines(curve, least_lines(curve, TOLERANCE), 1.0).map(rounded)
 }
 
 /// Where lines end which a curve is drawn as where it bounds a polygon: they are as close, and bound
 /// as much. There may be millions of polygons, so that what chords cut off each would be missed.
-pub(crate) fn bounding(curve: Curve) -> impl ExactSizeIterator<Item = Position> {
-    let count = least_lines(curve).max(2.0);
+pub(crate) fn bounding(curve: [Position; 4]) -> impl ExactSizeIterator<Item = Position> {
+    bounding_within(places(curve), TOLERANCE).map(rounded)
+}
+
+/// The same of a curve in any units, and as far from it as a tolerance allows.
+pub(crate) fn bounding_within(
+    curve: Curve,
+    tolerance: f64,
+) -> impl ExactSizeIterator<Item = [f64; 2]> {
+    let count = least_lines(curve, tolerance).max(2.0);
     // Chords of a parabola, evenly spread, cut off one part in the square of their number.
     lines(curve, count, 1.0 / (1.0 - 1.0 / (count * count)))
 }
 
+fn places(curve: [Position; 4]) -> Curve {
+    curve.map(|point| point.map(|place| place as f64))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "curves lie between their controls"
+)]
+fn rounded(point: [f64; 2]) -> Position {
+    point.map(|place| place.round() as i64)
+}
+
 /// How many lines a curve is drawn as.
-fn least_lines([from, a, b, to]: Curve) -> f64 {
-    let bend = |p: Position, q: Position, r: Position| {
-        let [x, y] = [0, 1].map(|axis| (p[axis] - 2 * q[axis] + r[axis]) as f64);
+fn least_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
+    let bend = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        let [x, y] = [0, 1].map(|axis| p[axis] - 2.0 * q[axis] + r[axis]);
         x * x + y * y
     };
     // Wang's bound of the distance between a curve and its chords (1984).
     let bend = bend(from, a, b).max(bend(a, b, to)).sqrt();
-    let lines = (0.75 * bend / TOLERANCE).sqrt().ceil();
+    let lines = (0.75 * bend / tolerance).sqrt().ceil();
     lines.clamp(1.0, MOST_LINES)
 }
 
@@ -41,7 +62,7 @@ fn least_lines([from, a, b, to]: Curve) -> f64 {
     clippy::cast_sign_loss,
     reason = "a small whole number"
 )]
-fn lines(curve: Curve, count: f64, swell: f64) -> impl ExactSizeIterator<Item = Position> {
+fn lines(curve: Curve, count: f64, swell: f64) -> impl ExactSizeIterator<Item = [f64; 2]> {
     let last = count as usize - 1;
     (0..last + 1).map(move |line| {
         if line == last {
@@ -53,16 +74,12 @@ fn lines(curve: Curve, count: f64, swell: f64) -> impl ExactSizeIterator<Item = 
 }
 
 /// A point of a curve, moved away from the line between the ends.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "curves lie between their controls"
-)]
-fn point([p, q, r, s]: Curve, t: f64, swell: f64) -> Position {
+fn point([p, q, r, s]: Curve, t: f64, swell: f64) -> [f64; 2] {
     let u = 1.0 - t;
     [0, 1].map(|axis| {
-        let [p, q, r, s] = [p, q, r, s].map(|control| control[axis] as f64);
+        let [p, q, r, s] = [p, q, r, s].map(|control| control[axis]);
         let on_curve = u * u * (u * p + 3.0 * t * q) + t * t * (3.0 * u * r + t * s);
         let on_line = u * p + t * s;
-        (on_line + swell * (on_curve - on_line)).round() as i64
+        on_line + swell * (on_curve - on_line)
     })
 }

@@ -5,6 +5,7 @@
 //! work shows. The mask method is Carpenter's (The A-buffer, 1984). Lines so thin that they would
 //! fall between the samples are summed beside them, in a way that has no order either.
 
+mod area;
 mod curve;
 mod hair;
 mod pen;
@@ -18,11 +19,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
-pub(crate) use curve::{bounding, flattened};
+pub(crate) use area::{MOST_CORNERS, has_room};
+pub(crate) use curve::{bounding, bounding_within, flattened};
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
-pub(crate) use polygon::{MOST_VERTICES, is_small, smoothed};
 pub(crate) use stamp::{Sheet, Stamp};
 
 /// A position in hundredths of a pixel.
@@ -45,7 +46,12 @@ pub(crate) const MARGIN: i64 = 5;
 /// row or a column, so that edges that are nearly level, or upright, have 65 shades too.
 fn sample(number: u32) -> [f64; 2] {
     // Of all lattices of this kind one whose shortest vectors are longest.
-    [number * 19 % SAMPLES, number].map(|place| (f64::from(place) + 0.5) / f64::from(SAMPLES))
+    [column(number), number].map(|place| (f64::from(place) + 0.5) / f64::from(SAMPLES))
+}
+
+/// The column of a sample; its row is its number.
+const fn column(number: u32) -> u32 {
+    number * 19 % SAMPLES
 }
 
 /// The samples, as bits, for which `covers` holds.
@@ -71,6 +77,7 @@ pub(crate) struct Plane {
     /// What is thinner than that.
     hairs: Hairs,
     touched: Touched,
+    scratch: area::Scratch,
 }
 
 /// The pixels outside of which nothing has been covered: first and last column, first and last row.
@@ -120,6 +127,7 @@ impl Plane {
             cells: (0..stride * rows).map(|_| AtomicU64::new(0)).collect(),
             hairs: Hairs::default(),
             touched: Touched::NOTHING,
+            scratch: Vec::new(),
         }
     }
 

@@ -1,13 +1,16 @@
 use std::sync::LazyLock;
 use std::sync::atomic::Ordering::Relaxed;
 
+#[cfg(doc)]
+use super::has_room;
 use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// The most vertices of a polygon that is drawn here.
-pub(crate) const MOST_VERTICES: usize = 16;
+const MOST_VERTICES: usize = 32;
 
-/// Most polygons have no more vertices than this.
+/// Most polygons have no more vertices than this, and of the others most no more than that.
 const FEW_VERTICES: usize = 4;
+const SOME_VERTICES: usize = 12;
 
 /// The most pixels of its width and height.
 const MOST_PIXELS: i64 = 8;
@@ -110,7 +113,7 @@ fn number(value: f64) -> usize {
 
 /// The box of vertices, least and most.
 #[inline]
-fn bounds(vertices: &[Position]) -> [Position; 2] {
+pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
     let none = [[i64::MAX; 2], [i64::MIN; 2]];
     vertices.iter().fold(none, |[least, most], vertex| {
         [
@@ -132,15 +135,6 @@ fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
     sides
 }
 
-/// Whether a polygon is small and convex, so that [`Plane::polygon`] covers it.
-pub(crate) fn is_small(vertices: &[Position]) -> bool {
-    if vertices.len() <= FEW_VERTICES {
-        outline::<FEW_VERTICES>(vertices).is_some()
-    } else {
-        outline::<MOST_VERTICES>(vertices).is_some()
-    }
-}
-
 /// The box, the sides and the orientation of a polygon.
 type Outline<const MOST: usize> = ([Position; 2], [[i64; 2]; MOST], i64);
 
@@ -159,55 +153,27 @@ fn outline<const MOST: usize>(vertices: &[Position]) -> Option<Outline<MOST>> {
     Some(([least, most], sides, orientation))
 }
 
-/// A polygon without the vertices that lie no farther than a hundredth of a pixel from the line
-/// between their neighbours. None of one that is larger than those that are drawn here.
-pub(crate) fn smoothed(vertices: &[Position]) -> Option<Vec<Position>> {
-    let (&last, true) = (vertices.last()?, vertices.len() <= MOST_VERTICES) else {
-        return None;
-    };
-    let [least, most] = bounds(vertices);
-    if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
-        return None;
-    }
-    let mut smooth = Vec::with_capacity(vertices.len());
-    let mut before = last;
-    let nexts = vertices.iter().cycle().skip(1);
-    for (&vertex, &next) in vertices.iter().zip(nexts) {
-        let [x, y] = [0, 1].map(|axis| next[axis] - before[axis]);
-        let area = x * (vertex[1] - before[1]) - y * (vertex[0] - before[0]);
-        if area * area > x * x + y * y {
-            smooth.push(vertex);
-            before = vertex;
-        }
-    }
-    Some(smooth)
-}
-
 impl Plane {
-    /// Covers a polygon, if it is small and convex; otherwise nothing.
+    /// Covers a polygon, under the nonzero rule, if it is small and convex or [has room](has_room);
+    /// otherwise nothing.
     #[inline]
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
-        if vertices.len() <= FEW_VERTICES {
-            self.polygon_of::<FEW_VERTICES>(vertices)
-        } else {
-            self.polygon_of::<MOST_VERTICES>(vertices)
-        }
+        let is_small = match vertices.len() {
+            ..=FEW_VERTICES => self.polygon_of::<FEW_VERTICES>(vertices),
+            ..=SOME_VERTICES => self.polygon_of::<SOME_VERTICES>(vertices),
+            ..=MOST_VERTICES => self.polygon_of::<MOST_VERTICES>(vertices),
+            _ => false,
+        };
+        is_small || self.area(vertices)
     }
 
-    fn polygon_of<const MOST: usize>(&mut self, vertices: &[Position]) -> bool {
+    pub(super) fn polygon_of<const MOST: usize>(&mut self, vertices: &[Position]) -> bool {
         let Some(([least, most], sides, orientation)) = outline::<MOST>(vertices) else {
             return false;
         };
-        let pixels = |axis: usize| {
-            let origin = [0, self.top][axis];
-            let first = least[axis].div_euclid(FINE).max(origin - MARGIN);
-            let last = most[axis].div_euclid(FINE);
-            [first, last.min(origin + self.size[axis] + MARGIN - 1)]
-        };
-        let (columns, rows) = (pixels(0), pixels(1));
-        if orientation == 0 || columns[0] > columns[1] || rows[0] > rows[1] {
+        let Some([columns, rows]) = self.pixels([least, most]).filter(|_| orientation != 0) else {
             return true;
-        }
+        };
         if self.is_full(columns, rows) {
             return true;
         }
@@ -226,12 +192,30 @@ impl Plane {
         true
     }
 
+    /// The columns and rows that a box meets, margins among them, if it meets any.
+    #[inline]
+    pub(super) fn pixels(&self, [least, most]: [Position; 2]) -> Option<[[i64; 2]; 2]> {
+        let met = [0, 1].map(|axis| {
+            let origin = [0, self.top][axis];
+            let first = least[axis].div_euclid(FINE).max(origin - MARGIN);
+            let last = most[axis].div_euclid(FINE);
+            [first, last.min(origin + self.size[axis] + MARGIN - 1)]
+        });
+        met.iter().all(|[first, last]| first <= last).then_some(met)
+    }
+
+    /// The cell of a pixel.
+    #[inline]
+    pub(super) fn cell(&self, [column, row]: [i64; 2]) -> usize {
+        index(row - self.top + MARGIN) * self.stride + index(column + MARGIN)
+    }
+
     /// Whether all of a rectangle is covered, as is most of it where polygons overlap.
     #[inline]
-    fn is_full(&self, columns: [i64; 2], rows: [i64; 2]) -> bool {
+    pub(super) fn is_full(&self, columns: [i64; 2], rows: [i64; 2]) -> bool {
         let width = index(columns[1] - columns[0] + 1);
         (rows[0]..=rows[1]).all(|row| {
-            let start = index(row - self.top + MARGIN) * self.stride + index(columns[0] + MARGIN);
+            let start = self.cell([columns[0], row]);
             let mut cells = self.cells[start..start + width].iter();
             cells.all(|cell| cell.load(Relaxed) == u64::MAX)
         })
@@ -242,7 +226,7 @@ impl Plane {
         let table = HALF_PLANES.as_slice();
         let width = index(columns[1] - columns[0] + 1);
         for row in rows[0]..=rows[1] {
-            let start = index(row - self.top + MARGIN) * self.stride + index(columns[0] + MARGIN);
+            let start = self.cell([columns[0], row]);
             for (cell, column) in self.cells[start..start + width].iter().zip(0..) {
                 let masks = edges
                     .iter()

@@ -292,16 +292,96 @@ fn a_line_through_the_whole_plane_is_drawn_where_it_is_seen() {
     }
 }
 
-#[test]
-fn what_is_large_or_not_convex_is_left_to_others() {
-    let star = [0, 2, 4, 1, 3].map(|corner| {
-        let (sine, cosine) = (f64::from(corner) * std::f64::consts::TAU / 5.0).sin_cos();
-        [3000 + (300.0 * cosine) as i64, 3000 + (300.0 * sine) as i64]
+/// How often an outline winds around a point, by the sides that cross the ray from there to the right.
+fn winding(vertices: &[Position], [x, y]: [f64; 2]) -> i32 {
+    let nexts = vertices.iter().cycle().skip(1);
+    let sides = vertices.iter().zip(nexts);
+    let crossings = sides.map(|(from, to)| {
+        let [[a, b], [c, d]] = [from, to].map(|point| point.map(|fine| fine as f64 / 100.0));
+        let is_right = (c - a) * (y - b) - (x - a) * (d - b);
+        match (b <= y, d <= y) {
+            (true, false) if is_right > 0.0 => 1,
+            (false, true) if is_right < 0.0 => -1,
+            _ => 0,
+        }
     });
-    let dart = [[0, 0], [200, 100], [0, 200], [50, 100]];
-    let bow = [[0, 0], [200, 200], [200, 0], [0, 200]];
-    let large = [[0, 0], [801, 0], [0, 100]];
-    for polygon in [&star[..], &dart, &bow, &large] {
+    crossings.sum()
+}
+
+/// Outlines of any shape that are not convex, or too large for the short way.
+fn any_shape() -> impl Strategy<Value = Vec<Position>> {
+    let corner = [-300..6700i64, -300..6700i64];
+    let near = [2000..2600i64, 2000..2600i64];
+    prop_oneof![
+        proptest::collection::vec(corner, 3..12),
+        proptest::collection::vec(near, 17..40),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 6, ..ProptestConfig::default() })]
+
+    #[test]
+    fn areas_cover_the_samples_that_are_wound_around(vertices in any_shape()) {
+        let covered = samples(|plane| assert!(plane.area(&vertices)));
+        for (pixel, &covered) in covered.iter().enumerate().step_by(7) {
+            let [x, y] = [pixel % SIZE as usize, pixel / SIZE as usize].map(|place| place as f64);
+            let is_inside = |number: &u32| {
+                let [u, v] = super::sample(*number);
+                winding(&vertices, [x + u, y + v]) != 0
+            };
+            let expected = (0..SAMPLES).filter(is_inside).count();
+            // A side may run through a sample, within rounding.
+            prop_assert!((expected as i64 - i64::from(covered)).abs() <= 1, "{covered} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn both_ways_to_cover_a_polygon_agree(
+        corner in [500..5000i64, 500..5000],
+        turn in 0.0..6.3f64,
+        radius in 100.0..350.0f64,
+    ) {
+        let vertices = [0, 1, 2, 3, 4].map(|number| {
+            let (sine, cosine) = (turn + f64::from(number) * std::f64::consts::TAU / 5.0).sin_cos();
+            [corner[0] + (radius * cosine) as i64, corner[1] + (radius * sine) as i64]
+        });
+        let soon = samples(|plane| assert!(plane.polygon_of::<5>(&vertices)));
+        let exact = samples(|plane| assert!(plane.area(&vertices)));
+        // Of a side the first way knows the direction in steps only.
+        let differences = soon.iter().zip(&exact).map(|(a, b)| a.abs_diff(*b));
+        prop_assert!(differences.clone().all(|difference| difference <= 6));
+        let off = area(&soon) - area(&exact);
+        prop_assert!(off.abs() <= 0.01 * radius / 10.0, "{off}");
+    }
+}
+
+#[test]
+fn neighbours_of_any_shape_leave_no_gap_and_do_not_overlap() {
+    let zigzag: Vec<Position> = (0..30)
+        .map(|n| [3000 + n % 2 * 777 + 5 * n, 100 + 203 * n])
+        .collect();
+    let closed = |x: i64| {
+        let mut outline = zigzag.clone();
+        outline.extend([[x, 5987], [x, 100]]);
+        outline
+    };
+    let [left, right] = [1000, 5000].map(|x| samples(|plane| assert!(plane.area(&closed(x)))));
+    let whole = samples(|plane| {
+        assert!(plane.area(&[[1000, 100], [5000, 100], [5000, 5987], [1000, 5987]]));
+    });
+    for ((left, right), whole) in left.iter().zip(&right).zip(whole) {
+        assert_eq!(left + right, whole);
+    }
+}
+
+#[test]
+fn what_is_large_is_left_to_others() {
+    let large = [[0, 0], [20_000, 0], [0, 12_000]];
+    let many: Vec<Position> = (0..5000)
+        .map(|number| [number, number * 7 % 1000])
+        .collect();
+    for polygon in [&large[..], &many] {
         let covered = samples(|plane| assert!(!plane.polygon(polygon)));
         assert_eq!(area(&covered), 0.0);
     }

@@ -1,0 +1,191 @@
+//! Outlines of closed base elements as polygons, no finer than a surface shows them.
+
+use std::sync::OnceLock;
+
+use crate::geometry::DVec2;
+use crate::graph::Graph;
+use crate::rule::{BaseElement, Piece};
+
+use super::png::bounding_within;
+
+/// Outlines of straight sides are made coarser if they have more than this.
+const FEW_SIDES: usize = 8;
+
+/// Tolerances are powers of 1/2 from 1 down, so many of them, in lengths of elements.
+const LEVELS: usize = 16;
+
+/// The corners of outlines, by what may be left out of them.
+pub(super) struct Coarse {
+    /// How far, in pixels, an outline may lie beside where it is.
+    grain: f64,
+    /// By base element and tolerance.
+    outlines: Vec<Option<[OnceLock<Vec<DVec2>>; LEVELS]>>,
+}
+
+impl Coarse {
+    /// Those of a graph, on a surface that shows nothing finer than a grain, in pixels; `None` if all
+    /// are plain.
+    pub(super) fn of(graph: &Graph, grain: f64) -> Option<Self> {
+        let levels =
+            |base_element| is_fine(base_element).then(|| std::array::from_fn(|_| OnceLock::new()));
+        let outlines: Vec<_> = graph.base_elements().iter().map(levels).collect();
+        let any = outlines.iter().any(Option::is_some);
+        any.then_some(Self { grain, outlines })
+    }
+
+    /// The corners of a base element, in its unit frame and with its inside to the left, where its frame
+    /// stretches lengths to so many pixels at most; `None` where it is to be drawn as it is.
+    pub(super) fn corners(
+        &self,
+        graph: &Graph,
+        base_element: usize,
+        pixels: f64,
+    ) -> Option<&[DVec2]> {
+        let levels = self.outlines[base_element].as_ref()?;
+        let halvings = libm::log2(pixels / self.grain).ceil().max(0.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative; casts saturate"
+        )]
+        let corners = levels.get(halvings as usize)?;
+        let made = || polygon(&graph.base_elements()[base_element], libm::exp2(-halvings));
+        Some(corners.get_or_init(made))
+    }
+}
+
+/// Whether there may be something to be left out.
+fn is_fine(base_element: &BaseElement) -> bool {
+    let pieces = base_element.pieces();
+    let has_curves = pieces.iter().any(|piece| matches!(piece, Piece::Cubic(..)));
+    base_element.is_closed() && (has_curves || pieces.len() > FEW_SIDES)
+}
+
+/// The corners of a polygon that lies within a tolerance of a closed outline.
+fn polygon(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
+    let mut corners = vec![base_element.start()];
+    let mut at = base_element.start();
+    let mut has_curves = false;
+    for piece in base_element.pieces() {
+        match *piece {
+            Piece::Line(end) => corners.push(end),
+            Piece::Cubic(a, b, end) => {
+                has_curves = true;
+                let curve = [at, a, b, end].map(|point| point.to_array());
+                // As far on either side, for the sides bound as much.
+                let sides = bounding_within(curve, 2.0 * tolerance);
+                corners.extend(sides.map(DVec2::from));
+            }
+        }
+        at = piece.end();
+    }
+    // It ends where it starts.
+    corners.pop();
+    if !has_curves {
+        corners = thinned(&corners, tolerance);
+    }
+    if base_element.signed_area() < 0.0 {
+        corners.reverse();
+    }
+    corners
+}
+
+/// The corners of a polygon without those that may be left out: no corner is farther than a tolerance from
+/// the side that comes to stand for it (Ramer 1972; Douglas & Peucker 1973).
+fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
+    let Some(&first) = corners.first() else {
+        return Vec::new();
+    };
+    let ring: Vec<DVec2> = corners.iter().copied().chain([first]).collect();
+    let mut stays = vec![false; ring.len()];
+    stays[0] = true;
+    let mut open = vec![(0, ring.len() - 1)];
+    while let Some((from, to)) = open.pop() {
+        let [start, end] = [ring[from], ring[to]];
+        let far = |&corner: &usize| distance(ring[corner], start, end);
+        let farthest = (from + 1..to).max_by(|a, b| far(a).total_cmp(&far(b)));
+        if let Some(corner) = farthest.filter(|corner| far(corner) > tolerance) {
+            stays[corner] = true;
+            open.extend([(from, corner), (corner, to)]);
+        }
+    }
+    let stay = corners.iter().zip(stays).filter(|(_, stays)| *stays);
+    stay.map(|(&corner, _)| corner).collect()
+}
+
+/// The distance of a point from a side.
+fn distance(point: DVec2, start: DVec2, end: DVec2) -> f64 {
+    let along = end - start;
+    let length = along.length_squared();
+    let part = if length > 0.0 {
+        ((point - start).dot(along) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    point.distance(start + part * along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{distance, polygon, thinned};
+    use crate::geometry::DVec2;
+    use crate::rule::{BaseElement, Piece};
+
+    /// The area that corners encircle.
+    fn area(corners: &[DVec2]) -> f64 {
+        let nexts = corners.iter().cycle().skip(1);
+        corners
+            .iter()
+            .zip(nexts)
+            .map(|(a, b)| a.perp_dot(*b))
+            .sum::<f64>()
+            / 2.0
+    }
+
+    #[test]
+    fn circles_become_polygons_of_their_area() {
+        // The usual quarters of a circle, which are off by less than 3e-4.
+        let k = 0.552_284_749_8;
+        let quarters = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(DVec2::from);
+        let piece = |number: usize| {
+            let (from, to) = (quarters[number], quarters[(number + 1) % 4]);
+            Piece::Cubic(from + k * to, to + k * from, to)
+        };
+        let circle = BaseElement::new(quarters[0], (0..4).map(piece).collect(), true).unwrap();
+        let mut before = 0;
+        for level in 0..14 {
+            let tolerance = libm::exp2(-f64::from(level));
+            let corners = polygon(&circle, tolerance);
+            let off = |corner: &DVec2| (corner.length() - 1.0).abs();
+            assert!(corners.iter().all(|corner| off(corner) <= tolerance + 3e-4));
+            let missed = (area(&corners) / std::f64::consts::PI - 1.0).abs();
+            assert!(missed <= 0.2 * tolerance + 3e-4, "{missed} at {tolerance}");
+            assert!(corners.len() >= before);
+            before = corners.len();
+        }
+        assert!((80..400).contains(&before), "{before}");
+    }
+
+    #[test]
+    fn what_is_left_out_lies_within_the_tolerance() {
+        let corner = |number: u32| {
+            let turn = f64::from(number) / 500.0 * std::f64::consts::TAU;
+            let radius = 1.0 + 0.1 * libm::sin(37.0 * turn) + 0.01 * libm::cos(301.0 * turn);
+            DVec2::from_angle(turn) * radius
+        };
+        let corners: Vec<DVec2> = (0..500).map(corner).collect();
+        let mut before = corners.len() + 1;
+        for tolerance in [1e-6, 1e-3, 0.02, 0.1, 0.3] {
+            let thin = thinned(&corners, tolerance);
+            assert!(thin.len() < before, "{tolerance}");
+            before = thin.len();
+            let nexts = thin.iter().cycle().skip(1);
+            let sides: Vec<_> = thin.iter().zip(nexts).collect();
+            for &corner in &corners {
+                let far = sides.iter().map(|(a, b)| distance(corner, **a, **b));
+                assert!(far.fold(f64::INFINITY, f64::min) <= tolerance);
+            }
+        }
+        assert!(before < 10);
+    }
+}

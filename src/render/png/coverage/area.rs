@@ -1,0 +1,132 @@
+use super::polygon::bounds;
+use super::{FINE, Plane, Position, SAMPLES, cover, index};
+
+/// The most vertices of an outline whose area is covered here,
+pub(crate) const MOST_CORNERS: usize = 1 << 12;
+
+/// and the most pixels of its box.
+const MOST_PIXELS: i64 = 1 << 14;
+
+/// How often an outline winds around each sample of a pixel, modulo 256; while it is being summed, how
+/// much more often than around that of the pixel to the left.
+type Windings = [i8; SAMPLES as usize];
+
+/// What is in use while an area is covered.
+pub(super) type Scratch = Vec<Windings>;
+
+/// Where samples lie beside the left border of their pixels, by number.
+const BESIDE: [f64; SAMPLES as usize] = {
+    let mut beside = [0.0; SAMPLES as usize];
+    let mut number = 0;
+    while number < SAMPLES {
+        beside[number as usize] = (super::column(number) as f64 + 0.5) / SAMPLES as f64;
+        number += 1;
+    }
+    beside
+};
+
+/// Whether an outline of any shape is such that [`Plane::polygon`] covers its area.
+pub(crate) fn has_room(vertices: &[Position]) -> bool {
+    let [least, most] = bounds(vertices);
+    let side = |axis: usize| (most[axis].saturating_sub(least[axis]) / FINE).saturating_add(2);
+    (1..=MOST_CORNERS).contains(&vertices.len()) && side(0).saturating_mul(side(1)) <= MOST_PIXELS
+}
+
+impl Plane {
+    /// Covers what an outline winds around, if it has room; otherwise nothing.
+    ///
+    /// Every sample is decided for itself: every side is followed through the rows of samples, of
+    /// which each has one of every pixel.
+    #[expect(clippy::cast_precision_loss, reason = "positions in a small box")]
+    pub(super) fn area(&mut self, vertices: &[Position]) -> bool {
+        if !has_room(vertices) {
+            return false;
+        }
+        let Some([columns, rows]) = self.pixels(bounds(vertices)) else {
+            return true;
+        };
+        if self.is_full(columns, rows) {
+            return true;
+        }
+        let [width, height] = [columns, rows].map(|[first, last]| index(last - first + 1));
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.resize(scratch.len().max(width * height), [0; SAMPLES as usize]);
+        let left = columns[0] as f64 - 1.0;
+        let lines = [rows[0], rows[1] + 1].map(|row| row * i64::from(SAMPLES));
+        let mut before = vertices.last().copied().unwrap_or_default();
+        for &vertex in vertices {
+            let is_down = before[1] < vertex[1];
+            let winding = if is_down { 1 } else { -1 };
+            // From its upper end in any case, so that neighbours share the side.
+            let (upper, lower) = if is_down {
+                (before, vertex)
+            } else {
+                (vertex, before)
+            };
+            before = vertex;
+            let first = line_below(upper[1]).max(lines[0]);
+            let end = line_below(lower[1]).min(lines[1]);
+            if first >= end {
+                continue;
+            }
+            let slope = (lower[0] - upper[0]) as f64 / (lower[1] - upper[1]) as f64;
+            let line = FINE as f64 / f64::from(SAMPLES);
+            let down = (first as f64 + 0.5) * line - upper[1] as f64;
+            let start = (upper[0] as f64 + down * slope) / FINE as f64 - left;
+            let step = slope / f64::from(SAMPLES);
+            for (along, number) in (first..end).enumerate() {
+                let number_in_pixel = index(number) % SAMPLES as usize;
+                let crossing = start + along as f64 * step - BESIDE[number_in_pixel];
+                let column = whole(crossing);
+                if column < width {
+                    let row = index(number - lines[0]) / SAMPLES as usize;
+                    let cell = &mut scratch[row * width + column][number_in_pixel];
+                    *cell = cell.wrapping_add(winding);
+                }
+            }
+        }
+        for (row, windings) in (rows[0]..=rows[1]).zip(scratch.chunks_exact_mut(width)) {
+            let start = self.cell([columns[0], row]);
+            let mut all = [0; SAMPLES as usize];
+            for (cell, windings) in self.cells[start..start + width].iter().zip(windings) {
+                for (sum, more) in all.iter_mut().zip(std::mem::replace(windings, [0; 64])) {
+                    *sum = i8::wrapping_add(*sum, more);
+                }
+                cover(cell, wound(&all));
+            }
+        }
+        self.scratch = scratch;
+        self.touched.add(columns, rows);
+        true
+    }
+}
+
+/// The first row of samples that lies below a position, or on it.
+fn line_below(y: i64) -> i64 {
+    let samples = i64::from(SAMPLES);
+    // Twice as fine, for samples lie in the middle of their rows: the quotient is rounded up.
+    (2 * samples * y - FINE + 2 * FINE - 1).div_euclid(2 * FINE)
+}
+
+/// The samples that are wound around, as bits.
+#[inline]
+fn wound(windings: &Windings) -> u64 {
+    // Eight bytes of 0 or 1 become eight bits.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let mut bits = [0; 8];
+    for (bits, windings) in bits.iter_mut().zip(windings.as_chunks::<8>().0) {
+        let ones = windings.map(|winding| u8::from(winding != 0));
+        *bits = (u64::from_le_bytes(ones).wrapping_mul(GATHER) >> 56) as u8;
+    }
+    u64::from_le_bytes(bits)
+}
+
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what lies to the left becomes the first column"
+)]
+fn whole(crossing: f64) -> usize {
+    crossing as u32 as usize
+}
