@@ -29,11 +29,12 @@ const PHASES: [f64; 2] = [128.0, 64.0];
 /// Steps to a pixel in which linear parts are told apart.
 const LINEAR: f64 = 4096.0;
 
-/// Runs have no more pieces of outlines than this where there are stamps of them, or few elements.
+/// Runs have no more elements than this where there are stamps of them; of outlines that have more than
+/// four pieces as many fewer, but no less than few.
 const LONGEST_RUN: u64 = 64;
 const FEW_ELEMENTS: u64 = 8;
 
-/// Fewer pieces than this are drawn one by one, in a run and in a picture.
+/// Fewer elements than this are drawn one by one, in a run and in a picture; likewise.
 const FEWEST_IN_RUN: u64 = 4;
 const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
@@ -75,9 +76,9 @@ pub(super) enum Painted {
 pub(super) struct Stamps {
     stencil: Stencil,
     hidden: Arc<Hidden>,
-    /// The most elements of a run, and the most pieces of one's outline.
+    /// The most elements of a run, and how many plain ones one of them is worth.
     pub(super) longest_run: u64,
-    pieces: u64,
+    worth: u64,
     phases: f64,
     tables: Vec<RwLock<MixMap<Key, Option<Arc<Stamp>>>>>,
     bytes: AtomicUsize,
@@ -89,10 +90,10 @@ impl Stamps {
         let Scene { graph, .. } = scene;
         let drawn = graph.objects().iter().filter(|object| object.visible);
         let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
-        let pieces = pieces.max().unwrap_or(0).max(1) as u64;
-        let longest_run = (LONGEST_RUN / pieces).max(FEW_ELEMENTS);
+        let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
+        let longest_run = (LONGEST_RUN / worth).max(FEW_ELEMENTS);
         let is_large =
-            scene.is_to_detail && scene.elements.saturating_mul(pieces) >= FEWEST_IN_PICTURE;
+            scene.is_to_detail && scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
         if !is_large || graph.coats() || graph.even_lengths().is_none() {
             return None;
         }
@@ -107,7 +108,7 @@ impl Stamps {
             stencil,
             hidden,
             longest_run,
-            pieces,
+            worth,
             phases,
             tables: (0..TABLES).map(|_| RwLock::default()).collect(),
             bytes: AtomicUsize::new(0),
@@ -120,7 +121,7 @@ impl Stamps {
         let reach = self
             .hidden
             .reach(scene, run.object(), run.frame().stretch());
-        if run.count() * self.pieces < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
+        if run.count() * self.worth < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
             return None;
         }
         let grid = map.translation * self.phases;
