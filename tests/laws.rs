@@ -98,7 +98,7 @@ proptest! {
             prop_assert_eq!(elements.len(), list.items.len());
             let drawn = |item: &lists::Item| item.listed.visible;
             for (number, (element, item)) in elements.iter().zip(&list.items).enumerate() {
-                prop_assert_eq!(element.index, number as u64 + 1);
+                prop_assert_eq!(element.index, number as u128 + 1);
                 prop_assert_eq!(element.frame.direction, item.frame.direction);
                 let [from, to] = element.frame.ends();
                 let [from_, to_] = item.frame.ends();

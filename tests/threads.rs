@@ -47,7 +47,7 @@ struct Place {
     map: [f64; 6],
     direction: u8,
     length: f64,
-    index: u64,
+    index: u128,
     object: usize,
     born: u32,
     fertile: bool,

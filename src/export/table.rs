@@ -3,7 +3,9 @@ use std::num::NonZero;
 
 use crate::geometry::{DVec2, Direction};
 use crate::graph::Graph;
-use crate::grow::{Division, Element, Fractal, Growth, Visitor, WalkError, Walked, walk_with};
+use crate::grow::{
+    Division, Element, Fractal, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
+};
 use crate::parallel::with_team;
 
 /// How the rows of a table are written.
@@ -80,7 +82,7 @@ pub fn write(
         };
         let division = Division {
             span: Some(MANY),
-            ranks: &[],
+            ranks: Ranks::Unknown,
         };
         let walked = walk_with(team, graph, growth, division, fresh, |span, seam| {
             let goes_on = span.goes_on.min(span.rows.len());
@@ -104,7 +106,7 @@ const MANY: u64 = 1 << 12;
 /// What a row tells.
 struct Row {
     fractal: Fractal,
-    index: u64,
+    index: u128,
     ends: [DVec2; 2],
     fertile: bool,
     direction: Direction,
@@ -189,7 +191,7 @@ impl Cells<'_> {
         self.cell(column, text.strip_suffix(".0").unwrap_or(text));
     }
 
-    fn whole(&mut self, column: usize, value: u64) {
+    fn whole(&mut self, column: usize, value: impl itoa::Integer) {
         let mut buffer = itoa::Buffer::new();
         self.cell(column, buffer.format(value));
     }

@@ -93,7 +93,7 @@ pub struct Run<'b> {
     /// The step of its birth.
     pub(super) born: u32,
     /// The rank of the first element.
-    pub(super) index: u64,
+    pub(super) index: u128,
     /// Whether what was drawn before reaches the object.
     pub(super) joined: bool,
     pub(super) graph: &'b Graph,
@@ -211,7 +211,7 @@ impl Run<'_> {
             },
             length: self.length * leaf.length,
             coat: self.coat.over(leaf.coat),
-            index: self.index + number as u64,
+            index: self.index + number as u128,
             object: leaf.object,
             born: self.born + leaf.born,
             fertile: !matches!(

@@ -7,6 +7,7 @@ use crate::rule::Placement;
 use crate::rule::draw::Path;
 
 use super::block::{Block, Blocks};
+use super::census::Census;
 use super::evaluator::{Evaluator, Moment};
 use super::sizes::Sizes;
 use super::{Enter, Subtree};
@@ -123,6 +124,9 @@ pub(super) struct Found {
     pub(super) joined: bool,
     /// Its rank at its level, where ranks are counted; else 0.
     pub(super) rank: u64,
+    /// Its rank in its fractal, from 1; of an element that is replaced, that of the first one that comes
+    /// of it.
+    pub(super) index: u128,
 }
 
 /// A block that a descent has come to instead of its elements.
@@ -136,6 +140,8 @@ pub(super) struct FoundRun<'b> {
     pub(super) level: u32,
     /// Whether the pen stands where the object starts.
     pub(super) joined: bool,
+    /// The rank of the first element.
+    pub(super) index: u128,
 }
 
 /// An element that a descent has come to and leaves to another one.
@@ -147,6 +153,8 @@ pub(super) struct FoundSubtree {
     pub(super) size: u64,
     /// Whether what ends it ends what ends with it.
     pub(super) meets_end: bool,
+    /// The rank of the last element that comes of it, where that is known.
+    pub(super) last: u128,
 }
 
 /// What a descent comes to.
@@ -207,6 +215,10 @@ pub(super) struct Descent<'g> {
     /// Whether the pen stands at the end of the element before, free to go on.
     joined: bool,
     ranks: Ranks,
+    /// What tells how many elements come of those that are left out or left to others, if it is to.
+    pub(super) census: Option<&'g Census>,
+    /// The number of elements of the fractal so far.
+    pub(super) index: u128,
     pool: Vec<Production>,
     free: Vec<usize>,
     evaluator: Evaluator,
@@ -269,6 +281,8 @@ impl<'g> Descent<'g> {
                 counts: vec![0; levels],
                 pending: vec![0; levels],
             },
+            census: None,
+            index: 0,
             pool: Vec::new(),
             free: Vec::new(),
             evaluator: Evaluator::default(),
@@ -299,6 +313,21 @@ impl<'g> Descent<'g> {
         descent
     }
 
+    /// The same with a census of the approximant, so that ranks count what is not visited.
+    pub(super) fn counting(self, census: Option<&'g Census>) -> Self {
+        Self { census, ..self }
+    }
+
+    /// Comes to an element that another walk has found, and tells its rank: as the other walk has it
+    /// where that counts what is not visited.
+    pub(super) fn come_to(&mut self, found: &Found) -> u128 {
+        self.index = match self.census {
+            Some(_) => found.index,
+            None => self.index + 1,
+        };
+        self.index
+    }
+
     /// Goes down into a subtree of a fractal that was born in a step, once the one before is done.
     /// `joined` tells whether the pen stands where it starts.
     pub(super) fn enter<'b>(
@@ -316,6 +345,9 @@ impl<'g> Descent<'g> {
             ..
         } = subtree.root;
         (self.born, self.joined) = (born, joined);
+        if self.census.is_some() {
+            self.index = subtree.root.index - 1;
+        }
         let meets_end = subtree.meets_end;
         if let Some(run) =
             blocks.and_then(|blocks| self.run(&standing, object, level, meets_end, blocks))
@@ -340,6 +372,8 @@ impl<'g> Descent<'g> {
         let block = blocks.get(self.graph, object, self.target - level, reversed)?;
         let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
         self.visited += block.len();
+        let index = self.index + 1;
+        self.index += u128::from(block.len());
         Some(FoundRun {
             block,
             object,
@@ -348,6 +382,7 @@ impl<'g> Descent<'g> {
             coat: standing.coat,
             level,
             joined,
+            index,
         })
     }
 
@@ -420,17 +455,20 @@ impl<'g> Descent<'g> {
             } else {
                 0
             };
-            let entered = if kept || level == self.target {
+            let subtree = Subtree {
+                frame: standing.frame,
+                object,
+                born: level,
+            };
+            let ends = kept || level == self.target;
+            let entered = if ends {
                 Enter::Keep
             } else if self.graph.counts_index() {
                 Enter::Replace
             } else {
-                enter(&Subtree {
-                    frame: standing.frame,
-                    object,
-                    born: level,
-                })
+                enter(&subtree)
             };
+            let index = self.index + 1;
             if entered == Enter::Keep {
                 let joined = self.joined;
                 let leaf = &self.graph.objects()[object];
@@ -440,12 +478,17 @@ impl<'g> Descent<'g> {
                 if last {
                     self.pop();
                 }
+                self.index += match self.census {
+                    Some(census) if !ends => census.becomes(&subtree),
+                    _ => 1,
+                };
                 return Ok(Next::Element(Found {
                     standing,
                     object,
                     level,
                     joined: joined && goes_on,
                     rank,
+                    index,
                 }));
             }
             if last {
@@ -454,6 +497,7 @@ impl<'g> Descent<'g> {
             }
             if entered == Enter::Skip {
                 self.joined = false;
+                self.index += self.census.map_or(0, |census| census.becomes(&subtree));
                 continue;
             }
             match stop {
@@ -466,6 +510,7 @@ impl<'g> Descent<'g> {
                     let length = standing.frame.stretch();
                     if let Some(size) = sizes.cut(object, self.target - level, length) {
                         let joined = std::mem::replace(&mut self.joined, true);
+                        self.index += self.census.map_or(0, |census| census.becomes(&subtree));
                         return Ok(Next::Subtree(FoundSubtree {
                             root: Found {
                                 standing,
@@ -473,9 +518,11 @@ impl<'g> Descent<'g> {
                                 level,
                                 joined,
                                 rank,
+                                index,
                             },
                             size,
                             meets_end,
+                            last: self.index,
                         }));
                     }
                 }

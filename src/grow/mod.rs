@@ -9,6 +9,7 @@
 //! tells how far things reach: a search replaces only what may reach farther than what it has found.
 
 mod block;
+mod census;
 mod count;
 mod descent;
 mod evaluator;
@@ -30,9 +31,10 @@ pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
+pub(crate) use census::{Census, Kind};
 pub(crate) use descent::Standing;
 pub(crate) use evaluator::{Evaluator, Moment};
-pub(crate) use spans::{Division, walk_with};
+pub(crate) use spans::{Division, Ranks, walk_with};
 
 use std::ops::Range;
 
@@ -50,7 +52,7 @@ pub struct Element {
     /// What it is tinted with.
     pub coat: Coat,
     /// Its rank in its fractal, from 1.
-    pub index: u64,
+    pub index: u128,
     /// The object that it is.
     pub object: usize,
     /// The step of its birth: 0 for the initiator's elements.
@@ -123,7 +125,7 @@ pub trait Visitor {
     fn go_on(&mut self, _: Fractal) {}
 
     /// A visitor of a span of a walk sees these ranks of one fractal, where that is known before.
-    fn expect(&mut self, _: Range<u64>) {}
+    fn expect(&mut self, _: Range<u128>) {}
 
     /// Says what is done with an element that can be replaced. An element may be asked about more
     /// than once, where fractals are walked again for their seeds: the answer must be the same, unless

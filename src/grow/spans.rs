@@ -2,9 +2,9 @@
 //!
 //! One thread walks down to where few elements come of an element, and leaves those subtrees to
 //! the others, many together as a span. What the others see is the same as what one would see, to
-//! the last bit, but for two things that hang on all that comes before: how many elements that is,
-//! and whether the last of them reaches the end of its subtree. Spans come back in order, and so
-//! the one who takes them knows both.
+//! the last bit, but for two things that hang on all that comes before: how many elements that is, if
+//! the graph does not tell, and whether the last of them reaches the end of its subtree. Spans come
+//! back in order, and so the one who takes them knows both.
 
 use std::num::NonZero;
 use std::ops::Range;
@@ -14,6 +14,7 @@ use crate::graph::Graph;
 use crate::parallel::{Line, Team, with_team};
 
 use super::block::{Blocks, MOST_LEAVES};
+use super::census::Census;
 use super::descent::{Descent, Found, FoundSubtree, Next, Start, Stop};
 use super::sizes::Sizes;
 use super::tally::Tally;
@@ -30,7 +31,7 @@ const WHOLE: u64 = 1 << 12;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seam {
     /// To be added to the ranks of the elements up to where the next fractal begins.
-    pub before: u64,
+    pub before: u128,
     /// Whether the first element of the span joins the one before if it says so. True where a
     /// fractal begins.
     pub joined: bool,
@@ -77,7 +78,8 @@ where
     V::Error: Send,
 {
     with_team(threads, |team| {
-        let division = Division { span, ranks: &[] };
+        let ranks = Ranks::Unknown;
+        let division = Division { span, ranks };
         walk_with(team, graph, growth, division, fresh, take)
     })
 }
@@ -87,9 +89,19 @@ where
 pub(crate) struct Division<'r> {
     /// Spans have about so many elements; one visitor sees everything if there is no such number.
     pub(crate) span: Option<u64>,
-    /// What a walk that was divided in the same way has told as [`Seam::before`] of its spans, if there
-    /// was one: so visitors know what ranks they see.
-    pub(crate) ranks: &'r [u64],
+    /// What visitors know of the ranks that they see.
+    pub(crate) ranks: Ranks<'r>,
+}
+
+/// What is known of ranks before a walk.
+#[derive(Clone, Copy)]
+pub(crate) enum Ranks<'r> {
+    /// Nothing: they count what is visited.
+    Unknown,
+    /// What a walk that was divided in the same way has told as [`Seam::before`] of its spans.
+    Told(&'r [u128]),
+    /// How many elements come of those that are not visited, so that ranks count them all.
+    Counted(&'r Census),
 }
 
 /// The same with a team that has other work, too.
@@ -97,7 +109,7 @@ pub(crate) fn walk_with<'w, V: Visitor + Send + 'w>(
     team: &Team<'w>,
     graph: &'w Graph,
     growth: &Growth<'_>,
-    division: Division<'_>,
+    division: Division<'w>,
     mut fresh: impl FnMut() -> V,
     take: impl FnMut(&mut V, Seam) -> Result<(), V::Error>,
 ) -> Result<Walked, WalkError<V::Error>>
@@ -123,19 +135,27 @@ where
         size
     };
     let sizes = Sizes::most(graph, size).down_to(graph, cuts.unwrap_or(0.0), size);
+    let census = match division.ranks {
+        Ranks::Counted(census) => Some(census),
+        Ranks::Unknown | Ranks::Told(_) => None,
+    };
     let mut spans = Spans {
         graph,
         steps: growth.steps,
         size,
         blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run()))),
-        sizes_are_exact: cuts.is_none() && graph.is_plain(),
         asked,
         span: Span::default(),
-        ranks: division.ranks,
+        told: match division.ranks {
+            Ranks::Told(ranks) => ranks,
+            Ranks::Unknown | Ranks::Counted(_) => &[],
+        },
+        census,
         is_open: false,
         line: team.line(Job::run),
         order: Order {
             tally: Tally::new(growth),
+            is_counted: census.is_some(),
             index: 0,
             joined: true,
             take,
@@ -143,7 +163,7 @@ where
         fresh,
         has_failed: false,
     };
-    let sent = send(graph, growth, Stop::AtSubtrees(&sizes), &mut spans);
+    let sent = send(graph, growth, Stop::AtSubtrees(&sizes), census, &mut spans);
     if !spans.has_failed {
         // Even if the walk to the spans has failed: what comes before may have failed as well.
         spans.finish()?;
@@ -172,8 +192,8 @@ struct Position {
     fractal: Fractal,
     /// The step in which the fractal was born.
     born: u32,
-    /// The number of its elements before, if sizes are exact.
-    before: u64,
+    /// The number of its elements before, if that is known.
+    before: u128,
 }
 
 /// A stretch of a walk.
@@ -215,7 +235,7 @@ struct Job<'w, V: Visitor> {
     descent: Descent<'w>,
     span: Span,
     /// The ranks that the visitor sees, if they are known before.
-    ranks: Option<Range<u64>>,
+    ranks: Option<Range<u128>>,
     visitor: V,
     outcome: Result<Outcome, WalkError<V::Error>>,
 }
@@ -227,7 +247,7 @@ struct Outcome {
     fractals: u64,
     visited: u64,
     /// The rank of the last element in its fractal, as far as the visitor knows.
-    index: u64,
+    index: u128,
     /// Whether the next element may join the last one, if that is known.
     joined: Option<bool>,
 }
@@ -243,7 +263,7 @@ impl<V: Visitor> Job<'_, V> {
         let stop = blocks.map_or(Stop::Nowhere, Stop::AtBlocks);
         let mut outcome = Outcome::default();
         let from = self.span.from;
-        let (mut born, mut first, mut joined) = (from.born, from.before, true);
+        let (mut born, mut joined) = (from.born, true);
         if self.span.goes_on() {
             self.visitor.go_on(from.fractal);
         }
@@ -251,18 +271,23 @@ impl<V: Visitor> Job<'_, V> {
             self.visitor.expect(ranks.clone());
         }
         let mut visiting = Visiting::new(self.graph, &mut self.visitor);
-        visiting.index = first;
+        self.descent.index = from.before;
         for item in &self.span.items {
             match item {
                 Item::Begin(fractal, step) => {
-                    outcome.elements += visiting.index - first;
                     outcome.fractals += 1;
-                    (first, born) = (0, *step);
+                    born = *step;
+                    self.descent.index = 0;
                     visiting.begin(*fractal)?;
                 }
                 Item::Element(found) => {
                     let joined = joined && found.joined;
-                    visiting.element(&Found { joined, ..*found })?;
+                    let index = self.descent.come_to(found);
+                    visiting.element(&Found {
+                        joined,
+                        index,
+                        ..*found
+                    })?;
                 }
                 Item::Subtree(subtree) => {
                     let joined = joined && subtree.root.joined;
@@ -290,8 +315,8 @@ impl<V: Visitor> Job<'_, V> {
             outcome.joined = Some(joined);
         }
         outcome.visited += std::mem::take(&mut self.descent.visited);
-        outcome.elements += visiting.index - first;
-        outcome.index = visiting.index;
+        outcome.elements = visiting.seen;
+        outcome.index = self.descent.index;
         Ok(outcome)
     }
 }
@@ -299,8 +324,10 @@ impl<V: Visitor> Job<'_, V> {
 /// Takes spans in order.
 struct Order<'v, T> {
     tally: Tally<'v>,
-    /// The number of elements of the fractal so far.
-    index: u64,
+    /// Whether visitors know the ranks of what they see,
+    is_counted: bool,
+    /// or else the number of elements of the fractal so far.
+    index: u128,
     joined: bool,
     take: T,
 }
@@ -318,8 +345,10 @@ impl<T> Order<'_, T> {
         self.tally.begin(outcome.fractals);
         let mut seam = Seam::NONE;
         if span.goes_on() {
-            // Of what is cut there are fewer than the forecast says, and ranks mean nothing.
-            seam.before = self.index.wrapping_sub(span.from.before);
+            if !self.is_counted {
+                // Where less is seen than was told before, ranks mean nothing.
+                seam.before = self.index.wrapping_sub(span.from.before);
+            }
             seam.joined = self.joined;
         }
         self.index = outcome.index;
@@ -338,13 +367,13 @@ struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
     /// The elements of a span.
     size: u64,
     blocks: Option<Arc<Blocks>>,
-    /// Whether it is known how many elements come of a subtree.
-    sizes_are_exact: bool,
     /// The visitor that is asked on the way to the subtrees.
     asked: V,
     span: Span,
-    /// The ranks before the spans that come, as far as they are known.
-    ranks: &'v [u64],
+    /// The ranks before the spans that come, as far as they have been told,
+    told: &'w [u128],
+    /// or what counts them.
+    census: Option<&'w Census>,
     /// Whether a fractal has begun and not ended.
     is_open: bool,
     line: Line<'t, 'w, Job<'w, V>>,
@@ -365,7 +394,7 @@ where
         let mut job = self.line.spare().unwrap_or_else(|| Job {
             graph: self.graph,
             blocks: self.blocks.clone(),
-            descent: Descent::over_subtrees(self.graph, self.steps),
+            descent: Descent::over_subtrees(self.graph, self.steps).counting(self.census),
             span: Span::default(),
             ranks: None,
             visitor: (self.fresh)(),
@@ -374,12 +403,12 @@ where
         std::mem::swap(&mut job.span, &mut self.span);
         self.span.follow(&job.span);
         let (from, to) = (job.span.from, job.span.to);
-        let is_known = self.sizes_are_exact && from.fractal.number == to.fractal.number;
+        let is_known = self.census.is_some() && from.fractal.number == to.fractal.number;
         job.ranks = is_known.then_some(from.before..to.before);
-        if let Some((&before, later)) = self.ranks.split_first() {
+        if let Some((&before, later)) = self.told.split_first() {
             job.span.from.before = before;
             job.ranks = later.first().map(|&after| before..after.max(before));
-            self.ranks = later;
+            self.told = later;
         }
         let order = &mut self.order;
         let handed = self.line.hand_on(job, &mut |job| order.take(job));
@@ -429,20 +458,22 @@ where
 
     fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error> {
         self.make_room()?;
-        let size = match next {
-            Next::Element(found) => {
-                self.span.push(Item::Element(found), 1);
-                1
-            }
+        let (item, size, ranks) = match next {
+            Next::Element(found) => (Item::Element(found), 1, [found.index; 2]),
             Next::Subtree(subtree) => {
-                self.span.push(Item::Subtree(subtree), 1 + subtree.size);
-                subtree.size
+                let size = 1 + subtree.size;
+                let ranks = [subtree.root.index, subtree.last];
+                (Item::Subtree(subtree), size, ranks)
             }
             Next::Run(_) | Next::Pause | Next::End => unreachable!("blocks are left to spans"),
         };
-        if self.sizes_are_exact {
-            self.span.to.before += size;
+        if self.census.is_some() {
+            if self.span.items.is_empty() {
+                self.span.from.before = ranks[0] - 1;
+            }
+            self.span.to.before = ranks[1];
         }
+        self.span.push(item, size);
         Ok(())
     }
 

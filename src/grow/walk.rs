@@ -3,6 +3,7 @@ use std::sync::atomic::AtomicBool;
 use crate::graph::{CompileError, Graph, Replacement};
 
 use super::block::{Blocks, Run};
+use super::census::Census;
 use super::descent::{Descent, Found, FoundRun, Next, Start, Stop};
 use super::tally::Tally;
 use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
@@ -99,15 +100,16 @@ pub fn walk<V: Visitor>(
         visiting: Visiting::new(graph, visitor),
         tally: Tally::new(growth),
     };
-    send(graph, growth, stop, &mut sink)?;
+    send(graph, growth, stop, None, &mut sink)?;
     Ok(sink.tally.finish())
 }
 
-/// Walks and sends what is found to a sink.
-pub(super) fn send<S: Sink>(
-    graph: &Graph,
+/// Walks and sends what is found to a sink. With a census ranks count what is not visited.
+pub(super) fn send<'g, S: Sink>(
+    graph: &'g Graph,
     growth: &Growth<'_>,
     stop: Stop<'_>,
+    census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
     assert!(
@@ -124,6 +126,7 @@ pub(super) fn send<S: Sink>(
             Vec::new()
         },
         stop,
+        census,
         sink,
         fractals: 0,
     };
@@ -136,6 +139,7 @@ struct Walk<'g, 'v, S> {
     /// Whether seeds may come of an object, if there are any.
     leads_to_seeds: Vec<bool>,
     stop: Stop<'v>,
+    census: Option<&'g Census>,
     sink: &'v mut S,
     fractals: u64,
 }
@@ -205,7 +209,7 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
         };
         self.fractals += 1;
         self.sink.begin(fractal, start.born)?;
-        let mut descent = Descent::new(self.graph, start, self.steps);
+        let mut descent = Descent::new(self.graph, start, self.steps).counting(self.census);
         loop {
             let enter = |subtree: &Subtree| self.sink.enter(subtree);
             let found = descent.next(start, enter, self.stop)?;
@@ -234,11 +238,11 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
     }
 }
 
-/// A visitor, and the rank of the element that it has seen last.
+/// A visitor, and how many elements it has seen.
 pub(super) struct Visiting<'g, 'v, V> {
     graph: &'g Graph,
     pub(super) visitor: &'v mut V,
-    pub(super) index: u64,
+    pub(super) seen: u64,
 }
 
 impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
@@ -246,24 +250,23 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
         Self {
             graph,
             visitor,
-            index: 0,
+            seen: 0,
         }
     }
 
     pub(super) fn begin(&mut self, fractal: Fractal) -> Result<(), WalkError<V::Error>> {
-        self.index = 0;
         self.visitor.begin(fractal).map_err(WalkError::Visitor)
     }
 
     #[inline]
     pub(super) fn element(&mut self, found: &Found) -> Result<(), WalkError<V::Error>> {
-        self.index += 1;
+        self.seen += 1;
         let object = &self.graph.objects()[found.object];
         let element = Element {
             frame: found.standing.frame,
             length: found.standing.length,
             coat: found.standing.coat,
-            index: self.index,
+            index: found.index,
             object: found.object,
             born: found.level,
             fertile: !matches!(object.replacement, Replacement::Kept),
@@ -281,11 +284,11 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
             length: found.length,
             coat: found.coat,
             born: found.level,
-            index: self.index + 1,
+            index: found.index,
             joined: found.joined,
             graph: self.graph,
         };
-        self.index += found.block.len();
+        self.seen += found.block.len();
         self.visitor.run(&run).map_err(WalkError::Visitor)
     }
 

@@ -51,7 +51,7 @@ impl<'a> Bands<'a> {
         let pad = stroke + 1.0;
         let all = canvas.shown(pad);
         let sight = survey.sight().clone();
-        let sight = sight.within(&all, survey.graph(), growth, style);
+        let sight = sight.within(&all, survey.graph(), growth, style, survey.counts_ranks());
         let [width, height] = canvas.size();
         let rows = (options.band / u64::from(width)).clamp(1, height.into());
         let rows = u32::try_from(rows).unwrap_or(height);

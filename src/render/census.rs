@@ -1,54 +1,14 @@
 //! What a survey would learn of what is cut at a length, counted without a walk.
-//!
-//! What becomes of an element depends on its object and its length alone where all maps are fixed
-//! similarities: elements that have both in common are counted as one.
 
-use std::collections::BTreeMap;
 use std::convert::Infallible;
 
-use crate::geometry::{Direction, Frame};
-use crate::graph::{Graph, Instance, Object, Replacement};
-use crate::grow::{Element, Fractal, Growth, WalkError};
+use crate::geometry::Frame;
+use crate::graph::{Object, Replacement};
+use crate::grow::{Census, Element, Fractal, Growth, Kind, WalkError};
 use crate::instancing::Coat;
 use crate::style::ColorBy;
 
 use super::Survey;
-
-/// More kinds of elements than this, at all steps together, are left to the walk.
-const MOST_WORK: usize = 1 << 18;
-
-/// The bits of a length that rounding may change.
-const ROUNDED: u32 = 12;
-
-/// Elements of one step that become the same: object, direction and length.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Kind {
-    object: usize,
-    direction: Direction,
-    /// Bits of the length, with room for rounding.
-    length: u64,
-}
-
-/// How many there are, and how long one of them is.
-#[derive(Clone, Copy)]
-struct Tally {
-    count: u64,
-    length: f64,
-}
-
-type Standing = BTreeMap<Kind, Tally>;
-
-fn add(standing: &mut Standing, parent: (Direction, Tally), instance: &Instance) {
-    let (direction, Tally { count, length }) = parent;
-    let length = length * instance.frame.stretch();
-    let kind = Kind {
-        object: instance.object,
-        direction: direction * instance.frame.direction,
-        length: (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
-    };
-    let tally = standing.entry(kind).or_insert(Tally { count: 0, length });
-    tally.count = tally.count.saturating_add(count);
-}
 
 /// One of some elements, wherever it stands.
 fn element(kind: &Kind, born: u32) -> Element {
@@ -74,64 +34,36 @@ impl Survey<'_> {
         growth: &Growth<'_>,
     ) -> Result<Option<Self>, WalkError<Infallible>> {
         let graph = self.graph();
-        if !self.can_be_counted(graph) {
+        let by_age = self.style().color_by == ColorBy::Age && graph.seeds;
+        if by_age || self.sight().is_bounded() {
             return Ok(None);
         }
+        let shortest = self.sight().shortest().filter(|&shortest| shortest > 0.0);
+        let census = shortest.and_then(|shortest| Census::of(graph, growth.steps, shortest));
+        let Some(census) = census else {
+            return Ok(None);
+        };
         let mut survey = self.clone();
         survey.fractals = 1;
-        let mut standing = Standing::new();
-        let whole = Tally {
-            count: 1,
-            length: 1.0,
-        };
-        for instance in &graph.initiator(growth.steps).instances {
-            add(&mut standing, (Direction::Normal, whole), instance);
-        }
-        let mut work = 0;
-        for step in 0..=growth.steps {
-            if standing.is_empty() {
-                break;
-            }
-            work += standing.len();
-            if work > MOST_WORK {
-                return Ok(None);
-            }
-            let mut next = Standing::new();
-            for (kind, &tally) in &standing {
+        for (step, kinds) in (0..).zip(census.steps()) {
+            for kind in kinds {
                 let object = &graph.objects()[kind.object];
-                match &object.replacement {
-                    Replacement::Fixed(production)
-                        if step < growth.steps && !survey.sight().is_short(tally.length) =>
-                    {
-                        survey.steps = survey.steps.max(step + 1);
-                        let seeds = (production.seeds.len() as u64).saturating_mul(tally.count);
-                        survey.fractals = survey.fractals.saturating_add(seeds);
-                        for (_, instance) in production.placed_instances() {
-                            add(&mut next, (kind.direction, tally), instance);
-                        }
-                    }
-                    _ => survey.count(object, &element(kind, step), growth.steps, tally.count),
+                if kind.is_replaced {
+                    survey.steps = survey.steps.max(step + 1);
+                    let seeds = seeds(object).saturating_mul(kind.count);
+                    survey.fractals = survey.fractals.saturating_add(seeds);
+                } else {
+                    survey.count(object, &element(kind, step), growth.steps, kind.count);
                 }
             }
-            if survey.elements > growth.most_elements {
-                let limit = growth.most_elements;
-                return Err(WalkError::TooManyElements { limit });
-            }
-            standing = next;
         }
-        Ok(Some(survey))
-    }
-
-    fn can_be_counted(&self, graph: &Graph) -> bool {
-        let by_age = self.style().color_by == ColorBy::Age && graph.seeds;
-        graph.is_plain()
-            && graph.is_similar()
-            && !graph.counts_index()
-            && graph.roots.is_empty()
-            && !graph.resets().contains(&true)
-            && self.style().color_by != ColorBy::Index
-            && !by_age
-            && !self.sight().is_bounded()
+        if survey.elements > growth.most_elements {
+            let limit = growth.most_elements;
+            return Err(WalkError::TooManyElements { limit });
+        }
+        let tells_ranks = self.style().color_by == ColorBy::Index;
+        let is_known = !tells_ranks || survey.count_ranks(Some(census), growth.steps);
+        Ok(is_known.then_some(survey))
     }
 
     /// Elements that stand in the end.
@@ -146,6 +78,14 @@ impl Survey<'_> {
             self.use_value_of(element, &fractal);
             self.strokes |= self.is_stroked(object);
         }
+    }
+}
+
+/// How many fractals an object starts when it is replaced.
+fn seeds(object: &Object) -> u64 {
+    match &object.replacement {
+        Replacement::Fixed(production) => production.seeds.len() as u64,
+        _ => 0,
     }
 }
 

@@ -20,14 +20,14 @@ pub(super) enum Share {
 pub struct Classes {
     by: ColorBy,
     /// The largest value that is told apart; values start at 0.
-    largest: u64,
+    largest: u128,
 }
 
 impl Classes {
     /// The classes once the numbers of fractals and of elements in the largest one are known.
-    pub(super) fn after_survey(self, fractals: u64, largest_index: u64) -> Self {
+    pub(super) fn after_survey(self, fractals: u64, largest_index: u128) -> Self {
         let largest = match self.by {
-            ColorBy::Fractal => fractals.saturating_sub(1),
+            ColorBy::Fractal => u128::from(fractals).saturating_sub(1),
             ColorBy::Index => largest_index.saturating_sub(1),
             _ => self.largest,
         };
@@ -43,8 +43,8 @@ impl Classes {
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let largest = match by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Fractal | ColorBy::Index => 0,
-            ColorBy::Step | ColorBy::Age => u64::from(steps),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => graph.origins() as u64,
+            ColorBy::Step | ColorBy::Age => u128::from(steps),
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => graph.origins() as u128,
             ColorBy::Direction => 3,
         };
         Self { by, largest }
@@ -53,7 +53,7 @@ impl Classes {
     /// The number of classes, 64 at most.
     #[must_use]
     pub fn count(&self) -> u64 {
-        (self.largest + 1).min(MOST_CLASSES)
+        u64::try_from(self.largest).map_or(MOST_CLASSES, |largest| (largest + 1).min(MOST_CLASSES))
     }
 
     pub(super) fn all(&self) -> Range<u64> {
@@ -73,29 +73,29 @@ impl Classes {
             .map(|value| self.of_value(value))
     }
 
-    fn value_of_object(&self, object: &Object) -> Option<u64> {
+    fn value_of_object(&self, object: &Object) -> Option<u128> {
         let number = match self.by {
             ColorBy::Generator | ColorBy::FirstMap => object.origin,
             ColorBy::LastMap => object.last_map,
             _ => return None,
         };
-        Some(number.map_or(0, |number| number as u64 + 1))
+        Some(number.map_or(0, |number| number as u128 + 1))
     }
 
     /// The value of what the colours tell.
     #[inline]
-    pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
+    pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u128 {
         match self.by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => 0,
-            ColorBy::Step => u64::from(element.born),
-            ColorBy::Age => u64::from(fractal.age),
-            ColorBy::Fractal => fractal.number,
+            ColorBy::Step => element.born.into(),
+            ColorBy::Age => fractal.age.into(),
+            ColorBy::Fractal => fractal.number.into(),
             ColorBy::Index => element.index - 1,
             ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
                 let object = &graph.objects()[element.object];
                 self.value_of_object(object).unwrap_or(0)
             }
-            ColorBy::Direction => u64::from(element.frame.direction.number()) - 1,
+            ColorBy::Direction => u128::from(element.frame.direction.number()) - 1,
         }
     }
 
@@ -151,14 +151,14 @@ impl Classes {
 
     /// The class of a value of what the colours tell.
     #[inline]
-    pub(super) fn of_value(&self, value: u64) -> u64 {
-        if self.largest < MOST_CLASSES {
+    pub(super) fn of_value(&self, value: u128) -> u64 {
+        let most = u128::from(MOST_CLASSES);
+        let class = if self.largest < most {
             value
         } else {
-            let wide =
-                u128::from(value) * u128::from(MOST_CLASSES) / (u128::from(self.largest) + 1);
-            u64::try_from(wide).unwrap_or(MOST_CLASSES - 1)
-        }
+            value.saturating_mul(most) / (self.largest + 1)
+        };
+        u64::try_from(class).unwrap_or(MOST_CLASSES - 1)
     }
 
     /// The colour of a class.
@@ -173,7 +173,7 @@ impl Classes {
     }
 
     /// The class of all elements of some ranks from 0, if colours tell them and there is one.
-    pub(super) fn of_ranks(&self, ranks: &Range<u64>) -> Option<u64> {
+    pub(super) fn of_ranks(&self, ranks: &Range<u128>) -> Option<u64> {
         let class = self.of_value(ranks.start);
         let is_one = self.by == ColorBy::Index && self.of_value(ranks.end) == class;
         is_one.then_some(class)

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::geometry::{Bounds, Direction};
 use crate::graph::{Evaluated, Graph, Object, Replacement};
-use crate::grow::Growth;
+use crate::grow::{Census, Growth};
 use crate::style::{ColorBy, Style};
 
 use super::Survey;
@@ -28,7 +28,10 @@ impl<'g> Survey<'g> {
         let mut survey = Self::outlined(graph, growth, style, steps, level.fractals > 1)?;
         survey.elements = level.elements;
         survey.fractals = level.fractals;
-        survey.largest_index = level.elements;
+        if style.color_by == ColorBy::Index {
+            let census = Census::of(graph, growth.steps, 0.0);
+            return survey.count_ranks(census, growth.steps).then_some(survey);
+        }
         Some(survey)
     }
 
@@ -43,21 +46,21 @@ impl<'g> Survey<'g> {
         let mut survey = Self::new(graph, style, steps);
         let stands = Standing::at(graph, growth.steps)?;
         survey.bounds = survey.known_bounds(growth)?;
-        let one = |known: bool, value: u64| (!seeds || known).then(|| vec![value]);
-        let used: Vec<u64> = match style.color_by {
+        let used: Vec<u128> = match style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
-            ColorBy::Age => one(false, u64::from(growth.steps))?,
-            ColorBy::Fractal => Vec::new(),
-            ColorBy::Index => one(false, 0)?,
-            ColorBy::Step => stands.values(|stands| u64::from(stands.born)),
+            // Of fractals that are seeded no colour tells the age here.
+            ColorBy::Age if seeds => return None,
+            ColorBy::Age => vec![growth.steps.into()],
+            ColorBy::Fractal | ColorBy::Index => Vec::new(),
+            ColorBy::Step => stands.values(|stands| stands.born.into()),
             ColorBy::Generator | ColorBy::FirstMap => {
-                stands.values(|stands| stands.origin(graph).map_or(0, |origin| origin as u64 + 1))
+                stands.values(|stands| stands.origin(graph).map_or(0, |origin| origin as u128 + 1))
             }
             ColorBy::LastMap => stands.values(|stands| {
                 let object = &graph.objects()[stands.object];
-                object.last_map.map_or(0, |map| map as u64 + 1)
+                object.last_map.map_or(0, |map| map as u128 + 1)
             }),
-            ColorBy::Direction => stands.values(|stands| u64::from(stands.direction.number()) - 1),
+            ColorBy::Direction => stands.values(|stands| u128::from(stands.direction.number()) - 1),
         };
         for value in used {
             survey.use_value(value);
@@ -172,7 +175,7 @@ impl Standing {
         Some(Self(stand))
     }
 
-    fn values(&self, value: impl Fn(&Kind) -> u64) -> Vec<u64> {
+    fn values(&self, value: impl Fn(&Kind) -> u128) -> Vec<u128> {
         self.0.iter().map(value).collect()
     }
 }

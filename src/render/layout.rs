@@ -5,7 +5,7 @@ use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::style::Width;
 
-use super::sight::Sight;
+use super::sight::{NEARLY, Sight};
 use super::survey::overhang;
 use super::{Canvas, Format, Options, RenderError, Survey};
 
@@ -128,20 +128,13 @@ impl<'a> Layout<'a> {
 
 impl<'a> Surveyor<'a> {
     fn survey(&self, sight: Sight) -> Result<Survey<'a>, RenderError> {
-        let Self { growth, .. } = self;
+        let Self { graph, growth, .. } = *self;
         let Options { style, threads, .. } = self.options;
-        let threads = *threads;
         if !sight.cuts() {
-            return Ok(Survey::of(
-                self.graph,
-                growth,
-                style,
-                growth.steps,
-                threads,
-            )?);
+            return Ok(Survey::of(graph, &growth, style, growth.steps, *threads)?);
         }
-        let survey = Survey::new(self.graph, style, growth.steps);
-        Ok(survey.of_what_is_in(sight).walked(growth, threads)?)
+        let survey = Survey::new(graph, style, growth.steps);
+        Ok(survey.of_what_is_in(sight).walked(&growth, *threads)?)
     }
 
     fn canvas(&self, survey: &Survey<'a>) -> Result<Canvas, RenderError> {
@@ -160,8 +153,13 @@ impl<'a> Surveyor<'a> {
     }
 
     /// Surveys what lies in a window.
-    fn survey_window(&self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
-        let Options { style, view, .. } = self.options;
+    fn survey_window(&mut self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
+        let Options {
+            style,
+            view,
+            threads,
+            ..
+        } = self.options;
         let canvas = Canvas::of_window(window, view, self.options.size)?;
         let start = self.graph.initiator(self.growth.steps).instances.iter();
         let mut bounds = Bounds::EMPTY;
@@ -177,22 +175,49 @@ impl<'a> Surveyor<'a> {
             Width::Pixels(width) => width * self.graph.widest().unwrap_or(1.0) * overhang(style),
             Width::Relative(_) => 0.0,
         };
+        let shortest = if shortest > 0.0 && self.step_down_to(shortest) {
+            0.0
+        } else {
+            shortest
+        };
+        let Self { graph, growth, .. } = *self;
+        let survey = Survey::new(graph, style, growth.steps)
+            .of_what_is_in(Sight::to_length(graph, shortest))
+            .with_ranks_of(&growth);
         // What comes near a pixel tinges it.
-        let sight = Sight::to_length(self.graph, shortest).within(
-            &canvas.shown(stroke + 1.0),
-            self.graph,
-            &self.growth,
-            style,
-        );
-        let survey = self.survey(sight)?;
+        let shown = canvas.shown(stroke + 1.0);
+        let sight = survey.sight().clone();
+        let sight = sight.within(&shown, graph, &growth, style, survey.counts_ranks());
+        let survey = if sight.cuts() {
+            survey.of_what_is_in(sight).walked(&growth, *threads)?
+        } else {
+            let mut survey = self.survey(sight)?;
+            survey.steps = growth.steps;
+            survey
+        };
         self.check(&survey)?;
         Ok(survey)
+    }
+
+    /// If all elements of a step are equally long, so that a number of steps says the same as a length:
+    /// grows by that number.
+    fn step_down_to(&mut self, shortest: f64) -> bool {
+        let Some([mut length, ratio]) = self.graph.even_lengths() else {
+            return false;
+        };
+        let shortest = shortest * NEARLY;
+        self.growth.steps = 0;
+        while length >= shortest && self.growth.steps < self.limit {
+            length *= ratio;
+            self.growth.steps += 1;
+        }
+        true
     }
 
     /// Looks at everything down to elements of a length: a survey, or as much of one as it takes to
     /// know how large a pixel is.
     fn look_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
-        let Some([mut length, ratio]) = self.graph.even_lengths() else {
+        if !self.step_down_to(shortest) {
             let sight = Sight::to_length(self.graph, shortest);
             let style = &self.options.style;
             let survey = Survey::new(self.graph, style, self.growth.steps);
@@ -202,16 +227,9 @@ impl<'a> Surveyor<'a> {
                 Some(glimpse) => Ok(glimpse),
                 None => self.survey(sight),
             };
-        };
-        // All elements of a step are equally long: a number of steps says the same.
-        let mut steps = 0;
-        while length >= shortest && steps < self.limit {
-            length *= ratio;
-            steps += 1;
         }
-        self.growth.steps = steps;
         let mut survey = self.survey(Sight::unbounded())?;
-        survey.steps = steps;
+        survey.steps = self.growth.steps;
         Ok(survey)
     }
 

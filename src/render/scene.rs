@@ -3,7 +3,7 @@ use std::num::NonZero;
 use std::sync::{Arc, OnceLock};
 
 use crate::graph::Graph;
-use crate::grow::{Division, Growth, WalkError, walk_with};
+use crate::grow::{self, Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
@@ -27,8 +27,8 @@ pub(crate) struct Scene<'a> {
     passes: Vec<Pass>,
     /// The number of elements.
     pub(super) elements: u64,
-    /// Ranks of elements, where colours tell them and it took a walk to know them.
-    ranks: Option<Ranks>,
+    /// Ranks of elements, where colours tell them and they are known.
+    pub(super) ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
     /// Whether closed paths are filled as they are stroked.
@@ -104,11 +104,11 @@ impl Drawing for Scene<'_> {
         let mut growth = *self.growth;
         let mut division = Division {
             span: Some(SPAN),
-            ranks: &[],
+            ranks: grow::Ranks::Unknown,
         };
-        if self.style.color_by == ColorBy::Index && (self.sight.cuts() || !self.graph.is_plain()) {
+        if self.style.color_by == ColorBy::Index {
             match &self.ranks {
-                Some(ranks) => (growth.steps, division.ranks) = (ranks.steps, &ranks.before),
+                Some(ranks) => (growth.steps, division.ranks) = (ranks.steps, ranks.for_walk()),
                 // Ranks that are not known before need one pair of eyes.
                 None => division.span = None,
             }

@@ -17,6 +17,10 @@ mod tests;
 /// After more steps than this it is not told how long elements are.
 const MOST_POWERS: usize = 1 << 10;
 
+/// Elements that are shorter than others by no more than rounding makes them are as long, as a
+/// multiple.
+pub(super) const NEARLY: f64 = 1.0 - 1e-9;
+
 /// Where walks for a picture need not go.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
@@ -59,7 +63,7 @@ impl Sight {
     /// the initiator: those are as large as ever.
     pub(super) fn to_length(graph: &Graph, shortest: f64) -> Self {
         Self {
-            shortest: shortest / graph.unit(),
+            shortest: NEARLY * shortest / graph.unit(),
             window: None,
             is_whole: if shortest > 0.0 {
                 graph.resets().into()
@@ -71,15 +75,17 @@ impl Sight {
     }
 
     /// No more than a part of the plane is seen; all of it where the graph does not tell how far
-    /// its objects reach, or where what lies outside tells in what lies inside.
+    /// its objects reach, or where what lies outside tells in what lies inside. Ranks do not if they
+    /// `are_counted` whatever is visited.
     pub(super) fn within(
         self,
         bounds: &Bounds,
         graph: &Graph,
         growth: &Growth<'_>,
         style: &Style,
+        are_counted: bool,
     ) -> Self {
-        let Some(outside) = outside(graph, style) else {
+        let Some(outside) = outside(graph, style, are_counted) else {
             return self;
         };
         let reaches = graph.reaches(|object| own_reach(graph, object, style));
@@ -197,9 +203,14 @@ fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
 }
 
 /// What can be done with an element that is not seen; `None` if it is to be replaced nevertheless.
-fn outside(graph: &Graph, style: &Style) -> Option<Enter> {
+fn outside(graph: &Graph, style: &Style, are_counted: bool) -> Option<Enter> {
     // Elements and fractals that are not visited could not be numbered.
-    if matches!(style.color_by, ColorBy::Index | ColorBy::Fractal) || graph.counts_index() {
+    let are_numbered = match style.color_by {
+        ColorBy::Index => !are_counted,
+        ColorBy::Fractal => true,
+        _ => false,
+    };
+    if are_numbered || graph.counts_index() {
         return None;
     }
     let is_open = |object: &Object| !graph.base_elements()[object.base_element].is_closed();

@@ -406,7 +406,7 @@ impl Visitor for Sketcher<'_> {
         self.fractal = fractal;
     }
 
-    fn expect(&mut self, ranks: Range<u64>) {
+    fn expect(&mut self, ranks: Range<u128>) {
         if self.pass == Pass::Along {
             self.whole = self.scene.classes.of_ranks(&ranks);
         }

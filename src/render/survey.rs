@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
-    Element, Enter, Fractal, Growth, Reaches, Seam, Subtree, Visitor, WalkError, search,
-    walk_in_spans,
+    self, Census, Element, Enter, Fractal, Growth, Reaches, Seam, Subtree, Visitor, WalkError,
+    search, walk_in_spans,
 };
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
@@ -17,13 +17,43 @@ use super::{Classes, WIDTHS_AN_OCTAVE};
 /// Spans of a survey, and of what follows from it, have about so many elements.
 pub(super) const SPAN: u64 = 1 << 12;
 
-/// What a walk has told of ranks, for another one that is divided in the same way.
+/// What is known of ranks, for a walk over as many steps.
 #[derive(Clone, Debug)]
 pub(super) struct Ranks {
-    /// The number of steps that was walked to.
     pub(super) steps: u32,
-    /// Of every span, how many elements of the fractal that it goes on with came before.
-    pub(super) before: Arc<[u64]>,
+    how: Known,
+}
+
+/// How it is known.
+#[derive(Clone, Debug)]
+enum Known {
+    /// Of every span of a walk that is divided in the same way, how many elements of the fractal that
+    /// it goes on with came before.
+    Told(Arc<[u128]>),
+    /// What does not depend on what is visited.
+    Counted(Arc<Census>),
+}
+
+impl Ranks {
+    /// What a census tells, if that is enough, and the largest rank.
+    pub(super) fn counted(census: Census, steps: u32) -> Option<(Self, u128)> {
+        let largest = census.largest()?;
+        let how = Known::Counted(Arc::new(census));
+        Some((Self { steps, how }, largest))
+    }
+
+    /// The same for a walk.
+    pub(super) fn for_walk(&self) -> grow::Ranks<'_> {
+        match &self.how {
+            Known::Told(before) => grow::Ranks::Told(before),
+            Known::Counted(census) => grow::Ranks::Counted(census),
+        }
+    }
+
+    /// Whether they do not depend on what is visited.
+    pub(super) fn are_counted(&self) -> bool {
+        matches!(self.how, Known::Counted(_))
+    }
 }
 
 /// What a walk over an approximant learns before anything is drawn.
@@ -42,7 +72,7 @@ pub struct Survey<'g> {
     /// The number of fractals.
     pub fractals: u64,
     /// The largest rank of an element in its fractal.
-    pub largest_index: u64,
+    pub largest_index: u128,
     /// Whether there was a walk to learn it.
     pub(super) walked: bool,
     /// Whether a walk need not learn the bounds.
@@ -51,12 +81,12 @@ pub struct Survey<'g> {
     pub(super) steps: u32,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
-    /// Ranks, where colours tell them and there was a walk.
+    /// Ranks, where colours tell them and they are known.
     pub(super) ranks: Option<Ranks>,
     sight: Sight,
     fractal: Fractal,
     /// The last rank in the fractal that a span goes on with, as far as it goes on.
-    last_index: Option<u64>,
+    last_index: Option<u128>,
     goes_on: bool,
     classes: Classes,
     /// The values that something visible has, of what the colours tell.
@@ -94,6 +124,31 @@ impl<'g> Survey<'g> {
     #[must_use]
     pub(super) fn of_what_is_in(self, sight: Sight) -> Self {
         Self { sight, ..self }
+    }
+
+    /// The same with what the graph tells of ranks, if colours tell them.
+    pub(super) fn with_ranks_of(mut self, growth: &Growth<'_>) -> Self {
+        if self.style.color_by == ColorBy::Index && self.ranks.is_none() {
+            let shortest = self.sight.shortest().unwrap_or(0.0);
+            let census = Census::of(self.graph, growth.steps, shortest);
+            self.count_ranks(census, growth.steps);
+        }
+        self
+    }
+
+    /// Knows ranks from a census of so many steps, if that tells them; whether it does.
+    pub(super) fn count_ranks(&mut self, census: Option<Census>, steps: u32) -> bool {
+        let ranks = census.and_then(|census| Ranks::counted(census, steps));
+        let is_known = ranks.is_some();
+        if let Some((ranks, largest)) = ranks {
+            (self.ranks, self.largest_index) = (Some(ranks), largest);
+        }
+        is_known
+    }
+
+    /// Whether ranks are known, whatever is visited.
+    pub(super) fn counts_ranks(&self) -> bool {
+        self.ranks.as_ref().is_some_and(Ranks::are_counted)
     }
 
     /// What can be seen.
@@ -145,7 +200,7 @@ impl<'g> Survey<'g> {
     }
 
     /// Something visible has a value.
-    pub(super) fn use_value(&mut self, value: u64) {
+    pub(super) fn use_value(&mut self, value: u128) {
         if let (true, Ok(value)) = (self.classes.need_no_survey(), usize::try_from(value)) {
             if value >= self.used.len() {
                 self.used.resize(value + 1, false);
@@ -250,29 +305,24 @@ impl<'g> Survey<'g> {
 
     /// Walks over what can be seen of an approximant, on several threads.
     pub(super) fn walked(
-        mut self,
+        self,
         growth: &Growth<'_>,
         threads: NonZero<usize>,
     ) -> Result<Self, WalkError<Infallible>> {
-        let none = Self {
-            walked: true,
-            ..self.clone()
-        };
-        self.walked = true;
+        let mut survey = self.with_ranks_of(growth);
+        survey.walked = true;
+        let none = survey.clone();
         let fresh = || none.clone();
-        let tells_index = self.style.color_by == ColorBy::Index;
         let mut before = Vec::new();
         walk_in_spans(
-            self.graph,
+            survey.graph,
             growth,
             threads,
             Some(SPAN),
             fresh,
             |seen, seam| {
-                self.add(seen, seam);
-                if tells_index {
-                    before.push(seam.before);
-                }
+                survey.add(seen, seam);
+                before.push(seam.before);
                 let fractal = seen.fractal;
                 *seen = Self {
                     fractal,
@@ -281,18 +331,18 @@ impl<'g> Survey<'g> {
                 Ok(())
             },
         )?;
-        if tells_index {
-            if self.sight.cuts() {
+        if survey.style.color_by == ColorBy::Index && survey.ranks.is_none() {
+            if survey.sight.cuts() {
                 // The visitor that was asked on the way is taken last, and has seen nothing.
                 before.pop();
             }
-            before.push(self.largest_index);
-            self.ranks = Some(Ranks {
+            before.push(survey.largest_index);
+            survey.ranks = Some(Ranks {
                 steps: growth.steps,
-                before: before.into(),
+                how: Known::Told(before.into()),
             });
         }
-        Ok(self)
+        Ok(survey)
     }
 
     /// The pixels by which strokes of a width in pixels reach beyond their paths.

@@ -150,7 +150,7 @@ impl<'a> Drawing<'a> {
                     0 => Part::Own,
                     born => Part::Seeded(born + 1),
                 };
-                let of_class = |age: &u32| self.classes.of_value(u64::from(*age)) == class;
+                let of_class = |age: &u32| self.classes.of_value((*age).into()) == class;
                 (0..=steps).filter(of_class).map(born).collect()
             }
             ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => vec![Part::Class(class)],

@@ -126,7 +126,7 @@ impl<'g> Symbols<'g> {
                     ColorBy::LastMap => object.last_map,
                     _ => object.origin,
                 };
-                self.classes.of_value(map.map_or(0, |map| map as u64 + 1)) == class
+                self.classes.of_value(map.map_or(0, |map| map as u128 + 1)) == class
             }
             Part::Heading(heading) => direction == heading,
         }

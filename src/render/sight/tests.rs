@@ -1,6 +1,7 @@
 //! What is drawn in a window is what all of it would draw there.
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::io;
 use std::num::NonZero;
 use std::sync::Arc;
@@ -11,12 +12,11 @@ use super::*;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
+use crate::grow::{Element, Fractal, Visitor, walk};
 use crate::parallel::with_team;
 use crate::random_rules::{self as rules, Features};
 use crate::render::layout::Layout;
-use crate::render::{
-    Canvas, Detail, Drawing, Options, Paint, Position, Scene, Size, Surface, Survey,
-};
+use crate::render::{Detail, Drawing, Options, Paint, Position, Scene, Size, Surface, Survey};
 use crate::rule::Rule;
 use crate::style::{Colour, View};
 
@@ -169,24 +169,24 @@ fn compare(
         ..Options::default()
     };
     let growth = Growth::steps(steps);
-    let Layout { survey, canvas, .. } = Layout::find(&graph, &growth, &options).unwrap();
-    let everything = Sight {
-        window: None,
-        ..survey.sight().clone()
-    };
-    let all = Survey::new(&graph, style, steps).of_what_is_in(everything);
-    let all = all.walked(&growth, NonZero::<usize>::MIN).unwrap();
-    let draw = |survey: &Survey<'_>, canvas: Canvas| {
+    let layout = Layout::find(&graph, &growth, &options).unwrap();
+    let Layout { survey, canvas, .. } = layout;
+    let shortest = options
+        .detail
+        .map_or(0.0, |detail| detail.pixels / canvas.scale());
+    let everything = Sight::to_length(&graph, shortest);
+    let mut all = Survey::new(&graph, style, layout.growth.steps).of_what_is_in(everything);
+    // All elements are counted as they come.
+    walk(&graph, &growth, &mut all).unwrap();
+    let draw = |scene: &Scene<'_>, threads: usize| {
         let mut recorder = Recorder::default();
-        let scene = Scene::new(survey, &growth, canvas);
-        with_team(NonZero::<usize>::MIN, |team| {
-            scene.draw(&mut recorder, team)
-        })
-        .unwrap();
+        let threads = NonZero::new(threads).unwrap();
+        with_team(threads, |team| scene.draw(&mut recorder, team)).unwrap();
         // Round caps look like a round corner.
         shown(&recorder, style.join != Join::Round)
     };
-    let (some_shown, all_shown) = (draw(&survey, canvas), draw(&all, canvas));
+    let some_shown = draw(&Scene::new(&survey, &layout.growth, canvas), 2);
+    let all_shown = draw(&Scene::new(&all, &growth, canvas), 1);
     for (what, count) in &all_shown {
         assert_eq!(some_shown.get(what), Some(count), "{what} is missing");
     }
@@ -213,7 +213,9 @@ proptest! {
         fill in any::<bool>(),
         relative in any::<bool>(),
         join in prop_oneof![Just(Join::Round), Just(Join::Miter)],
-        color_by in prop_oneof![Just(ColorBy::None), Just(ColorBy::Step), Just(ColorBy::Direction)],
+        color_by in prop_oneof![
+            Just(ColorBy::None), Just(ColorBy::Step), Just(ColorBy::Direction), Just(ColorBy::Index),
+        ],
         detail in prop_oneof![Just(None), Just(Some(3.0)), Just(Some(20.0))],
     ) {
         let style = Style {
@@ -254,10 +256,13 @@ fn windows_of_the_library_show_their_part() {
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let plain = Style {
-            // Where elements are numbered, all are visited.
             color_by: ColorBy::Step,
             fill: None,
             ..rule.style().clone()
+        };
+        let numbered = Style {
+            color_by: ColorBy::Index,
+            ..plain.clone()
         };
         let filled = Style {
             fill: Some(Colour::BLACK),
@@ -265,11 +270,14 @@ fn windows_of_the_library_show_their_part() {
             join: Join::Miter,
             ..plain.clone()
         };
+        let draws = rule.is_random();
         let mut visited = [0, 0];
         for number in 0..16 {
             let corner = [f64::from(number % 4), f64::from(number / 4)].map(|n| n / 3.0 - 0.15);
             let window = [corner[0], corner[1], 0.07, 0.06];
-            for style in [&plain, &filled] {
+            // Where ranks depend on draws, all elements are visited.
+            let styles = [&plain, &filled, &numbered].into_iter();
+            for style in styles.take(if draws { 2 } else { 3 }) {
                 let counts = compare(&rule, steps, window, style, None);
                 visited = [visited[0] + counts[0], visited[1] + counts[1]];
             }
@@ -277,6 +285,123 @@ fn windows_of_the_library_show_their_part() {
         #[expect(clippy::cast_precision_loss, reason = "the numbers are small")]
         let visited = visited[0] as f64 / visited[1] as f64;
         assert!(visited <= part, "{name}: {visited}");
+    }
+}
+
+/// Elements of unlike lengths, too, and fractals that are closed or seeded.
+#[test]
+fn ranks_count_what_is_not_visited() {
+    let catalogue = Catalogue::embedded();
+    for name in [
+        "snowflake-sweep",
+        "cesaro-sweep",
+        "peano-mandelbrot",
+        "dragon-wreath",
+        "gosper",
+        "koch-snowflake",
+        "pythagoras",
+        "snow-crystal",
+        "mandala",
+    ] {
+        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+        let style = |fill: Option<Colour>| Style {
+            color_by: ColorBy::Index,
+            fill,
+            ..rule.style().clone()
+        };
+        let mut visited = [0, 0];
+        for (number, fill) in [None, Some(Colour::BLACK)]
+            .into_iter()
+            .cycle()
+            .take(2)
+            .enumerate()
+        {
+            let corner = [0.4, 0.05 + number as f64 / 4.0];
+            let window = [corner[0], corner[1] - 0.3, 0.09, 0.09];
+            let counts = compare(&rule, 4, window, &style(fill), Some(8.0));
+            visited = [visited[0] + counts[0], visited[1] + counts[1]];
+        }
+        assert!(visited[0] < visited[1], "{name}: {visited:?}");
+    }
+}
+
+/// A 64th of Hilbert's curve is what comes of an element of the third step, so that colours tell which
+/// of these is near, however many steps follow: 4^36 elements are more than 64 bits can count.
+#[test]
+fn ranks_may_be_larger_than_any_walk_counts() {
+    let catalogue = Catalogue::embedded();
+    let name = "hilbert";
+    for detail in [None, Some(16.0)] {
+        let source = catalogue.rule(name).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let model = document.resolve(&[]).unwrap().0;
+        let style = Style {
+            color_by: ColorBy::Index,
+            ..model.heading().style.clone()
+        };
+        let rough = model.compile(3).unwrap();
+        let growth = Growth::steps(3);
+        let mut cells = Cells::default();
+        walk(&rough, &growth, &mut cells).unwrap();
+        assert_eq!(cells.0.len(), 64);
+        let graph = model.compile(36).unwrap();
+        let growth = Growth::steps(36);
+        let mut classes = Classes::before_survey(ColorBy::Index, &graph, 36);
+        classes = classes.after_survey(1, 64);
+        for (class, middle) in (0..).zip(cells.0) {
+            let [x, y] = [middle.x - 1e-10, middle.y - 1e-10];
+            let options = Options {
+                size: Size::Exactly(SIDE, SIDE),
+                view: View {
+                    window: Some([x, y, 2e-10, 2e-10]),
+                    margin: 0.0,
+                },
+                style: style.clone(),
+                detail: detail.map(|pixels| Detail {
+                    pixels,
+                    decides_steps: true,
+                }),
+                ..Options::default()
+            };
+            let layout = Layout::find(&graph, &growth, &options).unwrap();
+            let mut recorder = Recorder::default();
+            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            with_team(NonZero::new(3).unwrap(), |team| {
+                scene.draw(&mut recorder, team)
+            })
+            .unwrap();
+            let colour = classes.colour(class, &style);
+            let strokes = recorder.paths.iter().map(|(paint, ..)| paint.stroke);
+            let mut colours = strokes.map(|stroke| stroke.map(|stroke| stroke.colour));
+            assert!(
+                !recorder.paths.is_empty() && colours.all(|of| of == colour),
+                "{class}"
+            );
+        }
+    }
+}
+
+/// The middles of elements.
+#[derive(Default)]
+struct Cells(Vec<DVec2>);
+
+impl Visitor for Cells {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.0
+            .push(element.frame.map.transform_point2(DVec2::new(0.5, 0.5)));
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
     }
 }
 
