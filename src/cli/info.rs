@@ -268,13 +268,14 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
     let options = Options::of(loaded.model.heading());
     let estimator = Estimator::new(graph, &options);
     let mut forecast = graph.forecast()?;
+    let boxes = graph.boxes();
     let mut rows = Vec::new();
     for step in 0..=steps {
         if step > 0 && !forecast.advance() {
             return None;
         }
-        let own = (step < steps.min(SETTLED)).then(|| graph.bounds(step));
-        let bounds = own.flatten().or(last);
+        let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
+        let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
         // What follows a number that is beyond a double's range is as well.
         let may_be = rows.last().is_none_or(|row: &Row| row.estimate.is_some());
         let bounds = bounds.filter(|_| may_be);

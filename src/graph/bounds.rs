@@ -47,6 +47,12 @@ struct Reach {
     pads: Vec<f64>,
 }
 
+/// The boxes of what approximants draw, without stroke width: see [`Graph::bounds`].
+pub struct Boxes<'g> {
+    graph: &'g Graph,
+    reach: Reach,
+}
+
 /// Where the parts of a system lie.
 struct Discs {
     /// About this point of every unit frame,
@@ -113,12 +119,16 @@ impl Graph {
         self.padded_bounds(steps, |_| 0.0)
     }
 
+    /// The boxes of several approximants: what they have in common is worked out once. `None` where
+    /// the graph tells none of them.
+    #[must_use]
+    pub fn boxes(&self) -> Option<Boxes<'_>> {
+        self.boxes_with(false, |_| 0.0)
+    }
+
     /// The same with so much around every object, as a multiple of its length.
     pub(crate) fn padded_bounds(&self, steps: u32, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
-        if self.depth.is_some_and(|depth| depth < steps) {
-            return None;
-        }
-        self.bounds_at(Some(steps), pad)
+        self.boxes_with(false, pad)?.at(steps)
     }
 
     /// The box of the limit set: of the limit of the approximants as drawn, to which infertile
@@ -130,10 +140,11 @@ impl Graph {
         if self.depth.is_some() || !self.contracts() {
             return None;
         }
-        self.bounds_at(None, |_| 0.0)
+        self.boxes_with(true, |_| 0.0)?.of(None)
     }
 
-    fn bounds_at(&self, steps: Option<u32>, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
+    /// Boxes of approximants, or of the limit.
+    fn boxes_with(&self, limit: bool, pad: impl Fn(&Object) -> f64) -> Option<Boxes<'_>> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -147,14 +158,10 @@ impl Graph {
             discs: (self.affine || ratio >= 1.0)
                 .then(|| self.discs(&pad))
                 .flatten(),
-            alive: self.alive(steps.is_none()),
+            alive: self.alive(limit),
             pads: self.objects.iter().map(pad).collect(),
         };
-        let support = |direction| self.support(direction, steps, &reach);
-        let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
-        let min = -DVec2::new(support(-DVec2::X)?, support(-DVec2::Y)?);
-        let bounds = Bounds::new(min + 0.0, max + 0.0);
-        bounds.is_finite().then_some(bounds)
+        Some(Boxes { graph: self, reach })
     }
 
     /// All instances of fixed productions, with how they are placed.
@@ -321,6 +328,24 @@ impl Graph {
             }
         }
         None
+    }
+}
+
+impl Boxes<'_> {
+    /// The box of approximant `steps`.
+    #[must_use]
+    pub fn at(&self, steps: u32) -> Option<Bounds> {
+        let is_resolved = self.graph.depth.is_none_or(|depth| depth >= steps);
+        is_resolved.then(|| self.of(Some(steps))).flatten()
+    }
+
+    /// The box of an approximant or of the limit.
+    fn of(&self, steps: Option<u32>) -> Option<Bounds> {
+        let support = |direction| self.graph.support(direction, steps, &self.reach);
+        let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
+        let min = -DVec2::new(support(-DVec2::X)?, support(-DVec2::Y)?);
+        let bounds = Bounds::new(min + 0.0, max + 0.0);
+        bounds.is_finite().then_some(bounds)
     }
 }
 

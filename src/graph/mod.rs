@@ -29,6 +29,7 @@ mod reach;
 mod state;
 mod thickness;
 
+pub use bounds::Boxes;
 pub use count::Count;
 pub use error::CompileError;
 pub use forecast::{Forecast, Level, Population};
