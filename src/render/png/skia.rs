@@ -3,19 +3,21 @@
 use std::ops::Range;
 
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, Pixmap, PixmapPaint, StrokeDash,
-    Transform,
+    FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, PathSegment, Pixmap, PixmapMut,
+    PixmapPaint, Point, StrokeDash, Transform,
 };
 
 use crate::render::surface::{FINE, Paint, Position, Stroke};
 use crate::style::{Cap, Colour, Join};
 
-use super::split::split;
+use super::split::{ROWS, split};
 
 /// A path that is only stroked is drawn in pieces of about this many vertices,
 const STROKE_CHUNK: usize = 1 << 17;
 
-/// and one that is only filled in pieces of about this many, broken between subpaths.
+/// and one that is only filled in pieces of about this many, broken between subpaths. What has more
+/// nevertheless is filled some rows at a time, each of about so many vertices: what it takes to fill
+/// them is many times as large as they are.
 const FILL_CHUNK: usize = 1 << 20;
 
 /// SVG's limit of a mitre's length, in widths.
@@ -56,7 +58,10 @@ impl Outline {
 
     #[inline]
     pub(super) fn move_to(&mut self, to: Position) {
-        let [x, y] = pixels(to);
+        self.move_to_pixel(pixels(to));
+    }
+
+    fn move_to_pixel(&mut self, [x, y]: [f32; 2]) {
         self.path.move_to(x, y);
         self.length += 1;
         (self.start, self.pen, self.before) = ([x, y], [x, y], None);
@@ -65,7 +70,11 @@ impl Outline {
 
     #[inline]
     pub(super) fn line_to(&mut self, to: Position) {
-        let [x, y] = pixels(to);
+        self.line_to_pixel(pixels(to));
+    }
+
+    #[inline]
+    fn line_to_pixel(&mut self, [x, y]: [f32; 2]) {
         self.path.line_to(x, y);
         self.length += 1;
         self.before = Some(self.pen);
@@ -74,7 +83,10 @@ impl Outline {
 
     #[inline]
     pub(super) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        let ([ax, ay], [bx, by], [x, y]) = (pixels(a), pixels(b), pixels(to));
+        self.curve_to_pixel(pixels(a), pixels(b), pixels(to));
+    }
+
+    fn curve_to_pixel(&mut self, [ax, ay]: [f32; 2], [bx, by]: [f32; 2], [x, y]: [f32; 2]) {
         self.path.cubic_to(ax, ay, bx, by, x, y);
         // A curve is flattened to some lines.
         self.length += 4;
@@ -120,6 +132,8 @@ impl Outline {
             return;
         }
         let builder = std::mem::take(&mut self.path);
+        let is_long = self.length > FILL_CHUNK && self.paint.fill.is_some();
+        let pieces = self.length / FILL_CHUNK + 1;
         self.length = 0;
         let Some(path) = builder.finish() else { return };
         let paint = self.paint;
@@ -129,6 +143,7 @@ impl Outline {
             .map_or(255, |colour| colour.rgba()[3]);
         let in_pieces = opacity < 255 && (self.layer.is_some() || !is_whole);
         let draw = |pixmap: &mut Pixmap, paint: &Paint| match self.band {
+            band if is_long => draw_long(pixmap, &path, paint, band, pieces),
             None => draw(pixmap, &path, paint),
             Some(rows) => draw_band(pixmap, &path, paint, rows),
         };
@@ -176,6 +191,55 @@ fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
     {
         pixmap.stroke_path(path, &ink(stroke.colour), &shape(&stroke), none, None);
     }
+}
+
+/// Draws a path of many vertices: fills some rows at a time, and strokes it in pieces.
+fn draw_long(
+    pixmap: &mut Pixmap,
+    path: &tiny_skia::Path,
+    paint: &Paint,
+    band: Option<[u32; 2]>,
+    pieces: usize,
+) {
+    let [width, height] = [pixmap.width(), pixmap.height()];
+    if let Some(colour) = paint.fill {
+        let rows = (height as usize / pieces + 1).next_multiple_of(ROWS as usize);
+        let row = 4 * width as usize;
+        let mut top = band.map_or(0, |[top, _]| top);
+        for bytes in pixmap.data_mut().chunks_mut(row * rows) {
+            #[expect(clippy::cast_possible_truncation, reason = "rows of a picture")]
+            let rows = (bytes.len() / row) as u32;
+            let piece = split(path, [top, top + rows]);
+            let part = PixmapMut::from_bytes(bytes, width, rows);
+            if let (Some(piece), Some(mut part)) = (piece, part) {
+                let none = Transform::identity();
+                part.fill_path(&piece, &ink(colour), FillRule::Winding, none, None);
+            }
+            top += rows;
+        }
+    }
+    let mut stroked = Outline {
+        paint: Paint {
+            fill: None,
+            ..*paint
+        },
+        band,
+        ..Outline::default()
+    };
+    let pixel = |point: Point| [point.x, point.y];
+    for segment in path.segments().filter(|_| paint.stroke.is_some()) {
+        match segment {
+            PathSegment::MoveTo(to) => stroked.move_to_pixel(pixel(to)),
+            PathSegment::LineTo(to) => stroked.line_to_pixel(pixel(to)),
+            PathSegment::CubicTo(a, b, to) => {
+                stroked.curve_to_pixel(pixel(a), pixel(b), pixel(to));
+            }
+            PathSegment::QuadTo(..) => unreachable!("paths have lines and cubic curves"),
+            PathSegment::Close => stroked.close(pixmap),
+        }
+        stroked.hand_on(pixmap);
+    }
+    stroked.end(pixmap);
 }
 
 /// Draws what rows of a picture show of a path.
@@ -235,5 +299,87 @@ fn opaque(paint: Paint) -> Paint {
             colour: stroke.colour.opaque(),
             ..stroke
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A jagged star of many vertices.
+    fn star() -> tiny_skia::Path {
+        const COUNT: u32 = 300_000;
+        let mut path = PathBuilder::new();
+        for number in 0..COUNT {
+            let turn = f64::from(number) / f64::from(COUNT) * std::f64::consts::TAU;
+            let radius = 20.0 + 7.0 * libm::sin(7.0 * turn) + 0.3 * f64::from(number % 2);
+            let place = [
+                40.0 + radius * libm::cos(turn),
+                30.0 + radius * libm::sin(turn),
+            ];
+            #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
+            let [x, y] = place.map(|place| place as f32);
+            if number == 0 {
+                path.move_to(x, y);
+            } else {
+                path.line_to(x, y);
+            }
+        }
+        path.close();
+        path.finish().unwrap()
+    }
+
+    fn differences(a: &Pixmap, b: &Pixmap) -> Vec<u8> {
+        let values = a.data().iter().zip(b.data());
+        values.map(|(a, b)| a.abs_diff(*b)).collect()
+    }
+
+    #[test]
+    fn a_long_path_is_drawn_as_a_whole_one() {
+        let path = star();
+        let fill = Paint {
+            fill: Some(Colour::of_rgba([250, 120, 0, 255])),
+            stroke: None,
+        };
+        let stroke = Stroke {
+            colour: Colour::BLACK,
+            pen: crate::render::surface::Pen {
+                width: 1.2,
+                cap: Cap::Butt,
+                join: Join::Miter,
+                dash: 0.0,
+            },
+        };
+        let both = Paint {
+            stroke: Some(stroke),
+            ..fill
+        };
+        for paint in [fill, both] {
+            let [mut whole, mut long] = [(); 2].map(|()| Pixmap::new(80, 60).unwrap());
+            draw(&mut whole, &path, &paint);
+            draw_long(&mut long, &path, &paint, None, 4);
+            let differences = differences(&whole, &long);
+            let sum: u64 = differences.iter().map(|&off| u64::from(off)).sum();
+            let mean = sum as f64 / differences.len() as f64;
+            assert!(mean < 0.1, "{mean}");
+            // Where the stroke is broken its pieces overlap.
+            let far = differences.iter().filter(|&&off| off > 16).count();
+            assert!(far <= if paint.stroke.is_some() { 20 } else { 0 }, "{far}");
+            assert!(whole.data().iter().any(|&value| value > 0));
+        }
+    }
+
+    #[test]
+    fn rows_of_a_long_path_do_not_depend_on_the_pieces() {
+        let path = star();
+        let paint = Paint {
+            fill: Some(Colour::BLACK),
+            stroke: None,
+        };
+        let mut whole = Pixmap::new(80, 60).unwrap();
+        draw_long(&mut whole, &path, &paint, None, 4);
+        let mut band = Pixmap::new(80, 20).unwrap();
+        draw_long(&mut band, &path, &paint, Some([20, 40]), 3);
+        assert!(band.data() == &whole.data()[4 * 80 * 20..4 * 80 * 40]);
     }
 }

@@ -20,11 +20,13 @@ pub(super) fn split(path: &Path, [top, bottom]: [u32; 2]) -> Option<Path> {
         top: f64::from(top),
         near: [f64::from(top) - f64::from(ROWS), f64::from(bottom + ROWS)],
         at: Point::zero(),
+        is_held: false,
     };
     let mut start = Point::zero();
     for segment in path.segments() {
         match segment {
             PathSegment::MoveTo(to) => {
+                lines.end();
                 (start, lines.at) = (to, to);
                 lines.path.move_to(to.x, lines.moved(to.y));
             }
@@ -50,10 +52,12 @@ pub(super) fn split(path: &Path, [top, bottom]: [u32; 2]) -> Option<Path> {
             }
             PathSegment::Close => {
                 lines.to(start);
+                lines.end();
                 lines.path.close();
             }
         }
     }
+    lines.end();
     lines.path.finish()
 }
 
@@ -63,6 +67,8 @@ struct Lines {
     /// Rows between which there are vertices.
     near: [f64; 2],
     at: Point,
+    /// Whether that is still to be drawn: of lines that stay beyond these rows only the ends matter.
+    is_held: bool,
 }
 
 impl Lines {
@@ -72,8 +78,20 @@ impl Lines {
         (f64::from(y) - self.top) as f32
     }
 
+    /// Draws what is held.
+    fn end(&mut self) {
+        if std::mem::take(&mut self.is_held) {
+            self.path.line_to(self.at.x, self.moved(self.at.y));
+        }
+    }
+
     fn to(&mut self, to: Point) {
         let ([ax, ay], [bx, by]) = (double(self.at), double(to));
+        if ay.max(by) < self.near[0] || ay.min(by) > self.near[1] {
+            (self.at, self.is_held) = (to, true);
+            return;
+        }
+        self.end();
         let step = f64::from(ROWS);
         let [low, high] = [ay.min(by).max(self.near[0]), ay.max(by).min(self.near[1])];
         let mut row = (low / step).ceil() * step;
