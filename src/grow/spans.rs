@@ -130,7 +130,7 @@ where
     let (takes_runs, cuts) = (asked.takes_runs(), asked.cuts());
     // Blocks are the same as in a walk that is not divided.
     let size = if takes_runs {
-        size.max(MOST_LEAVES)
+        size.max(MOST_LEAVES.min(asked.longest_run()))
     } else {
         size
     };

@@ -13,7 +13,7 @@ use super::painter::Painter;
 use super::sight::Sight;
 use super::sketch::{Means, Sketcher};
 use super::surface::{Pen, Surface};
-use super::survey::{Ranks, SPAN};
+use super::survey::{Ranks, span};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
 
 /// An approximant on its canvas.
@@ -28,7 +28,7 @@ pub(crate) struct Scene<'a> {
     /// The number of elements.
     pub(super) elements: u64,
     /// Ranks of elements, where colours tell them and they are known.
-    pub(super) ranks: Option<Ranks>,
+    ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
     /// Whether closed paths are filled as they are stroked.
@@ -103,7 +103,7 @@ impl Drawing for Scene<'_> {
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
         let mut growth = *self.growth;
         let mut division = Division {
-            span: Some(SPAN),
+            span: Some(span(self.graph)),
             ranks: grow::Ranks::Unknown,
         };
         if self.style.color_by == ColorBy::Index {
@@ -167,11 +167,12 @@ impl<'a> Survey<'a> {
 mod tests {
     use std::num::NonZero;
 
-    use super::{Pass, Scene};
+    use super::{Aim, Arc, Pass, Scene, Sketcher, span};
     use crate::catalogue::{Catalogue, Shelf};
     use crate::document::Document;
     use crate::graph::Graph;
-    use crate::grow::Growth;
+    use crate::grow::{self, Division, Growth, walk_with};
+    use crate::parallel::with_team;
     use crate::render::layout::Layout;
     use crate::render::{Detail, Format, Labels, Options, Size, write_drawing};
     use crate::style::ColorBy;
@@ -228,5 +229,37 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Of elements that are large outlines few make a span.
+    #[test]
+    fn sketches_stay_small() {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.rule("gasket-of-dragons").unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let model = document.resolve(&[]).unwrap().0;
+        let graph = model.compile(7).unwrap();
+        let options = Options::of(model.heading());
+        let growth = Growth::steps(7);
+        let layout = Layout::find(&graph, &growth, &options).unwrap();
+        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let [mut all, mut most] = [0, 0];
+        with_team(NonZero::<usize>::MIN, |team| {
+            let division = Division {
+                span: Some(span(&graph)),
+                ranks: grow::Ranks::Unknown,
+            };
+            let pass = Pass::Class(0);
+            let aim = Arc::new(Aim::of(&scene, pass));
+            let fresh = || Sketcher::new(&scene, pass, None, (None, None), aim.clone());
+            walk_with(team, &graph, &growth, division, fresh, |sketcher, _| {
+                let points = sketcher.sketch.points.len();
+                (all, most) = (all + points, most.max(points));
+                sketcher.clear();
+                Ok(())
+            })
+            .unwrap();
+        });
+        assert!(all > 1 << 20 && most <= 1 << 17, "{most} of {all}");
     }
 }

@@ -25,6 +25,7 @@ use super::hidden::Hidden;
 use super::scene::{Pass, Scene};
 use super::stamps::{Painted, Stamps};
 use super::surface::{FINE, Position, position};
+use super::survey::span;
 
 /// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
 fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
@@ -394,8 +395,9 @@ impl Visitor for Sketcher<'_> {
     }
 
     fn longest_run(&self) -> u64 {
+        let longest = span(self.scene.graph);
         let stamps = self.means.stamps.as_ref();
-        stamps.map_or(u64::MAX, |stamps| stamps.longest_run)
+        stamps.map_or(longest, |stamps| longest.min(stamps.longest_run))
     }
 
     fn cuts(&self) -> Option<f64> {

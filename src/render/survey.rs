@@ -14,8 +14,21 @@ use crate::style::{Cap, ColorBy, Join, Style, Width};
 use super::sight::Sight;
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
-/// Spans of a survey, and of what follows from it, have about so many elements.
-pub(super) const SPAN: u64 = 1 << 12;
+/// Spans of a survey, and of what follows from it, have about so many elements,
+const SPAN: u64 = 1 << 12;
+
+/// and no more points than this, by which their sketches are large.
+const MOST_POINTS: usize = 1 << 16;
+
+/// About how many elements the spans of a graph have; no run has more.
+pub(super) fn span(graph: &Graph) -> u64 {
+    let pieces = graph
+        .base_elements()
+        .iter()
+        .map(|base_element| base_element.pieces().len());
+    let points = pieces.max().unwrap_or(1).max(1);
+    SPAN.min((MOST_POINTS / points) as u64).max(1)
+}
 
 /// What is known of ranks, for a walk over as many steps.
 #[derive(Clone, Debug)]
@@ -318,7 +331,7 @@ impl<'g> Survey<'g> {
             survey.graph,
             growth,
             threads,
-            Some(SPAN),
+            Some(span(survey.graph)),
             fresh,
             |seen, seam| {
                 survey.add(seen, seam);
@@ -377,6 +390,10 @@ impl Visitor for Survey<'_> {
 
     fn takes_runs(&self) -> bool {
         !self.sight.cuts()
+    }
+
+    fn longest_run(&self) -> u64 {
+        span(self.graph)
     }
 
     fn cuts(&self) -> Option<f64> {
