@@ -9,6 +9,8 @@ mod common;
 mod lattice;
 #[path = "zoom/pictures.rs"]
 mod pictures;
+#[path = "zoom/seeds.rs"]
+mod seeds;
 
 use std::collections::HashMap;
 use std::convert::Infallible;
@@ -16,7 +18,7 @@ use std::convert::Infallible;
 use common::{document, document_of};
 use kfrac::document::Document;
 use kfrac::geometry::{DAffine2, DVec2, Frame};
-use kfrac::graph::{Graph, Production, Replacement};
+use kfrac::graph::{Graph, NoLimit, Production, Replacement};
 use kfrac::grow::{Element, Enter, Fractal, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::rule::draw::Path;
@@ -59,6 +61,7 @@ fn window(factor: &str, at: &str) -> Window {
         margin: 2.0,
         relative_stroke: 0.0,
         areas: false,
+        shortest: SHORTEST,
         factor: factor.parse().unwrap(),
         at: at.parse().unwrap(),
     }
@@ -76,15 +79,19 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(graph: &Graph, growth: &kfrac::grow::Growth<'_>, place: DAffine2, shortest: f64) -> Self {
-        let mut seen = Self {
+    fn new(graph: &Graph, place: DAffine2, shortest: f64) -> Self {
+        Self {
             half: f64::from(SIDE) / 2.0,
             shortest,
             place,
             reaches: graph.reaches(|_| 2.0),
             middle: graph.middle(),
             elements: Vec::new(),
-        };
+        }
+    }
+
+    fn of(graph: &Graph, growth: &kfrac::grow::Growth<'_>, place: DAffine2, shortest: f64) -> Self {
+        let mut seen = Self::new(graph, place, shortest);
         walk(graph, growth, &mut seen).unwrap();
         for element in &mut seen.elements {
             element.frame.map = place * element.frame.map;
@@ -467,8 +474,8 @@ fn what_has_no_point_is_refused() {
     let grows = read("initiator: segment\ngenerator: [[0, 0], [1/2, 1], [1, 0]]\n");
     assert!(matches!(said(&grows, "10", "0.(0)"), ZoomError::NoLimit(_)));
     assert!(matches!(
-        said(&library("mandala"), "10", "0.(0)"),
-        ZoomError::Seeds
+        said(&library("meadow"), "10", "0.(0)"),
+        ZoomError::NoLimit(NoLimit::Resets)
     ));
     let by_index =
         "initiator: segment\ngenerator: [[0, 0], ['if(odd(i), 1/3, 1/4)', 1/5], [1, 0]]\n";

@@ -21,7 +21,7 @@ pub(super) struct ZoomArguments {
     ///
     /// The first position is that of an element in the initiator, or of an object in a scene; for a
     /// system of maps it is 0. Each of the others is the position, in what replaces the element, as
-    /// listed and from 0, or the map's, or the line's in the word of an L-system. What stands in brackets is
+    /// listed and from 0 across all parts, or the map's, or the line's in the word of an L-system. What stands in brackets is
     /// repeated for ever; shells want such an address in quotes.
     #[arg(long, value_name = "ADDRESS", allow_hyphen_values = true)]
     at: Option<Address>,

@@ -168,7 +168,7 @@ impl<'r> Compiler<'r> {
             origins: rule.generators().len(),
             objects: self.objects,
             initiators: vec![whole.body],
-            roots: Arc::new([]),
+            roots: Arc::default(),
             depth: beyond.then_some(self.steps),
             regular: !self.depends.index_is_free,
             counts_index: self.depends.counts_index,
@@ -494,6 +494,12 @@ impl<'r> Compiler<'r> {
 }
 
 impl Chain {
+    /// Whether every instance but the first joins the one before it.
+    pub(crate) fn is_joined(&self) -> bool {
+        let mut later = self.instances.iter().skip(1);
+        later.all(|instance| instance.joined)
+    }
+
     /// Whether the last instance joins the first one.
     #[must_use]
     pub fn is_ring(&self) -> bool {

@@ -234,7 +234,7 @@ impl<'s> Compiler<'s> {
                 instances: std::iter::once(root).chain(drawn).collect(),
                 meets_frame: [false; 2],
             }],
-            roots: Arc::new([]),
+            roots: Arc::default(),
             depth: None,
             regular: true,
             counts_index: false,

@@ -202,7 +202,7 @@ impl<'s> Compiler<'s> {
             origins: 0,
             objects: self.objects,
             initiators: vec![initiator],
-            roots: Arc::new([]),
+            roots: Arc::default(),
             depth: None,
             regular: true,
             counts_index: false,

@@ -100,7 +100,7 @@ impl Graph {
             tints: system.has_colours(),
             objects: strings.objects,
             initiators: vec![initiator],
-            roots: Arc::new([]),
+            roots: Arc::default(),
             widest: None,
             depth: None,
             regular: true,

@@ -26,6 +26,7 @@ mod limit;
 mod lsystem;
 mod no_limit;
 mod reach;
+mod roots;
 mod state;
 mod thickness;
 
@@ -38,12 +39,12 @@ pub use no_limit::NoLimit;
 
 pub(crate) use ifs::{filling, outline as base_element};
 pub(crate) use lsystem::{Chords, Words};
+pub(crate) use roots::{Root, Roots, Sown};
 
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame};
 use crate::instancing::{Coat, Thickness, Tint};
-use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
 
@@ -145,19 +146,6 @@ pub struct Production {
     pub seeds: Vec<Seed>,
 }
 
-/// What an element of the initiator descends from, where that is no beginning but a part of
-/// something that has been grown for a while.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Root {
-    /// The step of its birth.
-    pub(crate) level: u32,
-    pub(crate) path: Path,
-    /// Its length relative to the initiator element's that it descends from.
-    pub(crate) length: f64,
-    /// What it and all that it descends from are tinted with.
-    pub(crate) coat: Coat,
-}
-
 /// The instancing graph of a rule.
 ///
 /// Guarantees: all numbers of objects and base elements are in range; every object that is reached
@@ -172,8 +160,9 @@ pub struct Graph {
     pub(crate) objects: Vec<Object>,
     /// By the number of steps that are grown out of it; the last one for all others. One at least.
     pub(crate) initiators: Vec<Chain>,
-    /// What the initiator's elements descend from, by position; empty where they are a beginning.
-    pub(crate) roots: Arc<[Root]>,
+    /// What the initiator's elements descend from, and what has been seeded before; empty where they are
+    /// a beginning.
+    pub(crate) roots: Arc<Roots>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,
@@ -225,6 +214,12 @@ impl Graph {
     pub fn initiator(&self, steps: u32) -> &Chain {
         let last = self.initiators.len() - 1;
         &self.initiators[(steps as usize).min(last)]
+    }
+
+    /// All chains that nothing comes before: initiators, and what has been seeded before.
+    pub(crate) fn starts(&self) -> impl Iterator<Item = &Chain> {
+        let sown = self.roots.sown.iter().map(|sown| &sown.chain);
+        self.initiators.iter().chain(sown)
     }
 
     /// Whether objects know how many steps are still to come, so that every number of steps is grown
@@ -321,8 +316,7 @@ impl Graph {
     /// Whether any element may join the one before it.
     pub(crate) fn joins(&self) -> bool {
         let all = self.instances().map(|(_, instance)| instance);
-        let starts = self.initiators.iter().flat_map(|start| &start.instances);
-        let all = all.chain(starts);
+        let all = all.chain(self.starts().flat_map(|start| &start.instances));
         !self.is_plain() || { all }.any(|instance| instance.joined)
     }
 

@@ -66,7 +66,7 @@ impl Census {
     pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Option<Self> {
         let tells = graph.is_plain()
             && !graph.counts_index()
-            && graph.roots.is_empty()
+            && graph.roots.elements.is_empty()
             && (shortest <= 0.0 || graph.is_similar() && !graph.resets().contains(&true));
         if !tells {
             return None;

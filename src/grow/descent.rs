@@ -1,5 +1,7 @@
 //! One fractal at one step: its elements in order of traversal, depth-first.
 
+use std::ops::Range;
+
 use crate::geometry::{DAffine2, Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Instance, Production, Replacement, Root, Seed};
 use crate::instancing::Coat;
@@ -45,7 +47,7 @@ impl Standing {
             root: instance.position,
             ..self.child(graph, instance)
         };
-        match graph.roots.get(instance.position as usize) {
+        match graph.roots.elements.get(instance.position as usize) {
             None => child,
             Some(&Root {
                 path, length, coat, ..
@@ -86,11 +88,13 @@ pub(super) struct Start<'g> {
     pub(super) standing: Standing,
     /// The step in which the fractal is born.
     pub(super) born: u32,
+    /// What it has seeded before it is walked over: numbers in [`Roots::sown`](crate::graph::Roots).
+    pub(super) sown: Range<usize>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) enum StartChain<'g> {
-    /// The initiator: its instances are the roots.
+    /// The initiator, or what has been seeded before: its instances are the roots.
     Initiator(&'g Chain),
     Fixed(&'g Chain),
     Evaluated(Chain),
@@ -103,7 +107,32 @@ impl<'g> Start<'g> {
             chain: StartChain::Initiator(graph.initiator(steps)),
             standing: Standing::whole(seed),
             born: 0,
+            sown: graph.roots.sown_by(0),
         }
+    }
+
+    /// A fractal that has been seeded before.
+    pub(super) fn sown(graph: &'g Graph, number: usize) -> Self {
+        let sown = &graph.roots.sown[number];
+        Self {
+            chain: StartChain::Initiator(&sown.chain),
+            // Roots have paths of their own.
+            standing: Standing::whole(0),
+            born: sown.born,
+            sown: graph.roots.sown_by(number + 1),
+        }
+    }
+
+    /// The steps after a step in which elements begin, or in which the last ones of what the fractal
+    /// has seeded before were replaced.
+    pub(super) fn next_after(&self, graph: &Graph, step: u32) -> Option<u32> {
+        let StartChain::Initiator(chain) = self.chain else {
+            return None;
+        };
+        let roots = chain.instances.iter().filter_map(|it| birth(graph, it));
+        let sown = graph.roots.sown[self.sown.clone()].iter();
+        let all = roots.chain(sown.map(|sown| sown.born - 1));
+        all.filter(|&next| next > step).min()
     }
 
     pub(super) fn chain(&self) -> &Chain {
@@ -440,9 +469,9 @@ impl<'g> Descent<'g> {
             let born = if is_root {
                 birth(self.graph, instance)
             } else {
-                0
+                None
             };
-            let level = entry.level + born;
+            let level = born.unwrap_or(entry.level);
             let object = instance.object;
             let last = entry.next == count;
             let meets_end = !last || entry.meets_end;
@@ -611,6 +640,7 @@ impl<'g> Descent<'g> {
             chain,
             standing: planted(graph, &standing, seed.placement),
             born: found.level + 1,
+            sown: 0..0,
         };
         match &graph.objects()[found.object].replacement {
             Replacement::Kept => Ok(Vec::new()),
@@ -633,10 +663,10 @@ impl<'g> Descent<'g> {
     }
 }
 
-/// The step in which an element of the initiator was born.
-fn birth(graph: &Graph, instance: &Instance) -> u32 {
-    let root = graph.roots.get(instance.position as usize);
-    root.map_or(0, |root| root.level)
+/// The step in which a root was born, if it is not the beginning.
+fn birth(graph: &Graph, instance: &Instance) -> Option<u32> {
+    let root = graph.roots.elements.get(instance.position as usize);
+    root.map(|root| root.level)
 }
 
 /// The standing of a part that an element seeds.

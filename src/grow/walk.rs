@@ -58,6 +58,47 @@ struct Parent<'g> {
     queue: Vec<Start<'g>>,
 }
 
+impl<'g> Parent<'g> {
+    fn new(graph: &'g Graph, start: Start<'g>) -> Self {
+        Self {
+            step: start.born,
+            descent: Descent::new(graph, &start, start.born),
+            start,
+            is_fertile: false,
+            queue: Vec::new(),
+        }
+    }
+
+    /// What has been seeded before by elements of the approximant that come before those of a root.
+    fn take_sown(&mut self, graph: &'g Graph, root: u32) {
+        while let Some(number) = self.start.sown.clone().next() {
+            let sown = &graph.roots.sown[number];
+            if sown.born > self.step + 1 || sown.before > root {
+                break;
+            }
+            self.start.sown.start += 1;
+            self.queue.push(Start::sown(graph, number));
+        }
+    }
+
+    /// Goes on to the next approximant that may have anything to be replaced before a number of steps;
+    /// tells whether there is one.
+    fn go_on(&mut self, graph: &'g Graph, steps: u32) -> bool {
+        let next = if self.is_fertile {
+            Some(self.step + 1)
+        } else {
+            self.start.next_after(graph, self.step)
+        };
+        let Some(step) = next.filter(|&step| step < steps) else {
+            return false;
+        };
+        self.is_fertile = false;
+        self.step = step;
+        self.descent = Descent::new(graph, &self.start, step);
+        true
+    }
+}
+
 /// Who gets what a walk comes to.
 pub(super) trait Sink {
     type Error: From<CompileError>;
@@ -152,13 +193,7 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             if let Some(start) = next.take() {
                 self.fractal(&start)?;
                 if self.graph.seeds && start.born < self.steps {
-                    parents.push(Parent {
-                        step: start.born,
-                        descent: Descent::new(self.graph, &start, start.born),
-                        start,
-                        is_fertile: false,
-                        queue: Vec::new(),
-                    });
+                    parents.push(Parent::new(self.graph, start));
                 }
             }
             let Some(parent) = parents.last_mut() else {
@@ -168,8 +203,10 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             if next.is_some() {
                 continue;
             }
+            let step = parent.step;
             let enter = |subtree: &Subtree| {
-                if self.leads_to_seeds[subtree.object] {
+                // Roots may not stand yet.
+                if subtree.born <= step && self.leads_to_seeds[subtree.object] {
                     self.sink.enter(subtree)
                 } else {
                     Enter::Skip
@@ -181,19 +218,19 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
                 Next::Element(found) => {
                     if found.level == parent.step && self.replaces(&found) {
                         parent.is_fertile = true;
-                        parent.queue = parent.descent.seeds(&found)?;
+                        parent.take_sown(self.graph, found.standing.root);
+                        parent.queue.extend(parent.descent.seeds(&found)?);
                         parent.queue.reverse();
                     }
                 }
                 Next::Run(_) | Next::Subtree(_) => unreachable!("seeds are looked for one by one"),
                 Next::Pause => {}
-                Next::End if parent.is_fertile && parent.step + 1 < self.steps => {
-                    parent.is_fertile = false;
-                    parent.step += 1;
-                    parent.descent = Descent::new(self.graph, &parent.start, parent.step);
-                }
                 Next::End => {
-                    parents.pop();
+                    parent.take_sown(self.graph, u32::MAX);
+                    parent.queue.reverse();
+                    if parent.queue.is_empty() && !parent.go_on(self.graph, self.steps) {
+                        parents.pop();
+                    }
                 }
             }
             self.sink.visit(visited)?;
@@ -204,7 +241,8 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
     fn fractal(&mut self, start: &Start<'g>) -> Result<(), S::Error> {
         let fractal = Fractal {
             number: self.fractals,
-            age: self.steps - start.born,
+            // Nothing may be left of what has been seeded before.
+            age: self.steps.saturating_sub(start.born),
             is_ring: start.chain().is_ring(),
         };
         self.fractals += 1;

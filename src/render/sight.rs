@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::geometry::{Bounds, DVec2};
-use crate::graph::{Graph, Object, Replacement};
+use crate::graph::{Chain, Graph, Object, Replacement};
 use crate::grow::{Enter, Growth, Subtree};
 use crate::rule::Part;
 use crate::style::{Cap, ColorBy, Join, Style, Width};
@@ -226,7 +226,7 @@ fn outside(graph: &Graph, style: &Style, are_counted: bool) -> Option<Enter> {
     // stays encircled as often. It stays whole if the elements of other approximants on that way
     // are of the same class.
     let stays_whole = Classes::before_survey(style.color_by, graph, 0).keep_fractals_whole();
-    (graph.draws_closed_paths() && (stays_whole || !seam_shows)).then_some(Enter::Keep)
+    (graph.keeps_lines() && (stays_whole || !seam_shows)).then_some(Enter::Keep)
 }
 
 /// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
@@ -241,8 +241,8 @@ pub(super) fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
 }
 
 /// Whether a fractal may be a closed chain.
-fn starts_rings(graph: &Graph) -> bool {
-    graph.initiator(0).is_ring()
+pub(super) fn starts_rings(graph: &Graph) -> bool {
+    graph.starts().any(Chain::is_ring)
         || graph
             .objects()
             .iter()

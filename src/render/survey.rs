@@ -424,6 +424,8 @@ impl Visitor for Survey<'_> {
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.elements += 1;
+        // Of roots it is not known before.
+        self.steps = self.steps.max(element.born);
         if self.goes_on {
             self.last_index = Some(element.index);
         } else {

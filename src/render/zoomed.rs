@@ -8,6 +8,7 @@ use crate::style::{ColorBy, Style, View, Width};
 use crate::zoom::{self, Address, Factor, Source, Window};
 
 use super::layout::Layout;
+use super::sight::starts_rings;
 use super::survey::{overhang, relative_overhang};
 use super::{Canvas, Detail, Options, Picture, RenderError, Size};
 
@@ -61,7 +62,8 @@ pub fn write_zoomed(
         scale: canvas.scale(),
         margin: stroke + 2.0,
         relative_stroke,
-        areas: style.fill.is_some() && graph.initiator(0).is_ring() && graph.draws_closed_paths(),
+        areas: style.fill.is_some() && starts_rings(graph) && graph.keeps_lines(),
+        shortest: options.detail.map_or(1.0, |detail| detail.pixels),
         factor: look.factor.clone(),
         at: look.at.clone(),
     };

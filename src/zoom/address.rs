@@ -8,7 +8,8 @@ use crate::geometry::DVec2;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Address {
     /// The position in the initiator, then at each replacement the position in the generator as
-    /// listed: first some, then others over and over.
+    /// listed, counted across its parts, those that seed included: first some, then others over and
+    /// over.
     Path {
         /// What comes once.
         first: Vec<u32>,

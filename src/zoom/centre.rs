@@ -6,6 +6,7 @@ use crate::expression::Precise;
 use crate::geometry::DMat2;
 use crate::graph::{Graph, Instance, Production, Replacement};
 use crate::grow::{Evaluator, Moment, Standing};
+use crate::rule::Placement;
 
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
@@ -27,11 +28,12 @@ pub(super) fn centre(
     };
     let address = || window.at.clone();
     let mut positions = first.iter().chain(repeated.iter().cycle()).copied();
-    let found = |instances: &mut dyn Iterator<Item = &Instance>, position, depth| {
-        let all: Vec<&Instance> = instances.collect();
-        let instance = all.iter().find(|instance| instance.position == position);
+    let found = |all: &[(Placement, &Instance)], position, depth| {
+        let instance = all
+            .iter()
+            .find(|(_, instance)| instance.position == position);
         instance
-            .map(|&it| it.clone())
+            .map(|&(placement, it)| (placement, it.clone()))
             .ok_or(ZoomError::NoSuchPosition {
                 address: address(),
                 position,
@@ -42,7 +44,11 @@ pub(super) fn centre(
     let Some(position) = positions.next() else {
         unreachable!("something is repeated");
     };
-    let root = found(&mut graph.initiator(0).instances.iter(), position, 0)?;
+    let initiator = graph.initiator(0).instances.iter();
+    let initiator: Vec<_> = initiator.map(|it| (Placement::Stays, it)).collect();
+    let (_, root) = found(&initiator, position, 0)?;
+    // The step in which the fractal was born.
+    let mut born = 0;
     let mut standing = Standing::whole(growth.seed).root(graph, &root);
     let mut object = root.object;
     let mut maps = vec![constants.root(&root)];
@@ -60,7 +66,7 @@ pub(super) fn centre(
         }
         super::descent::check(growth, level)?;
         let moment = Moment {
-            born: 0,
+            born,
             level,
             rank: 0,
         };
@@ -82,8 +88,8 @@ pub(super) fn centre(
                 &evaluated
             }
         };
-        let mut instances = production.placed_instances().map(|(_, instance)| instance);
-        let child = found(&mut instances, position, depth + 1)?;
+        let instances: Vec<_> = production.placed_instances().collect();
+        let (placement, child) = found(&instances, position, depth + 1)?;
         let parent = Parent {
             standing: &standing,
             object,
@@ -94,6 +100,9 @@ pub(super) fn centre(
         product.multiply(child.frame.map.matrix2);
         standing = standing.child(graph, &child);
         object = child.object;
+        if placement.seeds() {
+            born = level + 1;
+        }
     }
     let bits = constants.bits();
     let middle = graph.middle();

@@ -160,7 +160,7 @@ impl Path {
     }
 
     /// Whether a closed path that does not come near turns around (0, 0).
-    fn goes_around(&self) -> bool {
+    pub(super) fn goes_around(&self) -> bool {
         let ends = self.pieces.iter().map(Piece::end);
         let from = std::iter::once(self.start).chain(ends.clone());
         let turns = from.zip(ends.chain([self.start]));

@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use crate::geometry::{DAffine2, DVec2, Frame};
-use crate::graph::{Chain, Graph, Instance, Production, Replacement, Root};
+use crate::graph::{Chain, Graph, Instance, Production, Replacement, Seed};
 use crate::grow::{Evaluator, Moment, Standing};
-use crate::rule::BaseElement;
 
 use super::clip::{self, Path};
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
-use super::{GRAIN, Growth, SPARE, Window, Zoom, ZoomError, merge};
+use super::items::{Drawn, Found, Item, Line, Node};
+use super::{GRAIN, Growth, SPARE, Window, Zoom, ZoomError, merge, roots};
 
 /// Roots are no larger than this, in pixels.
 const LARGEST: f64 = (1 << 20) as f64;
@@ -24,64 +24,6 @@ const MOST_WORK: u64 = 400_000_000_000;
 
 /// Where doubles are used to leave something out, they are this much in doubt.
 const DOUBT: f64 = 1e-9;
-
-/// An instance that may show in the window.
-#[derive(Clone)]
-pub(super) struct Node {
-    pub(super) standing: Standing,
-    pub(super) object: usize,
-    pub(super) level: u32,
-    /// Its map, in parts of a pixel from the middle of the window.
-    pub(super) map: Fixed,
-    /// Whether it joins the one before it.
-    pub(super) joined: bool,
-}
-
-/// What has come of it.
-pub(super) enum Item {
-    /// Nothing yet.
-    Node(Box<Node>),
-    Root(Box<Found>),
-}
-
-/// A root.
-pub(super) struct Found {
-    object: usize,
-    frame: Frame,
-    root: Root,
-    pub(super) joined: bool,
-    drawn: Drawn,
-}
-
-/// What is drawn of a root.
-enum Drawn {
-    /// What comes of its object.
-    Object,
-    /// This, in its frame.
-    Clipped(BaseElement),
-    /// A way around the window, in pixels.
-    Around(Path),
-}
-
-impl Found {
-    fn of(node: &Node, frame: Frame, joined: bool, drawn: Drawn) -> Self {
-        let Standing {
-            path, length, coat, ..
-        } = node.standing;
-        Self {
-            object: node.object,
-            frame,
-            root: Root {
-                level: node.level,
-                path,
-                length,
-                coat,
-            },
-            joined,
-            drawn,
-        }
-    }
-}
 
 /// What a node is in the window.
 enum Look {
@@ -98,7 +40,8 @@ pub(super) struct Descent<'a, 'c> {
     constants: &'c mut Constants<'a>,
     /// Half of what is seen, in pixels.
     half: DVec2,
-    items: Vec<Item>,
+    /// The fractals, each after the one that seeded it.
+    lines: Vec<Line>,
     evaluator: Evaluator,
     work: u64,
 }
@@ -119,72 +62,97 @@ impl<'a, 'c> Descent<'a, 'c> {
             reaches,
             constants,
             half: DVec2::new(width, height) / 2.0 + window.margin,
-            items: Vec::new(),
+            lines: Vec::new(),
             evaluator: Evaluator::default(),
             work: 0,
         }
     }
 
     /// Goes down until all that shows in the window is a root.
-    pub(super) fn run(&mut self, centre: &Vector) -> Result<(), ZoomError> {
+    pub(super) fn run(mut self, centre: &Vector) -> Result<Zoom, ZoomError> {
         let bits = self.constants.bits();
         let scale = self.window.factor.times(self.window.scale, GRAIN);
         let whole = Standing::whole(self.growth.seed);
         let scaled = |[x, y]: &Vector| [x, y].map(|it| (it * &scale) >> bits);
-        for instance in &self.graph.initiator(0).instances {
+        let initiator = self.graph.initiator(0);
+        let mut items = Vec::new();
+        for instance in &initiator.instances {
             let map = self.constants.root(instance);
             let [x, y] = &map.origin;
             let map = Fixed {
                 axes: [scaled(&map.axes[0]), scaled(&map.axes[1])],
                 origin: scaled(&[x - &centre[0], y - &centre[1]]),
             };
-            self.items.push(Item::Node(Box::new(Node {
+            items.push(Item::Node(Box::new(Node {
                 standing: whole.root(self.graph, instance),
                 object: instance.object,
                 level: 0,
+                born: 0,
                 map,
-                joined: instance.joined && (self.window.areas || !self.items.is_empty()),
+                joined: instance.joined,
             })));
         }
+        self.lines.push(Line {
+            born: 0,
+            is_ring: initiator.is_ring(),
+            items,
+        });
+        // Every round is a step: what is no root has been born in it.
         for round in 0.. {
             check(self.growth, round)?;
-            let is_done = |item: &Item| matches!(item, Item::Root(_));
-            if self.items.iter().all(is_done) {
+            let is_done = |item: &Item| !matches!(item, Item::Node(_));
+            let mut items = self.lines.iter().flat_map(|line| &line.items);
+            if items.all(is_done) {
                 break;
             }
-            self.go_down()?;
+            for number in 0..self.lines.len() {
+                self.go_down(number)?;
+            }
             // Draws and tints tell apart what stands in one place, and areas need all of their chain.
             if !self.graph.draws() && !self.graph.tints() && !self.window.areas {
-                merge::merge(&mut self.items);
+                merge::merge(&mut self.lines);
             }
-            if self.items.len() > MOST_INSTANCES {
+            let count: usize = self.lines.iter().map(|line| line.items.len()).sum();
+            if count > MOST_INSTANCES {
                 return Err(ZoomError::TooMany {
                     limit: MOST_INSTANCES,
                 });
             }
         }
-        Ok(())
+        roots::zoom(self.graph, self.window, self.lines)
     }
 
-    /// Replaces all that is no root, once.
-    fn go_down(&mut self) -> Result<(), ZoomError> {
-        let items = std::mem::take(&mut self.items);
+    /// Replaces all of a fractal that is no root, once.
+    fn go_down(&mut self, number: usize) -> Result<(), ZoomError> {
+        let old = std::mem::take(&mut self.lines[number].items);
+        let mut line = Line {
+            items: Vec::new(),
+            ..self.lines[number]
+        };
+        // What may lead around the window.
+        let areas = self.window.areas && line.is_ring;
         // Whether what comes next can go on where what came before has ended.
-        let mut pen = self.window.areas;
-        for item in items {
+        let mut pen = line.is_ring;
+        for item in old {
             let node = match item {
                 Item::Root(mut found) => {
                     found.joined &= pen;
                     pen = true;
-                    self.add(*found);
+                    line.add(*found);
+                    continue;
+                }
+                Item::Seed(number) => {
+                    if !self.lines[number].items.is_empty() {
+                        line.items.push(item);
+                    }
                     continue;
                 }
                 Item::Node(node) => node,
             };
             pen &= node.joined;
             match self.look(&node) {
-                Look::Outside if self.window.areas => {
-                    self.lead_around(&node, pen);
+                Look::Outside if areas => {
+                    line.add(self.around(&node, pen));
                     pen = true;
                 }
                 Look::Outside => pen = false,
@@ -193,16 +161,25 @@ impl<'a, 'c> Descent<'a, 'c> {
                         map,
                         direction: node.standing.frame.direction,
                     };
-                    self.add(Found::of(&node, frame, pen, Drawn::Object));
+                    line.add(Found::of(&node, frame, pen, Drawn::Object));
                     pen = true;
                 }
                 Look::Large if self.stays(&node) => {
-                    self.add_clipped(&node, pen);
-                    pen = self.window.areas;
+                    if let Some(found) = self.clipped(&node, areas, pen) {
+                        line.add(found);
+                    }
+                    pen = areas;
                 }
-                Look::Large => pen = self.replace(&node, pen)?,
+                Look::Large => pen = self.replace(&node, areas, pen, &mut line)?,
             }
         }
+        if !pen {
+            line.open();
+        }
+        if line.is_elsewhere() {
+            line.items.clear();
+        }
+        self.lines[number] = line;
         Ok(())
     }
 
@@ -211,43 +188,28 @@ impl<'a, 'c> Descent<'a, 'c> {
         matches!(object.replacement, Replacement::Kept) || self.growth.steps == Some(node.level)
     }
 
-    /// Adds a root; ways around the window that follow each other are one.
-    fn add(&mut self, found: Found) {
-        if let (Some(Item::Root(last)), Drawn::Around(next), true) =
-            (self.items.last_mut(), &found.drawn, found.joined)
-            && let Drawn::Around(path) = &mut last.drawn
-        {
-            path.append(next);
-            return;
-        }
-        self.items.push(Item::Root(Box::new(found)));
-    }
-
-    /// Adds what is seen of an element that stays as it is.
-    fn add_clipped(&mut self, node: &Node, pen: bool) {
+    /// What is seen of an element that stays as it is.
+    fn clipped(&self, node: &Node, areas: bool, pen: bool) -> Option<Found> {
         let object = &self.graph.objects()[node.object];
-        let areas = self.window.areas;
         let outline = &self.graph.base_elements()[object.base_element];
         let (bits, radius) = (self.constants.bits(), self.half.length());
         let clipped = object
             .visible
             .then(|| clip::clipped(outline, &node.map, bits, radius));
         match clipped.flatten() {
-            Some(clip::Clipped { frame, outline }) => {
-                self.add(Found::of(
-                    node,
-                    frame,
-                    areas && pen,
-                    Drawn::Clipped(outline),
-                ));
-            }
-            None if areas => self.lead_around(node, pen),
-            None => {}
+            Some(clip::Clipped { frame, outline }) => Some(Found::of(
+                node,
+                frame,
+                areas && pen,
+                Drawn::Clipped(outline),
+            )),
+            None if areas => Some(self.around(node, pen)),
+            None => None,
         }
     }
 
-    /// Adds a way from the start of an element that is not seen to its end.
-    fn lead_around(&mut self, node: &Node, pen: bool) {
+    /// A way from the start of an element that is not seen to its end.
+    fn around(&self, node: &Node, pen: bool) -> Found {
         let Fixed { axes, origin } = &node.map;
         let end = [&origin[0] + &axes[0][0], &origin[1] + &axes[0][1]];
         let mut ends = [origin.clone(), end];
@@ -256,7 +218,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
         let mut path = Path::new(&ends[0], self.half.length());
         path.add(ends.to_vec());
-        self.add(Found::of(node, Frame::UNIT, pen, Drawn::Around(path)));
+        Found::of(node, Frame::UNIT, pen, Drawn::Around(path))
     }
 
     fn look(&self, node: &Node) -> Look {
@@ -266,16 +228,17 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
         let pixel = pixel(exponent);
         let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis].map(|axis| axis.length() * pixel);
-        if x.max(y) * self.reaches[node.object] <= self.largest() {
+        let length = x.max(y);
+        if length < self.window.shortest || length * self.reaches[node.object] <= self.largest() {
             return Look::Small(scaled(&map, pixel));
         }
         Look::Large
     }
 
     /// How large roots are at most, in pixels. Where ways lead around the window, they must come to the
-    /// very ends of the roots.
+    /// very ends of the roots; and what is seeded in one place by many is told only above them.
     fn largest(&self) -> f64 {
-        if self.window.areas {
+        if self.window.areas || self.graph.seeds {
             self.half.length()
         } else {
             LARGEST
@@ -296,10 +259,17 @@ impl<'a, 'c> Descent<'a, 'c> {
         middle.distance(nearest) > reach * (1.0 + DOUBT) + doubt
     }
 
-    /// Puts what replaces a node into its place; tells whether what comes next can go on there.
-    fn replace(&mut self, node: &Node, mut pen: bool) -> Result<bool, ZoomError> {
+    /// Puts what replaces a node into its place, and what it seeds behind all fractals; tells whether
+    /// what comes next can go on there.
+    fn replace(
+        &mut self,
+        node: &Node,
+        areas: bool,
+        pen: bool,
+        line: &mut Line,
+    ) -> Result<bool, ZoomError> {
         let moment = Moment {
-            born: 0,
+            born: node.born,
             level: node.level,
             rank: 0,
         };
@@ -315,60 +285,71 @@ impl<'a, 'c> Descent<'a, 'c> {
                 return Err(ZoomError::TooShallow { depth: node.level });
             }
         };
-        let Chain {
-            instances,
-            meets_frame,
-        } = &production.body;
-        let reversed = node.standing.frame.direction.is_reversed();
-        let [mut first, mut end] = *meets_frame;
-        if reversed {
-            (first, end) = (end, first);
-        }
+        let Production { body, seeds } = &*production;
         let (map, exponent) = node.map.near();
         // Doubles subtract here what may be much larger than what is left.
         let doubt = doubt(&map);
-        let is_seen = |instance: &&Instance| {
+        let is_seen = |instance: &Instance| {
             let child = map * instance.frame.map;
-            self.window.areas || !self.is_outside(&child, exponent, instance.object, doubt)
+            !self.is_outside(&child, exponent, instance.object, doubt)
         };
-        let seen: Vec<&Instance> = instances.iter().filter(is_seen).collect();
+        let chains = || std::iter::once(body).chain(seeds.iter().map(|seed| &seed.chain));
+        // A closed chain may lead around the window, wherever it is.
+        let is_whole = [areas].into_iter();
+        let is_whole = is_whole.chain(chains().skip(1).map(|it| self.window.areas && it.is_ring()));
+        let wanted: Vec<&Instance> = chains()
+            .zip(is_whole)
+            .flat_map(|(chain, is_whole)| {
+                let instances = chain.instances.iter();
+                instances.filter(move |instance| is_whole || is_seen(instance))
+            })
+            .collect();
         let parent = Parent {
             standing: &node.standing,
             object: node.object,
             moment,
             bits: node.map.bits() + SPARE,
         };
-        let maps = self.constants.children(parent, &seen);
-        let mut made = seen.into_iter().zip(maps).peekable();
-        let mut children: Vec<Option<Node>> = Vec::with_capacity(instances.len());
+        let maps = self.constants.children(parent, &wanted);
+        self.spend(&node.map, wanted.len())?;
+        let mut made = wanted.into_iter().zip(maps).peekable();
         let bits = self.constants.bits();
         let are_similar = !self.graph.is_affine();
-        for instance in instances {
-            let next = made.next_if(|(next, _)| std::ptr::eq(*next, instance));
-            children.push(next.map(|(_, map)| Node {
-                standing: node.standing.child(self.graph, instance),
-                object: instance.object,
-                level: node.level + 1,
-                map: node.map.after(&map, bits, are_similar),
-                joined: true,
-            }));
+        let mut children = |chain: &Chain, born: u32| -> Vec<Option<Node>> {
+            let child = |instance: &Instance| {
+                let next = made.next_if(|(next, _)| std::ptr::eq(*next, instance));
+                next.map(|(_, map)| Node {
+                    standing: node.standing.child(self.graph, instance),
+                    object: instance.object,
+                    level: node.level + 1,
+                    born,
+                    map: node.map.after(&map, bits, are_similar),
+                    joined: true,
+                })
+            };
+            chain.instances.iter().map(child).collect()
+        };
+        let is_reversed = node.standing.frame.direction.is_reversed();
+        let [mut first, mut end] = body.meets_frame;
+        if is_reversed {
+            (first, end) = (end, first);
         }
-        self.spend(&node.map, children.iter().flatten().count())?;
-        pen &= first;
-        let count = children.len();
-        for turn in 0..count {
-            let listed = if reversed { count - 1 - turn } else { turn };
-            if turn > 0 {
-                let link = if reversed { listed + 1 } else { listed };
-                pen &= instances[link].joined;
+        let count = body.instances.len();
+        let pen = line.string(body, children(body, node.born), is_reversed, pen && first);
+        for Seed { chain, .. } in seeds {
+            let born = node.level + 1;
+            let mut seed = Line {
+                born,
+                is_ring: chain.is_ring(),
+                items: Vec::new(),
+            };
+            let pen = seed.string(chain, children(chain, born), is_reversed, seed.is_ring);
+            if !pen {
+                seed.open();
             }
-            match children[listed].take() {
-                Some(mut child) => {
-                    child.joined = pen;
-                    self.items.push(Item::Node(Box::new(child)));
-                    pen = true;
-                }
-                None => pen = false,
+            if !seed.items.is_empty() {
+                line.items.push(Item::Seed(self.lines.len()));
+                self.lines.push(seed);
             }
         }
         Ok(pen && end && count > 0)
@@ -382,57 +363,6 @@ impl<'a, 'c> Descent<'a, 'c> {
             return Err(ZoomError::TooLong);
         }
         Ok(())
-    }
-
-    /// The graph that starts from the roots.
-    pub(super) fn zoom(self) -> Result<Zoom, ZoomError> {
-        let mut graph = self.graph.clone();
-        let mut base_elements = graph.base_elements().to_vec();
-        let mut chain = Chain::default();
-        let mut roots = Vec::new();
-        let mut deepest = 0;
-        let mut behaviour = graph.behaviours().count();
-        let position = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-        for item in self.items {
-            let Item::Root(found) = item else { continue };
-            let parts = match found.drawn {
-                Drawn::Object => vec![(found.frame, None)],
-                Drawn::Clipped(outline) => vec![(found.frame, Some(outline))],
-                Drawn::Around(path) => {
-                    let ways = path.ways().into_iter();
-                    ways.map(|way| (way.frame, Some(way.outline))).collect()
-                }
-            };
-            for (number, (frame, drawn)) in parts.into_iter().enumerate() {
-                let mut object = found.object;
-                if let Some(outline) = drawn {
-                    if self.window.relative_stroke > 0.0 {
-                        return Err(ZoomError::WideStroke);
-                    }
-                    let mut of = graph.objects()[object].clone();
-                    of.base_element = base_elements.len();
-                    of.behaviour = behaviour;
-                    of.replacement = Replacement::Kept;
-                    base_elements.push(outline);
-                    behaviour += 1;
-                    object = graph.objects().len();
-                    graph.objects.push(of);
-                }
-                chain.instances.push(Instance {
-                    frame,
-                    length: frame.stretch(),
-                    joined: found.joined || number > 0,
-                    position: position(roots.len()),
-                    object,
-                });
-                deepest = deepest.max(found.root.level);
-                roots.push(found.root);
-            }
-        }
-        graph.base_elements = base_elements.into();
-        graph.initiators = vec![chain];
-        graph.roots = roots.into();
-        Ok(Zoom { graph, deepest })
     }
 }
 

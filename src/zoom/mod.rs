@@ -21,8 +21,12 @@
 //!
 //! # What is the same as everywhere
 //!
-//! A root carries the step of its birth, its path, its length and its tints: draws, conditions and
-//! colours see what they would see if everything were drawn. What stays infertile and is larger than
+//! A root carries the step of its birth, its path, its length and its tints, and a fractal the step of
+//! its own birth: draws, conditions and colours see what they would see if everything were drawn. Seeds
+//! are followed as children are, each in a fractal of its own; the graph keeps which of them was seeded
+//! by which, when and where, so that fractals come in the order of everywhere. Only their numbers are not
+//! told, for those far from the window are not counted. Where many instances of one object stand in
+//! one place, that of the oldest fractal stands for all. What stays infertile and is larger than
 //! all that is seen, a trunk or a condensation set, is clipped in long numbers; where it is clipped, it
 //! runs along a circle about the window, so that what it encloses stays encircled.
 
@@ -33,7 +37,9 @@ mod constants;
 mod descent;
 mod factor;
 mod fixed;
+mod items;
 mod merge;
+mod roots;
 
 pub use address::{Address, AddressError};
 pub use factor::{Factor, FactorError};
@@ -76,6 +82,8 @@ pub struct Window {
     /// Whether what closed chains enclose is seen, so that what of them lies elsewhere has to lead around
     /// the window.
     pub areas: bool,
+    /// Elements shorter than so many pixels are not replaced, and seed nothing.
+    pub shortest: f64,
     /// How much larger everything is.
     pub factor: Factor,
     /// What lies in the middle.
@@ -106,25 +114,33 @@ pub struct Zoom {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ZoomError {
     /// There is no limit set, and so no point to zoom into.
-    #[error("there is nothing to zoom into without end: {0}")]
+    #[error(
+        "there is nothing to zoom into without end: {0}; --view X,Y,W,H draws a part of a step"
+    )]
     NoLimit(NoLimit),
     /// What becomes of an element depends on what stands before it.
     #[error(
         "what becomes of an element depends on the number of all those before it, and those far from \
-         the window are not grown"
+         the window are not grown; --view X,Y,W,H draws a part of a step"
     )]
     CountsIndex,
     /// Every number of steps of an L-system is grown out of an initiator of its own.
-    #[error("there is nothing to zoom into without end: every step of it starts anew")]
+    #[error(
+        "there is nothing to zoom into without end: every step of it starts anew; --view X,Y,W,H draws \
+         a part of a step"
+    )]
     StartsAnew,
     /// Points depend on the index of what is replaced.
-    #[error("where its elements stand depends on their index, which is not told far down")]
+    #[error(
+        "where its elements stand depends on their index, which is not told far down; --view X,Y,W,H \
+         draws a part of a step"
+    )]
     Index,
-    /// Fractals are seeded.
-    #[error("it seeds new fractals, whose order and ages are not told far down")]
-    Seeds,
     /// The graph does not tell how far what becomes of elements reaches.
-    #[error("it is not known how far what becomes of its elements reaches")]
+    #[error(
+        "it is not known how far what becomes of its elements reaches; --view X,Y,W,H draws a part of a \
+         step"
+    )]
     NoReach,
     /// An address leads to an element that is not there.
     #[error(
@@ -168,13 +184,15 @@ pub enum ZoomError {
         most: f64,
     },
     /// Too much overlaps.
-    #[error("more than {limit} parts of it overlap in the window")]
+    #[error("more than {limit} parts of it overlap in the window; less zoom may do")]
     TooMany {
         /// How many may.
         limit: usize,
     },
     /// The numbers are too long for so many.
-    #[error("it would take too long: too many parts of it overlap on the way into the window")]
+    #[error(
+        "it would take too long: too many parts of it overlap on the way into the window; less zoom may do"
+    )]
     TooLong,
     /// Strokes are wider than the window.
     #[error(
@@ -231,9 +249,7 @@ pub fn zoom(
     let bits = lead as usize + GRAIN + SPARE;
     let mut constants = constants::Constants::new(source, graph, bits)?;
     let centre = centre::centre(graph, growth, window, &mut constants)?;
-    let mut descent = descent::Descent::new(graph, growth, window, &reaches, &mut constants);
-    descent.run(&centre)?;
-    descent.zoom()
+    descent::Descent::new(graph, growth, window, &reaches, &mut constants).run(&centre)
 }
 
 /// Whether there may be points to zoom into.
@@ -249,9 +265,6 @@ pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError>
     }
     if !graph.shrinks() {
         return Err(ZoomError::NoLimit(NoLimit::DoesNotShrink));
-    }
-    if graph.seeds {
-        return Err(ZoomError::Seeds);
     }
     let rule = match &graph.evaluated {
         Some(Evaluated::Rule(rule)) => Some(rule),

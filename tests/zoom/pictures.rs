@@ -10,6 +10,7 @@ use kfrac::render::{self, Detail, Format, Look, Options, Size};
 use kfrac::style::{ColorBy, Colour, Style, View, Width};
 use png::Transformations;
 
+use super::seeds::ISLANDS;
 use super::{library, point, read, source};
 
 type Rule = (Document, Model);
@@ -141,6 +142,17 @@ fn large_infertile_elements_are_clipped() {
     }
 }
 
+/// The same of a square window.
+fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
+    Options {
+        view: View {
+            window: Some([x - side / 2.0, y - side / 2.0, side, side]),
+            margin: 0.0,
+        },
+        ..options.clone()
+    }
+}
+
 /// A closed chain encloses in a zoom what it does in a window of the whole.
 #[test]
 fn areas_are_those_of_the_whole() {
@@ -154,13 +166,7 @@ fn areas_are_those_of_the_whole() {
         },
         ..options(&rule)
     };
-    let view = |[x, y, side]: [f64; 3]| Options {
-        view: View {
-            window: Some([x - side / 2.0, y - side / 2.0, side, side]),
-            margin: 0.0,
-        },
-        ..base.clone()
-    };
+    let view = |window| within(&base, window);
     for (factor, at) in [
         ("5", p),
         ("1e3", p),
@@ -176,6 +182,53 @@ fn areas_are_those_of_the_whole() {
         let plain = values(plain);
         let filled = plain.iter().filter(|value| **value < 128).count();
         assert!(filled > 8_000, "{factor}: {filled}");
+        assert!(
+            apart(&shown, &plain) <= 4,
+            "{factor}: {}",
+            apart(&shown, &plain)
+        );
+    }
+}
+
+/// Fractals that are seeded are coloured by their ages and filled as in a window of the whole, in the same
+/// order.
+#[test]
+fn seeds_are_drawn_as_in_the_whole() {
+    let square = library("self-seeding-square");
+    let islands = read(ISLANDS);
+    let filled = |rule: &Rule, width, color_by| Style {
+        fill: Some(Colour::grey(120)),
+        width: Width::Pixels(width),
+        color_by,
+        ..options(rule).style
+    };
+    let aged = Style {
+        color_by: ColorBy::Age,
+        width: Width::Pixels(4.0),
+        ..options(&square).style
+    };
+    let plain_islands = filled(&islands, 1.0, ColorBy::None);
+    let islands_by_step = filled(&islands, 3.0, ColorBy::Step);
+    for (rule, style, factor, at) in [
+        (&square, aged.clone(), "4", [0.3217, 1.1113]),
+        (&square, aged, "2e1", [0.3217, 1.1113]),
+        (&islands, plain_islands, "4", [0.5127, 0.7321]),
+        (&islands, islands_by_step, "2e1", [0.5127, 0.7321]),
+    ] {
+        let graph = rule.1.compile(64).unwrap();
+        let base = Options {
+            style,
+            ..options(rule)
+        };
+        let side = 2.0 / factor.parse::<f64>().unwrap();
+        let mut plain = Vec::new();
+        let window = within(&base, [at[0], at[1], side]);
+        render::write(&graph, &Growth::steps(64), &window, &mut plain).unwrap();
+        let address = format!("{},{}", at[0], at[1]);
+        let shown = zoomed(rule, &within(&base, [0.0, 0.0, 2.0]), factor, &address);
+        let plain = values(plain);
+        let paper = plain.iter().filter(|value| **value == 255).count();
+        assert!((2_000..38_000).contains(&paper), "{factor}: {paper}");
         assert!(
             apart(&shown, &plain) <= 4,
             "{factor}: {}",

@@ -342,7 +342,7 @@ impl Leveller<'_> {
             origins: 0,
             objects,
             initiators,
-            roots: Arc::new([]),
+            roots: Arc::default(),
             depth: Some(steps),
             regular: true,
             counts_index: false,

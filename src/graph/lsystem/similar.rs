@@ -413,7 +413,7 @@ impl Edges {
             origins: 0,
             objects: made,
             initiators: vec![start.chain(&objects)?],
-            roots: Arc::new([]),
+            roots: Arc::default(),
             depth: None,
             regular: true,
             counts_index: false,

@@ -1,0 +1,132 @@
+//! The graph that starts from what a descent has found.
+
+use std::collections::VecDeque;
+
+use crate::graph::{Chain, Graph, Instance, Replacement, Roots, Sown};
+use crate::rule::BaseElement;
+
+use super::items::{Drawn, Found, Item, Line};
+use super::{Window, Zoom, ZoomError};
+
+/// A graph in the making.
+struct Rooted {
+    graph: Graph,
+    base_elements: Vec<BaseElement>,
+    /// How many behaviours there are.
+    behaviours: usize,
+    roots: Roots,
+    deepest: u32,
+}
+
+/// What comes of the roots in fractals, each of which stands after the one that seeded it.
+pub(super) fn zoom(
+    graph: &Graph,
+    window: &Window,
+    mut lines: Vec<Line>,
+) -> Result<Zoom, ZoomError> {
+    let mut rooted = Rooted {
+        base_elements: graph.base_elements().to_vec(),
+        behaviours: graph.behaviours().count(),
+        graph: graph.clone(),
+        roots: Roots::default(),
+        deepest: 0,
+    };
+    let mut shows = vec![false; lines.len()];
+    for (number, line) in lines.iter().enumerate().rev() {
+        shows[number] = line.items.iter().any(|item| match item {
+            Item::Node(_) => false,
+            Item::Root(_) => true,
+            Item::Seed(seed) => shows[*seed],
+        });
+    }
+    let mut chains = Vec::new();
+    // Fractals, the place of that which has seeded them, and how many roots come before them.
+    let mut open = VecDeque::from([(0, 0, 0)]);
+    while let Some((number, by, before)) = open.pop_front() {
+        let Line { born, items, .. } = &mut lines[number];
+        let mut chain = Chain::default();
+        let mut seeds = Vec::new();
+        for item in std::mem::take(items) {
+            match item {
+                Item::Node(_) => {}
+                Item::Root(found) => rooted.add(*found, window, &mut chain)?,
+                Item::Seed(seed) if shows[seed] => seeds.push((seed, rooted.position())),
+                Item::Seed(_) => {}
+            }
+        }
+        let born = *born;
+        // Those of one step are in order.
+        seeds.sort_by_key(|(seed, _)| lines[*seed].born);
+        let place = chains.len();
+        open.extend(
+            seeds
+                .into_iter()
+                .map(|(seed, before)| (seed, place, before)),
+        );
+        chains.push(Sown {
+            by,
+            before,
+            born,
+            chain,
+        });
+    }
+    let mut graph = rooted.graph;
+    graph.base_elements = rooted.base_elements.into();
+    graph.initiators = vec![chains.remove(0).chain];
+    rooted.roots.sown = chains;
+    graph.roots = rooted.roots.into();
+    Ok(Zoom {
+        graph,
+        deepest: rooted.deepest,
+    })
+}
+
+impl Rooted {
+    /// The position of the next root.
+    fn position(&self) -> u32 {
+        u32::try_from(self.roots.elements.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Adds a root to a chain.
+    fn add(&mut self, found: Found, window: &Window, chain: &mut Chain) -> Result<(), ZoomError> {
+        let parts = match found.drawn {
+            Drawn::Object => vec![(found.frame, None)],
+            Drawn::Clipped(outline) => vec![(found.frame, Some(outline))],
+            Drawn::Around(path) => {
+                let ways = path.ways().into_iter();
+                ways.map(|way| (way.frame, Some(way.outline))).collect()
+            }
+        };
+        for (number, (frame, drawn)) in parts.into_iter().enumerate() {
+            let mut object = found.object;
+            if let Some(outline) = drawn {
+                if window.relative_stroke > 0.0 {
+                    return Err(ZoomError::WideStroke);
+                }
+                object = self.drawn(object, outline);
+            }
+            chain.instances.push(Instance {
+                frame,
+                length: frame.stretch(),
+                joined: found.joined || number > 0,
+                position: self.position(),
+                object,
+            });
+            self.deepest = self.deepest.max(found.root.level);
+            self.roots.elements.push(found.root);
+        }
+        Ok(())
+    }
+
+    /// An object that is drawn otherwise, and stays as it is.
+    fn drawn(&mut self, object: usize, outline: BaseElement) -> usize {
+        let mut of = self.graph.objects()[object].clone();
+        of.base_element = self.base_elements.len();
+        of.behaviour = self.behaviours;
+        of.replacement = Replacement::Kept;
+        self.base_elements.push(outline);
+        self.behaviours += 1;
+        self.graph.objects.push(of);
+        self.graph.objects.len() - 1
+    }
+}
