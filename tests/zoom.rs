@@ -99,6 +99,14 @@ impl Seen {
         seen
     }
 
+    /// Where it is not known how far things reach, they are taken to reach far.
+    fn within_likely_reaches(mut self) -> Self {
+        for reach in &mut self.reaches {
+            *reach = reach.min(100.0);
+        }
+        self
+    }
+
     fn stretch(&self, map: &DAffine2) -> f64 {
         let map = self.place.matrix2 * map.matrix2;
         map.x_axis.length().max(map.y_axis.length())

@@ -63,14 +63,20 @@ impl Interval {
 
     /// Part `number` of so many that are equally wide.
     #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "numbers of parts are small")]
     pub fn part(self, number: usize, count: usize) -> Self {
+        Self::along(self.low, self.high, number, count)
+    }
+
+    /// The same of the way from one number to another, whichever is larger.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "numbers of parts are small")]
+    pub fn along(from: f64, to: f64, number: usize, count: usize) -> Self {
         let at = |number: usize| match number as f64 / count as f64 {
-            0.0 => self.low,
-            1.0 => self.high,
-            share => self.low * (1.0 - share) + self.high * share,
+            0.0 => from,
+            1.0 => to,
+            share => from * (1.0 - share) + to * share,
         };
-        Self::new(at(number), at(number + 1))
+        Self::of(&[at(number), at(number + 1)])
     }
 
     /// The largest distance from 0.

@@ -22,6 +22,7 @@ mod error;
 mod forecast;
 mod ifs;
 mod instancing;
+mod likely;
 mod limit;
 mod lsystem;
 mod no_limit;

@@ -16,12 +16,12 @@ const TOLERANCE: f64 = 1e-3;
 const MOST_SWEEPS: usize = 64;
 
 /// An object that may come of another one.
-struct Edge {
-    object: usize,
+pub(super) struct Edge {
+    pub(super) object: usize,
     /// The most that its middle lies from that of the other one's frame,
-    away: f64,
+    pub(super) away: f64,
     /// and that it is long, as multiples of the other one's length.
-    length: f64,
+    pub(super) length: f64,
 }
 
 impl Graph {
@@ -40,7 +40,7 @@ impl Graph {
     #[must_use]
     pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
-        let edges = self.edges();
+        let edges = self.edges(f64::INFINITY);
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let ratio = self.longest_edge(&edges);
         let spread = edges.iter().flatten().map(|edge| {
@@ -116,11 +116,12 @@ impl Graph {
                 .map(|edge| (edge.object, edge.length))
                 .collect()
         };
-        self.edges().into_iter().map(of).collect()
+        self.edges(f64::INFINITY).into_iter().map(of).collect()
     }
 
-    /// What may come of every object.
-    fn edges(&self) -> Vec<Vec<Edge>> {
+    /// What may come of every object: as far and as long as it may be or, of a finite power, as that of
+    /// the mean of the powers is (see [`Generator::means`](crate::rule::Generator)).
+    pub(super) fn edges(&self, power: f64) -> Vec<Vec<Edge>> {
         let mut extents = BTreeMap::new();
         let edges = |object: usize| {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
@@ -137,8 +138,11 @@ impl Graph {
                 let extents = extents
                     .entry(generator)
                     .or_insert_with(|| match self.evaluated() {
-                        Evaluated::Rule(rule) => {
+                        Evaluated::Rule(rule) if power.is_infinite() => {
                             rule.generators()[generator].extents(&self.moments())
+                        }
+                        Evaluated::Rule(rule) => {
+                            rule.generators()[generator].means(power, &self.moments())
                         }
                         Evaluated::Words(words) => words.extents(generator).to_vec(),
                     });
@@ -213,7 +217,7 @@ impl Graph {
         }
         let start = self.initiator(steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
-        let edges = self.edges();
+        let edges = self.edges(f64::INFINITY);
         longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
     }
 
@@ -224,7 +228,7 @@ impl Graph {
         if self.resets().contains(&true) {
             return f64::INFINITY;
         }
-        self.longest_edge(&self.edges())
+        self.longest_edge(&self.edges(f64::INFINITY))
     }
 
     /// The largest ratio of what may be fertile.

@@ -59,6 +59,18 @@ fn hash_of_name(name: &str) -> u64 {
 /// the numbers that it is made of have 53 bits.
 const MOST_DEVIATIONS: f64 = 8.572;
 
+/// How likely it is that a normal draw lies in an interval, in standard deviations from its mean.
+fn normal(interval: Interval) -> f64 {
+    let beyond = |deviations: f64| libm::erfc(deviations / std::f64::consts::SQRT_2) / 2.0;
+    let Interval { low, high } = interval;
+    // Far out, differences of what lies beyond keep their digits.
+    if low + high < 0.0 {
+        beyond(-high) - beyond(-low)
+    } else {
+        beyond(low) - beyond(high)
+    }
+}
+
 /// A number from [0, 1) with 53 random bits.
 #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
 fn unit(stream: &mut Pcg64Mcg) -> f64 {
@@ -134,23 +146,36 @@ impl Variable {
     }
 
     /// All that may be drawn where the slots lie within these, give or take rounding: in so many
-    /// parts, or as one.
-    pub(super) fn parts(&self, slots: &[Interval], count: usize) -> Vec<Interval> {
-        let whole = match &self.distribution {
-            Distribution::Uniform(low, high) => low.range(slots).or(high.range(slots)),
+    /// parts, or as one. With each goes how likely it is that what is drawn is of that part.
+    #[expect(clippy::cast_precision_loss, reason = "numbers of parts are small")]
+    pub(super) fn parts(&self, slots: &[Interval], count: usize) -> Vec<(Interval, f64)> {
+        let share = 1.0 / count as f64;
+        match &self.distribution {
+            Distribution::Uniform(low, high) => {
+                let (low, high) = (low.range(slots), high.range(slots));
+                let part = |number| {
+                    let least = Interval::along(low.low, high.low, number, count);
+                    let most = Interval::along(low.high, high.high, number, count);
+                    (least.or(most), share)
+                };
+                (0..count).map(part).collect()
+            }
             Distribution::Normal(mean, deviation) => {
-                let far = deviation.range(slots).magnitude() * MOST_DEVIATIONS;
-                mean.range(slots) + Interval::new(-far, far)
+                let (mean, deviation) = (mean.range(slots), deviation.range(slots));
+                let part = |number| {
+                    let part = Interval::new(-MOST_DEVIATIONS, MOST_DEVIATIONS).part(number, count);
+                    (mean + deviation * part, normal(part))
+                };
+                (0..count).map(part).collect()
             }
             Distribution::Choice(values) => {
                 let ranges = values.iter().map(|value| value.range(slots));
                 if count == values.len() {
-                    return ranges.collect();
+                    return ranges.map(|range| (range, share)).collect();
                 }
-                return vec![ranges.reduce(Interval::or).unwrap_or(Interval::ALL)];
+                vec![(ranges.reduce(Interval::or).unwrap_or(Interval::ALL), 1.0)]
             }
-        };
-        (0..count).map(|number| whole.part(number, count)).collect()
+        }
     }
 
     /// The value that belongs to a path.

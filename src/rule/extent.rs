@@ -30,17 +30,34 @@ impl Generator {
     /// Interval arithmetic, on parts of the draws' ranges: the parts are what keeps in mind that
     /// coordinates are drawn together.
     pub(crate) fn extents(&self, moment: &[Interval; 4]) -> Vec<Extent> {
-        let extent = |element| {
-            let mut cover = Cover {
-                generator: self,
-                element,
-                parts: self.parts_for(element),
-                extent: Extent::default(),
-            };
-            cover.go_on(&mut moment.to_vec());
-            cover.extent
-        };
+        let extent = |element| self.cover(element, f64::INFINITY, moment);
         self.elements().map(extent).collect()
+    }
+
+    /// The same on average, of a power: of numbers x no less than the root of that power of the mean of
+    /// its powers of x.
+    pub(crate) fn means(&self, power: f64, moment: &[Interval; 4]) -> Vec<Extent> {
+        let mean = |element| {
+            let Extent { away, length } = self.cover(element, power, moment);
+            let root = |sum| libm::pow(sum, 1.0 / power);
+            Extent {
+                away: root(away),
+                length: root(length),
+            }
+        };
+        self.elements().map(mean).collect()
+    }
+
+    fn cover(&self, element: &ListedElement, power: f64, moment: &[Interval; 4]) -> Extent {
+        let mut cover = Cover {
+            generator: self,
+            element,
+            parts: self.parts_for(element),
+            power,
+            extent: Extent::default(),
+        };
+        cover.go_on(&mut moment.to_vec(), 1.0);
+        cover.extent
     }
 
     /// Into how many parts the ranges of the variables are cut, one after another: of those that the
@@ -82,24 +99,26 @@ struct Cover<'g> {
     generator: &'g Generator,
     element: &'g ListedElement,
     parts: Vec<usize>,
+    /// Whether the sums of powers are looked for, or, if that is infinite, the most.
+    power: f64,
     extent: Extent,
 }
 
 impl Cover<'_> {
-    /// Goes on to the parts of the next variable's range.
-    fn go_on(&mut self, slots: &mut Vec<Interval>) {
+    /// Goes on to the parts of the next variable's range, as likely as it is to have come here.
+    fn go_on(&mut self, slots: &mut Vec<Interval>, likely: f64) {
         let number = slots.len() - Moment::NAMES.len();
         let Some(variable) = self.generator.variables.get(number) else {
-            return self.add(slots);
+            return self.add(slots, likely);
         };
-        for part in variable.parts(slots, self.parts[number]) {
+        for (part, share) in variable.parts(slots, self.parts[number]) {
             slots.push(part);
-            self.go_on(slots);
+            self.go_on(slots, likely * share);
             slots.pop();
         }
     }
 
-    fn add(&mut self, slots: &[Interval]) {
+    fn add(&mut self, slots: &[Interval], likely: f64) {
         let [from, to] = [self.element.from, self.element.to].map(|number| {
             let moves = self.generator.moves.iter();
             let moves = moves.filter(|moving| moving.points.contains(&number));
@@ -107,9 +126,18 @@ impl Cover<'_> {
             moves.fold(written, |place, moving| moving.image(place, slots))
         });
         let middle = [Interval::point(1.0), Interval::point(0.0)];
-        let Extent { away, length } = &mut self.extent;
-        *away = away.max(far(minus(plus(from, to), middle)) / 2.0);
-        *length = length.max(far(minus(to, from)));
+        let away = far(minus(plus(from, to), middle)) / 2.0;
+        let length = far(minus(to, from));
+        let power = self.power;
+        let add = |sum: &mut f64, value: f64| {
+            if power.is_infinite() {
+                *sum = sum.max(value);
+            } else {
+                *sum += likely * libm::pow(value, power);
+            }
+        };
+        add(&mut self.extent.away, away);
+        add(&mut self.extent.length, length);
     }
 }
 

@@ -19,6 +19,11 @@
 //! thousandth of a pixel. Lines of an L-system that rewrites edges are sums of exact turns; the factors of
 //! its steps are the doubles that they come to.
 //!
+//! # What is left out
+//!
+//! An instance is left out where all that becomes of it keeps away from the window: surely so, or where
+//! draws have no limits, such as normal ones, with a chance of error below 2⁻⁶⁴ each.
+//!
 //! # What is the same as everywhere
 //!
 //! A root carries the step of its birth, its path, its length and its tints, and a fractal the step of
@@ -49,7 +54,7 @@ use std::sync::atomic::AtomicBool;
 use crate::document::{Document, Setting};
 use crate::expression::Dependence;
 use crate::geometry::DVec2;
-use crate::graph::{CompileError, Evaluated, Graph, NoLimit};
+use crate::graph::{CompileError, Evaluated, Graph, NoLimit, Object};
 use crate::model::Model;
 use crate::rule::{Generator, Moment};
 
@@ -232,9 +237,14 @@ pub fn zoom(
     growth: &Growth<'_>,
     window: &Window,
 ) -> Result<Zoom, ZoomError> {
-    let reaches = graph.reaches(|object| graph.outline_radius(object) + window.relative_stroke);
     check(source, graph)?;
-    if reaches.iter().any(|reach| !reach.is_finite()) {
+    let own = |object: &Object| graph.outline_radius(object) + window.relative_stroke;
+    let is_unknown = |reaches: &[f64]| reaches.iter().any(|reach| !reach.is_finite());
+    let mut reaches = graph.reaches(own);
+    if is_unknown(&reaches) {
+        reaches = graph.likely_reaches(own);
+    }
+    if is_unknown(&reaches) {
         return Err(ZoomError::NoReach);
     }
     if let Address::Point(point) = window.at {

@@ -42,7 +42,7 @@ struct Ordered {
 impl Ordered {
     fn of(graph: &Graph, growth: &kfrac::grow::Growth<'_>, place: DAffine2, shortest: f64) -> Self {
         let mut ordered = Self {
-            seen: Seen::new(graph, place, shortest),
+            seen: Seen::new(graph, place, shortest).within_likely_reaches(),
             steps: growth.steps,
             born: 0,
             all: Vec::new(),
@@ -206,15 +206,13 @@ fn shallow_zooms_are_windows_of_the_whole() {
     }
 }
 
-/// The same about ends of elements, which are told by their coordinates, of rules that draw.
-#[test]
-fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
-    let islands = read(ISLANDS);
-    let graph = islands.1.compile(64).unwrap();
+/// The same about ends of elements of fractals that have been seeded, which are told by their coordinates.
+fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
+    let graph = rule.1.compile(64).unwrap();
     for seed in 0..3 {
         let growth = kfrac::grow::Growth {
             seed,
-            ..kfrac::grow::Growth::steps(7)
+            ..kfrac::grow::Growth::steps(steps)
         };
         let grown = Ordered::of(&graph, &growth, DAffine2::IDENTITY, 0.0).all;
         let mut later: Vec<_> = grown.iter().filter(|(_, born)| *born >= 2).collect();
@@ -223,11 +221,22 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
         for (element, _) in [later[0], later[later.len() / 2], later[later.len() - 1]] {
             let point = element.frame.map.translation;
             let at = format!("{},{}", point.x, point.y);
-            for factor in ["2e1", "2e3", "1e5"] {
-                assert_window(&islands, seed, point, &at, factor);
+            for factor in factors {
+                assert_window(rule, seed, point, &at, factor);
             }
         }
     }
+}
+
+#[test]
+fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
+    assert_windows(&read(ISLANDS), 7, &["2e1", "2e3", "1e5"]);
+}
+
+/// Coasts of the library are drawn without limits, but do not reach far.
+#[test]
+fn what_is_improbable_is_not_looked_for() {
+    assert_windows(&library("archipelago"), 5, &["2e1", "1e3"]);
 }
 
 /// Of what is drawn, a deep zoom shows the middle of one that is less deep: draws, ages and order do not

@@ -1,0 +1,167 @@
+//! How far what becomes of an object is likely to reach, where draws may lead anywhere.
+
+use super::{Graph, Object, Replacement};
+
+/// Powers whose means are looked at.
+const POWERS: [f64; 5] = [8.0, 16.0, 24.0, 36.0, 54.0];
+
+/// Once in 2 to the power of this many objects, what becomes of one reaches farther.
+const NEVER: f64 = 64.0;
+
+/// So many times, at most, all means are brought up to date.
+const MOST_SWEEPS: usize = 200;
+
+/// Means that grow beyond this have no end.
+const MOST: f64 = 1e6;
+
+impl Graph {
+    /// As [`reaches`](Graph::reaches), where draws are not too improbable: the chance that what becomes
+    /// of an object reaches beyond the radius is below 2⁻⁶⁴. Infinite where the graph does not tell.
+    ///
+    /// With M(o) the radius of all that becomes of an object as it is drawn, a random number, and c the
+    /// objects in its place, M(o) ≤ max(own(o), away(c) + ratio(c) · M(c)), where M(c) does not depend on
+    /// what is drawn at o. For the norms ‖x‖ = E(x^q)^(1/q), with Minkowski's inequality,
+    /// ‖M(o)‖^q ≤ own(o)^q + Σ (‖away(c)‖ + ‖ratio(c)‖ · ‖M(c)‖)^q. Numbers that satisfy this instead of
+    /// the norms are no less than these; and by Markov's inequality M(o) is above t with a chance of
+    /// (‖M(o)‖ / t)^q at most.
+    pub(crate) fn likely_reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
+        let own: Vec<f64> = self.objects.iter().map(own).collect();
+        let mut reaches = vec![f64::INFINITY; own.len()];
+        if self.resets().contains(&true) {
+            return reaches;
+        }
+        for power in POWERS {
+            let Some(norms) = self.norms(&own, power) else {
+                continue;
+            };
+            let rare = libm::exp2(NEVER / power);
+            for (object, reach) in reaches.iter_mut().enumerate() {
+                let is_drawn = matches!(
+                    self.objects[object].replacement,
+                    Replacement::Fixed(_) | Replacement::Evaluated(_)
+                );
+                let likely = if is_drawn {
+                    norms[object] * rare
+                } else {
+                    own[object]
+                };
+                *reach = reach.min(likely);
+            }
+        }
+        reaches
+    }
+
+    /// No less than the norms of the radii; `None` where none are found.
+    fn norms(&self, own: &[f64], power: f64) -> Option<Vec<f64>> {
+        // Less than this is missing.
+        const TOLERANCE: f64 = 1e-3;
+        let edges = self.edges(power);
+        let next = |norms: &[f64], object: usize| {
+            let inner = edges[object].iter().map(|edge| {
+                let far = edge.away + edge.length * norms[edge.object];
+                libm::pow(far, power)
+            });
+            let sum = libm::pow(own[object], power) + inner.sum::<f64>();
+            libm::pow(sum, 1.0 / power)
+        };
+        let mut norms = own.to_vec();
+        for _ in 0..MOST_SWEEPS {
+            let mut grows = false;
+            for object in (0..own.len()).rev() {
+                let norm = next(&norms, object);
+                grows |= norm > norms[object] * (1.0 + TOLERANCE);
+                norms[object] = norms[object].max(norm);
+            }
+            if !norms.iter().all(|norm| *norm < MOST) {
+                return None;
+            }
+            if !grows {
+                let above: Vec<f64> = norms
+                    .iter()
+                    .map(|norm| norm * (1.0 + 20.0 * TOLERANCE))
+                    .collect();
+                let holds = (0..own.len()).all(|object| next(&above, object) <= above[object]);
+                return holds.then_some(above);
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::catalogue::Catalogue;
+    use crate::document::Document;
+    use crate::geometry::DVec2;
+    use crate::graph::{Graph, Production, Replacement};
+    use crate::grow::{Evaluator, Moment, Standing};
+
+    /// How far the ends of all that becomes of an element reach from its middle, down to a part of its
+    /// length.
+    fn reached(graph: &Graph, standing: &Standing, object: usize, level: u32) -> f64 {
+        let middle = standing.frame.map.transform_point2(graph.middle());
+        let mut evaluator = Evaluator::default();
+        let mut farthest: f64 = 0.0;
+        let mut open = vec![(*standing, object, level, level)];
+        while let Some((standing, object, born, level)) = open.pop() {
+            for end in standing.frame.ends() {
+                farthest = farthest.max(end.distance(middle));
+            }
+            if standing.frame.stretch() < 1e-2 {
+                continue;
+            }
+            let mut made = Production::default();
+            let production = match &graph.objects()[object].replacement {
+                Replacement::Fixed(production) => production,
+                Replacement::Evaluated(_) => {
+                    let moment = Moment {
+                        born,
+                        level,
+                        rank: 0,
+                    };
+                    let evaluated = evaluator.evaluate(graph, &standing, object, moment, &mut made);
+                    evaluated.unwrap();
+                    &made
+                }
+                _ => continue,
+            };
+            for (placement, instance) in production.placed_instances() {
+                let born = if placement.seeds() { level + 1 } else { born };
+                open.push((
+                    standing.child(graph, instance),
+                    instance.object,
+                    born,
+                    level + 1,
+                ));
+            }
+        }
+        farthest
+    }
+
+    #[test]
+    fn what_is_drawn_keeps_within_likely_reaches() {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.rule("archipelago").unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let graph = document.resolve(&[]).unwrap().0.compile(40).unwrap();
+        let own = |object: &_| graph.outline_radius(object);
+        assert!(graph.reaches(own).contains(&f64::INFINITY));
+        let reaches = graph.likely_reaches(own);
+        assert!(reaches.iter().all(|reach| *reach < 50.0), "{reaches:?}");
+        let mut farthest: f64 = 0.0;
+        let object = graph.initiator(0).instances[0].object;
+        for seed in 0..2_000 {
+            let mut standing = Standing::whole(seed);
+            standing.frame.map.translation = DVec2::new(0.5, 0.25);
+            let reached = reached(&graph, &standing, object, 0);
+            assert!(reached <= reaches[object], "{seed}: {reached}");
+            farthest = farthest.max(reached);
+        }
+        // They tell something.
+        assert!(
+            farthest > reaches[object] / 16.0,
+            "{farthest}, {}",
+            reaches[object]
+        );
+    }
+}
