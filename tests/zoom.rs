@@ -300,6 +300,10 @@ const AGES: &str = "initiator: segment\ngenerators:\n  \
                     b: [[0, 0], [1/2, 'if(odd(step), -1/5, -1/6)'], {to: [1, 0], direction: 2}]\n\
                     select: [{when: step % 4 == 2, use: b}, {use: a}]\n";
 
+/// Other points for every third element.
+const PLACES: &str = "initiator: segment\ngenerator:\n  \
+                      [[0, 0], ['if(i % 3 == 1, 1/3, 1/5)', '1/(3 + i % 3)'], {to: [3/5, '(i % 3)/7'], direction: 3}, [1, 0]]\n";
+
 /// A zoom that doubles can hold shows what everything shows there that is grown the plain way, with
 /// births, lengths and directions.
 #[test]
@@ -322,9 +326,11 @@ fn shallow_zooms_are_windows_of_the_whole() {
         ("blancmange", vec![0, 0, 1]),
         ("gasket-recursive", vec![0, 0, 1]),
         ("ages", vec![0, 1, 0]),
+        ("places", vec![0, 1, 0, 2]),
     ] {
         let rule = match name {
             "ages" => read(AGES),
+            "places" => read(PLACES),
             _ => library(name),
         };
         let graph = rule.1.compile(200).unwrap();
@@ -485,7 +491,6 @@ fn what_has_no_point_is_refused() {
         said(&library("meadow"), "10", "0.(0)"),
         ZoomError::NoLimit(NoLimit::Resets)
     ));
-    let by_index =
-        "initiator: segment\ngenerator: [[0, 0], ['if(odd(i), 1/3, 1/4)', 1/5], [1, 0]]\n";
-    assert_eq!(said(&read(by_index), "10", "0.(0)"), ZoomError::Index);
+    let by_index = "initiator: segment\ngenerator: [[0, 0], ['1/3 + 1/(9*i)', 1/5], [1, 0]]\n";
+    assert_eq!(said(&read(by_index), "10", "0.(0)"), ZoomError::CountsIndex);
 }

@@ -231,6 +231,7 @@ impl<'r> Compiler<'r> {
             tint: None,
             paint: None,
             thickness: None,
+            index: Self::index(&state, self.depends.modulus),
             behaviour,
             replacement: if class.fertile {
                 Replacement::Beyond
@@ -278,6 +279,11 @@ impl<'r> Compiler<'r> {
             objects[listed] = self.object(Class::of(element, origin), state)?;
         }
         Ok(objects)
+    }
+
+    /// The index of an element in a state, give or take a multiple of the modulus.
+    fn index(state: &State, modulus: u32) -> u32 {
+        state.preceding.iter().sum::<u32>() % modulus + 1
     }
 
     /// What the expressions see of an element in a state; `index` stands for all that are equal to
@@ -341,7 +347,7 @@ impl<'r> Compiler<'r> {
         }
         self.spend(0, self.conditions(class.generator))?;
         let modulus = self.depends.modulus;
-        let index = state.preceding.iter().sum::<u32>() % modulus + 1;
+        let index = Self::index(&state, modulus);
         let moment = Self::moment(&state, index);
         let candidates = self.candidates(class.generator, &moment);
         let body = State {

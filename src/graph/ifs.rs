@@ -259,6 +259,7 @@ impl<'s> Compiler<'s> {
             tint: None,
             paint: None,
             thickness: None,
+            index: 1,
             behaviour: 0,
             replacement: Replacement::Kept,
         }

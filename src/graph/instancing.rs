@@ -251,6 +251,7 @@ impl<'s> Compiler<'s> {
                 tint: instance.tint,
                 paint: None,
                 thickness: None,
+                index: 1,
                 behaviour: 0,
                 replacement: Replacement::Kept,
             });

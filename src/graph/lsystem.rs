@@ -182,6 +182,7 @@ impl<'s> Strings<'s> {
                 tint: None,
                 paint: colour.map(|index| palette.entry(index)),
                 thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),
+                index: 1,
                 behaviour: 0,
                 replacement: Replacement::Kept,
             });

@@ -67,6 +67,9 @@ pub struct Object {
     pub paint: Option<Colour>,
     /// What becomes of the widths of all that stands in its place.
     pub thickness: Option<Thickness>,
+    /// The index that expressions see of it, or another one that is the same to them: from 1; 1 where no
+    /// index is resolved.
+    pub(crate) index: u32,
     /// What it becomes: objects of one behaviour have the same replacements, however they look.
     pub(crate) behaviour: usize,
     /// What takes its place in the next step.

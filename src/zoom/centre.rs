@@ -68,7 +68,7 @@ pub(super) fn centre(
         let moment = Moment {
             born,
             level,
-            rank: 0,
+            rank: graph.objects()[object].index.into(),
         };
         let depth = level;
         let evaluated: Production;

@@ -271,7 +271,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let moment = Moment {
             born: node.born,
             level: node.level,
-            rank: 0,
+            rank: self.graph.objects()[node.object].index.into(),
         };
         let production = match &self.graph.objects()[node.object].replacement {
             Replacement::Fixed(production) => Arc::clone(production),

@@ -52,11 +52,9 @@ pub use factor::{Factor, FactorError};
 use std::sync::atomic::AtomicBool;
 
 use crate::document::{Document, Setting};
-use crate::expression::Dependence;
 use crate::geometry::DVec2;
-use crate::graph::{CompileError, Evaluated, Graph, NoLimit, Object};
+use crate::graph::{CompileError, Graph, NoLimit, Object};
 use crate::model::Model;
-use crate::rule::{Generator, Moment};
 
 /// A model, and the file that says its numbers.
 #[derive(Clone, Copy)]
@@ -135,12 +133,6 @@ pub enum ZoomError {
          a part of a step"
     )]
     StartsAnew,
-    /// Points depend on the index of what is replaced.
-    #[error(
-        "where its elements stand depends on their index, which is not told far down; --view X,Y,W,H \
-         draws a part of a step"
-    )]
-    Index,
     /// The graph does not tell how far what becomes of elements reaches.
     #[error(
         "it is not known how far what becomes of its elements reaches; --view X,Y,W,H draws a part of a \
@@ -275,15 +267,6 @@ pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError>
     }
     if !graph.shrinks() {
         return Err(ZoomError::NoLimit(NoLimit::DoesNotShrink));
-    }
-    let rule = match &graph.evaluated {
-        Some(Evaluated::Rule(rule)) => Some(rule),
-        Some(Evaluated::Words(_)) | None => None,
-    };
-    let generators = rule.into_iter().flat_map(|rule| rule.generators());
-    let mut programs = generators.flat_map(Generator::programs);
-    if programs.any(|program| program.dependence(Moment::INDEX) != Dependence::None) {
-        return Err(ZoomError::Index);
     }
     Ok(())
 }

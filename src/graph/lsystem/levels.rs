@@ -332,6 +332,7 @@ impl Leveller<'_> {
                 tint: None,
                 paint: self.has_colours.then(|| palette.entry(key.colour)),
                 thickness,
+                index: 1,
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
             });

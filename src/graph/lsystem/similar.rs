@@ -403,6 +403,7 @@ impl Edges {
                 tint: None,
                 paint: None,
                 thickness: None,
+                index: 1,
                 behaviour: made.len(),
                 replacement,
             });
