@@ -6,6 +6,7 @@ mod common;
 
 use std::num::NonZero;
 
+use kfrac::figure::sheet::{self, Cell};
 use kfrac::graph::Graph;
 use kfrac::grow::{Growth, Progress};
 use kfrac::render::{self, Detail, Format, Options, Size};
@@ -101,6 +102,57 @@ fn what_is_drawn_in_one_piece_is_the_same_in_bands() {
                 "{name}, {width}"
             );
         }
+    }
+}
+
+/// Plots are drawn again for every band.
+#[test]
+fn plots_are_the_same_in_bands() {
+    for (name, steps) in [("koch-snowflake", 4), ("levy", 7), ("random-tree", 4)] {
+        for width in [0.2, 1.5] {
+            let style = |options: &mut Options| {
+                options.style.width = Width::Pixels(width);
+                options.style.fill = None;
+                options.plot = true;
+            };
+            let one = png(name, steps, None, &style);
+            for band in BANDS {
+                let drawn = png(name, steps, Some(band), &style);
+                assert!(drawn == one, "{name}, {width}");
+            }
+        }
+    }
+}
+
+/// Cells that a band shows nothing of are left out.
+#[test]
+fn sheets_do_not_know_of_bands() {
+    let document = common::document("dragon-wreath");
+    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
+    let graph = Graph::compile(&rule, 4).unwrap();
+    let cells: Vec<_> = (0..=4)
+        .map(|steps| Cell {
+            name: format!("step {steps}"),
+            graph: &graph,
+            growth: Growth::steps(steps),
+        })
+        .collect();
+    for width in [1.5, 6.0] {
+        let [whole, drawn] = [u64::MAX, 9_000].map(|band| {
+            let mut options = Options {
+                format: Format::Png,
+                size: Size::Long(70),
+                in_one_piece: 0,
+                band,
+                threads: NonZero::<usize>::MIN,
+                ..Options::of(rule.heading())
+            };
+            options.style.width = Width::Pixels(width);
+            let mut bytes = Vec::new();
+            sheet::write(&cells, Some(2), &options, &mut bytes).unwrap();
+            bytes
+        });
+        assert!(drawn == whole, "{width}");
     }
 }
 

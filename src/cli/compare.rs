@@ -235,7 +235,7 @@ impl Arguments {
         let [width, height] = canvas.size().map(|side| side as usize);
         let most = MOST_POINTS_A_PIXEL.saturating_mul(width.saturating_mul(height));
         let pixels = |which: usize| -> Result<Pixels, Failure> {
-            let mut pixels = Pixels::new(canvas);
+            let mut pixels = Pixels::new(canvas).map_err(anyhow::Error::from)?;
             let visited = subjects[which].visit(pixels.radius(), most, &mut |it| pixels.add(it));
             visited.map_err(|error| match error {
                 NoCover::TooMany(_) => anyhow!(

@@ -5,7 +5,8 @@ use std::io::Write;
 use crate::geometry::DVec2;
 use crate::parallel::Team;
 use crate::render::{
-    Canvas, Drawing, FINE, Options, Paint, Pen, RenderError, Surface, position, write_drawing,
+    Canvas, Drawing, FINE, Options, Paint, Pen, RenderError, Surface, TooManyPixels, position,
+    write_drawing,
 };
 use crate::style::{Cap, Colour, Join};
 
@@ -41,13 +42,7 @@ pub fn write(
         let of_class = difference.classes.iter().filter(|found| **found == class);
         of_class.count() as u64
     });
-    write_drawing(
-        &difference,
-        options.format,
-        &options.labels,
-        options.threads,
-        out,
-    )?;
+    write_drawing(&difference, options, out)?;
     Ok(counts)
 }
 
@@ -60,13 +55,18 @@ pub struct Pixels {
 
 impl Pixels {
     /// None yet.
-    #[must_use]
-    pub fn new(canvas: Canvas) -> Self {
-        let [width, height] = canvas.size().map(|side| side as usize);
-        Self {
+    ///
+    /// # Errors
+    ///
+    /// If the picture is larger than memory may be, which holds it whole.
+    pub fn new(canvas: Canvas) -> Result<Self, TooManyPixels> {
+        let size = canvas.size();
+        TooManyPixels::check(size)?;
+        let [width, height] = size.map(|side| side as usize);
+        Ok(Self {
             canvas,
             plane: vec![false; width * height],
-        }
+        })
     }
 
     /// The radius to cover sets by whose points are added: half a pixel.

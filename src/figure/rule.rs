@@ -23,7 +23,9 @@ use std::num::NonZero;
 use crate::document::RuleDocument;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::parallel::Team;
-use crate::render::{Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing};
+use crate::render::{
+    self, Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing,
+};
 use crate::rule::Rule;
 use crate::style::Colour;
 
@@ -103,9 +105,14 @@ impl Figure {
             size: options.size,
             background: options.background,
         };
-        // A figure is small.
-        let one = NonZero::<usize>::MIN;
-        write_drawing(&figure, options.format, &options.labels, one, out)?;
+        let options = render::Options {
+            format: options.format,
+            labels: options.labels.clone(),
+            // A figure is small.
+            threads: NonZero::<usize>::MIN,
+            ..render::Options::default()
+        };
+        write_drawing(&figure, &options, out)?;
         Ok(figure.size())
     }
 

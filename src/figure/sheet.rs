@@ -99,13 +99,7 @@ pub fn write(
         font,
         style,
     };
-    write_drawing(
-        &sheet,
-        options.format,
-        &options.labels,
-        options.threads,
-        out,
-    )?;
+    write_drawing(&sheet, options, out)?;
     Ok(Written {
         size: sheet.size(),
         elements,
@@ -153,9 +147,10 @@ impl Drawing for Sheet<'_> {
         for ((caption, scene), [column, row]) in self.scenes.iter().zip(places) {
             let left = GAP + column * (self.column + GAP);
             let top = GAP + row * (self.row + GAP);
-            surface.enter([left + (self.column - width) / 2, top], [width, height])?;
-            scene.draw(surface, team)?;
-            surface.leave()?;
+            if surface.enter([left + (self.column - width) / 2, top], [width, height])? {
+                scene.draw(surface, team)?;
+                surface.leave()?;
+            }
             let middle = f64::from(left) + f64::from(self.column) / 2.0;
             let at = DVec2::new(middle, f64::from(top + height) + CAPTION + 2.0);
             self.font

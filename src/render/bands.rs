@@ -1,92 +1,144 @@
 //! Pictures larger than memory: drawn in bands of some rows, one after another, and encoded as
 //! they come.
 //!
-//! Every band is a walk that leaves out what lies outside, where walks can. All bands are drawn
+//! Every band of an approximant is a walk that leaves out what lies outside, where walks can; other
+//! drawings are drawn again for every band, of which only its rows are kept. All bands are drawn
 //! twice, first to see which colours there are: these decide how pixels are written. The bytes do
 //! not depend on the height of bands, so long as no path that is left to tiny-skia is so long that
 //! it is drawn in pieces.
 
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::ops::Range;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use crate::grow::{Growth, Progress, WalkError};
 use crate::parallel::with_team;
 use crate::style::Width;
 
 use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
-use super::sight::Sight;
 use super::survey::overhang;
 use super::{Canvas, Drawing, Options, RenderError, Scene, Survey};
 
+/// The pixels of a band, and what another one can be drawn with.
+type Band = Result<(Pixmap, Spare), RenderError>;
+
 /// A picture that is drawn in bands.
-pub(super) struct Bands<'a> {
-    survey: &'a Survey<'a>,
-    growth: Growth<'a>,
-    /// Counts pixels, for elements are met again in every band.
-    progress: Option<&'a Progress>,
-    canvas: Canvas,
-    options: &'a Options,
-    sight: Sight,
-    /// The pixels beyond a band that show in it.
-    pad: f64,
+struct Bands<'a> {
+    size: [u32; 2],
     /// The rows of a band.
     rows: u32,
+    /// Whether what lies behind everything is opaque.
+    on_opaque: bool,
+    options: &'a Options,
+    cancel: Option<&'a AtomicBool>,
+    /// Counts pixels, for elements are met again in every band.
+    progress: Option<&'a Progress>,
+}
+
+/// Draws and encodes what a survey has seen.
+pub(super) fn write_survey(
+    survey: &Survey<'_>,
+    growth: &Growth<'_>,
+    canvas: Canvas,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    let style = &options.style;
+    let stroke = match style.width {
+        Width::Pixels(width) => width * overhang(style),
+        Width::Relative(_) => 0.0,
+    };
+    // What comes near a pixel tinges it.
+    let pad = stroke + 1.0;
+    let all = canvas.shown(pad);
+    let sight = survey.sight().clone();
+    let sight = sight.within(&all, survey.graph(), growth, style, survey.counts_ranks());
+    let scene = Scene::new(survey, growth, canvas);
+    let bands = Bands {
+        progress: growth.progress,
+        ..Bands::of(&scene, options, growth.cancel)
+    };
+    if let Some(progress) = growth.progress {
+        let [width, height] = canvas.size().map(u64::from);
+        let walked = u64::from(survey.walked) * survey.elements;
+        progress.expect(2 * width * height + walked);
+    }
+    let growth = Growth {
+        progress: None,
+        ..*growth
+    };
+    bands.write(out, |rows, spare| {
+        let shown = canvas.shown_in(rows.clone(), pad);
+        let survey = survey.clone().of_what_is_in(sight.moved_to(&shown));
+        let scene = Scene::new(&survey, &growth, canvas);
+        drawn(&scene, rows, spare, options.threads)
+    })
+}
+
+/// Draws and encodes any drawing.
+pub(super) fn write_drawing(
+    drawing: &impl Drawing,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    let bands = Bands::of(drawing, options, cancel);
+    bands.write(out, |rows, spare| {
+        drawn(drawing, rows, spare, options.threads)
+    })
+}
+
+/// Draws a band.
+fn drawn(drawing: &impl Drawing, rows: Range<u32>, spare: Spare, threads: NonZero<usize>) -> Band {
+    let (size, background) = (drawing.size(), drawing.background());
+    with_team(threads, |team| {
+        let mut png = Png::begin_band(size, rows, background, spare, team)?;
+        drawing.draw(&mut png, team)?;
+        Ok(png.into_pixels())
+    })
 }
 
 impl<'a> Bands<'a> {
-    /// Bands of what a survey has seen, of no more pixels each than memory should hold.
-    pub(super) fn new(
-        survey: &'a Survey<'a>,
-        growth: &Growth<'a>,
-        canvas: Canvas,
-        options: &'a Options,
-    ) -> Self {
-        let style = &options.style;
-        let stroke = match style.width {
-            Width::Pixels(width) => width * overhang(style),
-            Width::Relative(_) => 0.0,
-        };
-        // What comes near a pixel tinges it.
-        let pad = stroke + 1.0;
-        let all = canvas.shown(pad);
-        let sight = survey.sight().clone();
-        let sight = sight.within(&all, survey.graph(), growth, style, survey.counts_ranks());
-        let [width, height] = canvas.size();
+    /// Bands of no more pixels each than memory should hold.
+    fn of(drawing: &impl Drawing, options: &'a Options, cancel: Option<&'a AtomicBool>) -> Self {
+        let size @ [width, height] = drawing.size();
         let rows = (options.band / u64::from(width)).clamp(1, height.into());
         let rows = u32::try_from(rows).unwrap_or(height);
+        let background = drawing.background();
         Self {
-            survey,
-            growth: Growth {
-                progress: None,
-                ..*growth
-            },
-            progress: growth.progress,
-            canvas,
-            options,
-            sight,
-            pad,
+            size,
             rows: rows.next_multiple_of(BAND_ROWS),
+            on_opaque: background.is_some_and(|it| it == it.opaque()),
+            options,
+            cancel,
+            progress: None,
         }
     }
 
     /// Draws and encodes them.
-    pub(super) fn write(&self, out: &mut impl Write) -> Result<(), RenderError> {
-        let Options { style, labels, .. } = self.options;
-        let size = self.canvas.size();
-        if let Some(progress) = self.progress {
-            let [width, height] = size.map(u64::from);
-            let survey = u64::from(self.survey.walked) * self.survey.elements;
-            progress.expect(2 * width * height + survey);
-        }
-        let mut colours = Colours::none();
-        let on_opaque = style.background.is_some_and(|it| it == it.opaque());
+    fn write(
+        &self,
+        out: &mut impl Write,
+        draw: impl Fn(Range<u32>, Spare) -> Band,
+    ) -> Result<(), RenderError> {
         let mut spare = Spare::default();
+        let mut give = |rows: Range<u32>, give: &mut dyn FnMut(&Pixmap) -> io::Result<()>| {
+            // A walk over little would not look.
+            if self.cancel.is_some_and(|it| it.load(Relaxed)) {
+                return Err(RenderError::Walk(WalkError::Cancelled));
+            }
+            let (pixels, unused) = draw(rows.clone(), std::mem::take(&mut spare))?;
+            spare = unused;
+            self.count(&rows);
+            Ok(give(&pixels)?)
+        };
+        let mut colours = Colours::none();
         for rows in self.each() {
-            if colours.are_settled(on_opaque) {
+            if colours.are_settled(self.on_opaque) {
                 self.count(&rows);
             } else {
-                self.draw(rows, &mut spare, &mut |pixels| {
+                give(rows, &mut |pixels| {
                     colours.add(pixels);
                     Ok(())
                 })?;
@@ -94,9 +146,9 @@ impl<'a> Bands<'a> {
         }
         let colours = colours.sorted();
         let mut out = Told { out, error: None };
-        let encoded = encode_pieces(size, &colours, labels, &mut out, |encode| {
-            self.each()
-                .try_for_each(|rows| self.draw(rows, &mut spare, encode))
+        let labels = &self.options.labels;
+        let encoded = encode_pieces(self.size, &colours, labels, &mut out, |encode| {
+            self.each().try_for_each(|rows| give(rows, encode))
         });
         match out.error {
             Some(error) => Err(error.into()),
@@ -106,41 +158,14 @@ impl<'a> Bands<'a> {
 
     /// The rows of every band.
     fn each(&self) -> impl Iterator<Item = Range<u32>> {
-        let [_, height] = self.canvas.size();
+        let [_, height] = self.size;
         let tops = (0..height).step_by(self.rows as usize);
         tops.map(move |top| top..top.saturating_add(self.rows).min(height))
     }
 
-    /// Draws a band and gives its pixels.
-    fn draw(
-        &self,
-        rows: Range<u32>,
-        spare: &mut Spare,
-        give: &mut dyn FnMut(&Pixmap) -> io::Result<()>,
-    ) -> Result<(), RenderError> {
-        // A walk over little would not look.
-        if self.growth.cancel.is_some_and(|it| it.load(Relaxed)) {
-            return Err(RenderError::Walk(WalkError::Cancelled));
-        }
-        let shown = self.canvas.shown_in(rows.clone(), self.pad);
-        let survey = self.survey.clone();
-        let survey = survey.of_what_is_in(self.sight.moved_to(&shown));
-        let scene = Scene::new(&survey, &self.growth, self.canvas);
-        let (size, background) = (scene.size(), scene.background());
-        let used = std::mem::take(spare);
-        let (pixels, unused) = with_team(self.options.threads, |team| {
-            let mut png = Png::begin_band(size, rows.clone(), background, used, team)?;
-            scene.draw(&mut png, team)?;
-            Ok::<_, RenderError>(png.into_pixels())
-        })?;
-        *spare = unused;
-        self.count(&rows);
-        Ok(give(&pixels)?)
-    }
-
     fn count(&self, rows: &Range<u32>) {
         if let Some(progress) = self.progress {
-            let [width, _] = self.canvas.size();
+            let [width, _] = self.size;
             progress.count(u64::from(width) * u64::from(rows.end - rows.start));
         }
     }
@@ -165,3 +190,6 @@ impl<W: Write> Write for Told<W> {
         self.out.flush()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -71,7 +71,6 @@ use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 use crate::zoom::ZoomError;
 
-use self::bands::Bands;
 use self::layout::Layout;
 use self::pdf::Pdf;
 use self::plot::Plot;
@@ -87,8 +86,8 @@ pub enum Format {
     /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
     Svg,
     /// Portable network graphics, antialiased, of four to sixteen bytes a pixel in memory, and twelve
-    /// more for every thread beside the first, as far as that makes no more than 200 MB; approximants
-    /// that are larger than [`Options::in_one_piece`] in bands, one after another.
+    /// more for every thread beside the first, as far as that makes no more than 200 MB; pictures that
+    /// are larger than [`Options::in_one_piece`] in bands, one after another.
     Png,
     /// Portable document format, streamed: memory grows by a few bytes for 256 kB of content.
     ///
@@ -150,7 +149,7 @@ pub struct Options {
     pub instanced: bool,
     /// The most pixels of a PNG that is drawn in one piece, 2^24 unless said otherwise. A larger one
     /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
-    /// without growing it; and twice, unless its colours are soon known to be many.
+    /// without growing it, but of plots; and twice, unless its colours are soon known to be many.
     pub in_one_piece: u64,
     /// The pixels of a band, 2^21 unless said otherwise, with which drawing takes less than 300 MB.
     /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is no
@@ -185,6 +184,11 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Whether a PNG is drawn in one piece.
+    fn draws_in_one_piece(&self, [width, height]: [u32; 2]) -> bool {
+        u64::from(width) * u64::from(height) <= self.in_one_piece
+    }
+
     /// The style and the view that a file proposes.
     #[must_use]
     pub fn of(heading: &Heading) -> Self {
@@ -300,10 +304,9 @@ pub fn write(
         canvas,
         growth,
     } = Layout::find(graph, growth, options)?;
-    let [width, height] = canvas.size().map(u64::from);
-    let in_bands = options.format == Format::Png && width * height > options.in_one_piece;
+    let in_bands = options.format == Format::Png && !options.draws_in_one_piece(canvas.size());
     if in_bands && !options.plot {
-        Bands::new(&survey, &growth, canvas, options).write(out)?;
+        bands::write_survey(&survey, &growth, canvas, options, out)?;
         return Ok(picture(&survey, canvas, growth.steps, None));
     }
     let scene = Scene::new(&survey, &growth, canvas);
@@ -328,18 +331,10 @@ fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plot
 /// Writes a drawing as a file.
 pub(crate) fn write_drawing(
     drawing: &impl Drawing,
-    format: Format,
-    labels: &Labels,
-    threads: NonZero<usize>,
+    options: &Options,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
-    let options = Options {
-        format,
-        labels: labels.clone(),
-        threads,
-        ..Options::default()
-    };
-    write_in(drawing, &options, None, out).map(|_| ())
+    write_in(drawing, options, None, out).map(|_| ())
 }
 
 /// Writes a drawing, as strokes if that is asked for; tells what those take.
@@ -362,10 +357,10 @@ fn write_in(
     };
     if options.plot {
         let plot = Plot::of(drawing, unit, threads, cancel)?;
-        write_paths(&plot, format, options, out)?;
+        write_paths(&plot, format, options, cancel, out)?;
         return Ok(Some(plot.plotted));
     }
-    write_paths(drawing, format, options, out)?;
+    write_paths(drawing, format, options, cancel, out)?;
     Ok(None)
 }
 
@@ -394,8 +389,12 @@ fn write_paths(
     drawing: &impl Drawing,
     format: PathFormat,
     options: &Options,
+    cancel: Option<&AtomicBool>,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
+    if matches!(format, PathFormat::Png) && !options.draws_in_one_piece(drawing.size()) {
+        return bands::write_drawing(drawing, options, cancel, out);
+    }
     let page = Page {
         size: drawing.size(),
         unit: options.unit,

@@ -54,6 +54,17 @@ pub struct TooManyPixels {
     pub size: [u32; 2],
 }
 
+impl TooManyPixels {
+    /// Refuses pictures that would be.
+    pub(crate) fn check(size: [u32; 2]) -> Result<(), Self> {
+        let [width, height] = size.map(u64::from);
+        if width * height > MOST_PIXELS {
+            return Err(Self { size });
+        }
+        Ok(())
+    }
+}
+
 /// The gigabytes that a picture takes.
 fn bytes(size: &[u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1]) * 4e-9
@@ -99,10 +110,8 @@ impl<'t, 'w> Png<'t, 'w> {
         background: Option<Colour>,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
-        let [width, height] = size;
-        if u64::from(width) * u64::from(height) > MOST_PIXELS {
-            return Err(TooManyPixels { size });
-        }
+        let height = size[1];
+        TooManyPixels::check(size)?;
         Self::begin_on(size, 0..height, Outline::default(), background, team)
     }
 
@@ -449,18 +458,24 @@ impl Surface for Png<'_, '_> {
         self.layer = layer;
     }
 
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
-        let part = Part::new(corner, size).ok_or(io::ErrorKind::OutOfMemory)?;
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
+        if !self.part.shows(corner, size) {
+            return Ok(false);
+        }
+        let part = self.part.enter(corner, size);
+        let part = part.ok_or(io::ErrorKind::OutOfMemory)?;
         self.settle();
+        self.outline.move_to_rows(&part.rows());
         self.outer.push(std::mem::replace(&mut self.part, part));
-        Ok(())
+        Ok(true)
     }
 
     fn leave(&mut self) -> io::Result<()> {
         self.settle();
         if let Some(outer) = self.outer.pop() {
             let part = std::mem::replace(&mut self.part, outer);
-            part.lay_on(&mut self.part.pixmap);
+            part.lay_on(&mut self.part);
+            self.outline.move_to_rows(&self.part.rows());
         }
         Ok(())
     }

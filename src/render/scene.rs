@@ -174,7 +174,7 @@ mod tests {
     use crate::grow::{self, Division, Growth, walk_with};
     use crate::parallel::with_team;
     use crate::render::layout::Layout;
-    use crate::render::{Detail, Format, Labels, Options, Size, write_drawing};
+    use crate::render::{Detail, Format, Options, Size, write_drawing};
     use crate::style::ColorBy;
 
     #[test]
@@ -212,8 +212,12 @@ mod tests {
             let png = |scene: &Scene<'_>, threads: usize| {
                 let mut png = Vec::new();
                 let threads = NonZero::new(threads).unwrap();
-                let labels = Labels::default();
-                write_drawing(scene, Format::Png, &labels, threads, &mut png).unwrap();
+                let options = Options {
+                    format: Format::Png,
+                    threads,
+                    ..Options::default()
+                };
+                write_drawing(scene, &options, &mut png).unwrap();
                 png
             };
             let mut one_by_one = scene();

@@ -168,8 +168,8 @@ pub(crate) trait Surface {
     fn layer(&mut self, _: u64) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
-    /// and nothing is drawn outside.
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()>;
+    /// and nothing is drawn outside. Tells whether any of it shows; if none does, it does not begin.
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool>;
     /// Ends a part.
     fn leave(&mut self) -> io::Result<()>;
     /// What the next path says in words, where the format can tell.

@@ -178,13 +178,13 @@ impl<W: Write> Surface for Svg<'_, '_, W> {
         Ok(())
     }
 
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         self.close_group();
         let ([x, y], [width, height]) = (fine(corner), fine(size));
         self.text(&format!(
             "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
         ));
-        Ok(())
+        Ok(true)
     }
 
     fn leave(&mut self) -> io::Result<()> {

@@ -6,7 +6,7 @@ use std::num::NonZero;
 use crate::geometry::DVec2;
 use crate::parallel::Team;
 use crate::render::{
-    Drawing, FINE, Paint, Pen, Position, RenderError, Stroke, Surface, Tracer, position,
+    self, Drawing, FINE, Paint, Pen, Position, RenderError, Stroke, Surface, Tracer, position,
     write_drawing,
 };
 use crate::style::{Cap, Colour, Join};
@@ -52,8 +52,13 @@ pub(super) fn write(
         title: &options.labels.title,
         font: Font::new(),
     };
-    let one = NonZero::<usize>::MIN;
-    write_drawing(&page, options.format, &options.labels, one, out)?;
+    let options = render::Options {
+        format: options.format,
+        labels: options.labels.clone(),
+        threads: NonZero::<usize>::MIN,
+        ..render::Options::default()
+    };
+    write_drawing(&page, &options, out)?;
     Ok(plot.size())
 }
 

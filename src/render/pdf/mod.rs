@@ -233,12 +233,12 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
         self.hand_on()
     }
 
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         let [x, y] = corner.map(|side| u64::from(side) * 100);
         let [wide, high] = size.map(|side| u64::from(side) * 100);
         self.outer.push(self.state);
         self.text(&format!("q 1 0 0 1 {x} {y} cm 0 0 {wide} {high} re W n\n"));
-        Ok(())
+        Ok(true)
     }
 
     fn leave(&mut self) -> io::Result<()> {

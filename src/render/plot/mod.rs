@@ -157,10 +157,10 @@ impl Surface for Plotter {
         self.hand_on()
     }
 
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         let part = self.window.part(corner, size);
         self.outer.push(std::mem::replace(&mut self.window, part));
-        Ok(())
+        Ok(true)
     }
 
     fn leave(&mut self) -> io::Result<()> {

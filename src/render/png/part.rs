@@ -10,6 +10,7 @@ use crate::style::Colour;
 use super::MOST_PIXELS;
 use super::coverage::{Plane, WHOLE};
 use super::planes::Planes;
+use super::split::ROWS;
 
 /// Pictures of more pixels have no plane of coverage: with it they would take more memory than the
 /// largest.
@@ -40,8 +41,22 @@ struct Layer {
 pub(super) type Layers = [Option<Arc<Planes>>; 2];
 
 impl Part {
-    pub(super) fn new(corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
-        Self::of_rows(corner, size, 0..size[1])
+    /// A part of this one, and the rows of it that lie in the rows of this one, or a little more: the
+    /// first one is a multiple of [`ROWS`].
+    pub(super) fn enter(&self, corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
+        let within = |row: u32| row.saturating_sub(corner[1]).min(size[1]);
+        let [from, to] = [self.rows.start, self.rows.end].map(within);
+        Self::of_rows(corner, size, from - from % ROWS..to)
+    }
+
+    /// Whether anything of a part of this one lies in its rows.
+    pub(super) fn shows(&self, corner: [u32; 2], size: [u32; 2]) -> bool {
+        corner[1] < self.rows.end && corner[1].saturating_add(size[1]) > self.rows.start
+    }
+
+    /// Its rows that are drawn.
+    pub(super) fn rows(&self) -> Range<u32> {
+        self.rows.clone()
     }
 
     /// Some rows of a part.
@@ -163,9 +178,11 @@ impl Part {
 
     /// Lays the part on what it is a part of.
     #[expect(clippy::cast_possible_wrap, reason = "pictures are smaller than that")]
-    pub(super) fn lay_on(self, pixmap: &mut Pixmap) {
-        let [x, y] = self.corner;
+    pub(super) fn lay_on(self, other: &mut Self) {
+        let [x, y] = self.corner.map(|side| side as i32);
+        let top = y + self.rows.start as i32 - other.rows.start as i32;
         let (over, none) = (PixmapPaint::default(), Transform::identity());
-        pixmap.draw_pixmap(x as i32, y as i32, self.pixmap.as_ref(), &over, none, None);
+        let own = self.pixmap.as_ref();
+        other.pixmap.draw_pixmap(x, top, own, &over, none, None);
     }
 }

@@ -52,6 +52,13 @@ impl Outline {
         }
     }
 
+    /// Other rows are drawn from now on, if some are.
+    pub(super) fn move_to_rows(&mut self, rows: &Range<u32>) {
+        if let Some(band) = &mut self.band {
+            *band = [rows.start, rows.end];
+        }
+    }
+
     pub(super) fn begin(&mut self, paint: Paint) {
         self.paint = paint;
     }

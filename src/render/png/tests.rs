@@ -288,7 +288,7 @@ impl Surface for Plain<'_, '_, '_> {
     fn layer(&mut self, layer: u64) {
         self.png.layer(layer);
     }
-    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<()> {
+    fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         self.png.enter(corner, size)
     }
     fn leave(&mut self) -> io::Result<()> {

@@ -68,7 +68,7 @@ impl Surface for Recorder {
         Ok(())
     }
 
-    fn enter(&mut self, _: [u32; 2], _: [u32; 2]) -> io::Result<()> {
+    fn enter(&mut self, _: [u32; 2], _: [u32; 2]) -> io::Result<bool> {
         unreachable!("pictures have no parts")
     }
 
