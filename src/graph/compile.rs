@@ -10,7 +10,7 @@ use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, Chain, CompileError, Evaluated, Graph, Object, Production, Replacement};
+use super::{Alternative, CompileError, Evaluated, Graph, Object, Production, Replacement};
 
 /// A graph with more objects than this is not resolved further: its indices are counted instead.
 const MOST_OBJECTS: usize = 200_000;
@@ -496,21 +496,5 @@ impl<'r> Compiler<'r> {
             columns[kind] = known.unwrap_or_else(|| vec![0; size]);
         }
         Ok(columns)
-    }
-}
-
-impl Chain {
-    /// Whether every instance but the first joins the one before it.
-    pub(crate) fn is_joined(&self) -> bool {
-        let mut later = self.instances.iter().skip(1);
-        later.all(|instance| instance.joined)
-    }
-
-    /// Whether the last instance joins the first one.
-    #[must_use]
-    pub fn is_ring(&self) -> bool {
-        self.instances
-            .first()
-            .is_some_and(|instance| instance.joined)
     }
 }

@@ -24,6 +24,7 @@ mod ifs;
 mod instancing;
 mod likely;
 mod limit;
+mod lines;
 mod lsystem;
 mod no_limit;
 mod reach;

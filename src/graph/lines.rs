@@ -1,0 +1,56 @@
+//! Whether elements are lines that follow each other.
+
+use crate::rule::Part;
+
+use super::{Chain, Graph, Replacement};
+
+impl Chain {
+    /// Whether every instance but the first joins the one before it.
+    pub(crate) fn is_joined(&self) -> bool {
+        let mut later = self.instances.iter().skip(1);
+        later.all(|instance| instance.joined)
+    }
+
+    /// Whether the last instance joins the first one.
+    #[must_use]
+    pub fn is_ring(&self) -> bool {
+        self.instances
+            .first()
+            .is_some_and(|instance| instance.joined)
+    }
+}
+
+impl Graph {
+    /// Whether every element is a line from end to end of its frame, and what takes its place is one.
+    pub(crate) fn keeps_lines(&self) -> bool {
+        self.objects.iter().all(|object| {
+            object.visible
+                && self.base_elements()[object.base_element].ends_meet_frame() == [true; 2]
+                && match &object.replacement {
+                    Replacement::Fixed(production) => {
+                        let body = &production.body;
+                        !body.instances.is_empty()
+                            && body.meets_frame == [true; 2]
+                            && body.is_joined()
+                    }
+                    Replacement::Kept | Replacement::Beyond => true,
+                    Replacement::Evaluated(alternatives) => {
+                        let mut all = alternatives.iter();
+                        all.all(|alternative| is_line(self.parts(alternative)))
+                    }
+                }
+        })
+    }
+}
+
+/// Whether the elements that parts put in an element's place are one line from end to end of its frame.
+fn is_line(parts: &[Part]) -> bool {
+    let stay = || {
+        let stay = parts.iter().filter(|part| !part.placement.seeds());
+        stay.filter(|part| !part.elements.is_empty())
+    };
+    let ends = stay().next().zip(stay().next_back());
+    let meets_frame = ends.is_some_and(|(first, last)| first.meets_frame[0] && last.meets_frame[1]);
+    let mut later = stay().flat_map(|part| &part.elements).skip(1);
+    meets_frame && later.all(|element| element.joined)
+}
