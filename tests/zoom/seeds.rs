@@ -200,7 +200,7 @@ fn shallow_zooms_are_windows_of_the_whole() {
         let graph = rule.1.compile(64).unwrap();
         let repeated: Vec<_> = way[1..].iter().map(ToString::to_string).collect();
         let at = format!("{}.({})", way[0], repeated.join("."));
-        for factor in ["2e1", "2e3", "1e6"] {
+        for factor in ["2e1", "1e6"] {
             assert_window(rule, 0, point(&graph, way), &at, factor);
         }
     }
@@ -230,7 +230,7 @@ fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
 
 #[test]
 fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
-    assert_windows(&read(ISLANDS), 7, &["2e1", "2e3", "1e5"]);
+    assert_windows(&read(ISLANDS), 7, &["2e1", "1e5"]);
 }
 
 /// Coasts of the library are drawn without limits, but do not reach far.
@@ -286,7 +286,7 @@ fn fixed_points_of_seeds_look_the_same_at_any_depth() {
         let turn = DAffine2::from_mat2(linear * (1.0 / linear.determinant().abs().sqrt()));
         let at = format!("0.({seed})");
         let shallow = zoomed(&rule, &graph, &window("3^4", &at), 0);
-        for more in [1, 200, 1999] {
+        for more in [1, 200] {
             let factor = format!("3^{}", 4 + more);
             let deep = zoomed(&rule, &graph, &window(&factor, &at), 0);
             // Turns are by right angles.
