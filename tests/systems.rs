@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
+#[path = "systems/boxes.rs"]
+mod boxes;
 #[path = "systems/fractals.rs"]
 mod fractals;
 #[path = "systems/same.rs"]
@@ -463,10 +465,16 @@ fn maps_may_be_written_in_several_ways() {
 }
 
 /// The best norm for these maps has a square for its unit disk, which only long products tell from an
-/// ellipse.
+/// ellipse: hulls tell more of them.
 #[test]
 fn what_is_not_decided_is_said() {
-    let text = "kind: ifs\nparams: {s: 0.99}\nmaps:\n  - {matrix: [[s, s], [0, 0]]}\n  \
+    let maps = "maps:\n  - {matrix: [[s, s], [0, 0]]}\n  \
+                - {matrix: [[s, -s], [0, 0]], shift: [1, 0]}\n  \
+                - {matrix: [[0, 0], [s, s]]}\n  - {matrix: [[0, 0], [s, -s]]}\n";
+    let decided = system(&format!("params: {{s: 0.99}}\n{maps}"));
+    assert!(decided.contraction().upper < 1.0);
+    assert!(Graph::of_system(&decided).limit_bounds().is_some());
+    let text = "kind: ifs\nparams: {s: 0.99999}\nmaps:\n  - {matrix: [[s, s], [0, 0]]}\n  \
                 - {matrix: [[s, -s], [0, 0]], shift: [1, 0]}\n  \
                 - {matrix: [[0, 0], [s, s]]}\n  - {matrix: [[0, 0], [s, -s]]}\n";
     let (system, said) = read(&Source::new("test.yaml", text)).unwrap();

@@ -7,8 +7,11 @@
 mod bounds;
 mod direction;
 mod frame;
+mod hull;
 
 pub use bounds::Bounds;
 pub use direction::Direction;
 pub use frame::{Frame, placement};
 pub use glam::{DAffine2, DMat2, DVec2};
+
+pub(crate) use hull::{convex_hull, distance_to_hull, thinned};

@@ -12,6 +12,7 @@ use crate::geometry::{Bounds, DVec2};
 use crate::mix::MixMap;
 use crate::rule::Placement;
 
+use super::hull::Hulls;
 use super::{Graph, Instance, Object, Replacement};
 
 /// More states than this, at one level and at all of them, are given up.
@@ -39,8 +40,8 @@ struct State {
 struct Reach {
     spread: f64,
     ratio: f64,
-    /// Where ratios do not tell it, what is known of every object instead.
-    discs: Option<Discs>,
+    /// Where ratios do not tell it, polygons about what becomes of every object.
+    hulls: Option<Hulls>,
     /// Objects that surely draw something.
     alive: Vec<bool>,
     /// What lies around every object, as a multiple of its length.
@@ -53,45 +54,49 @@ pub struct Boxes<'g> {
     reach: Reach,
 }
 
-/// Where the parts of a system lie.
-struct Discs {
-    /// About this point of every unit frame,
-    centre: DVec2,
-    /// within these radii, at every step and in the limit.
-    radii: Vec<f64>,
-    /// Points of what objects come to in the limit.
-    anchors: Vec<Vec<DVec2>>,
-}
-
 impl Reach {
-    /// About where, along a state's vector, all lies that becomes of it, and how far to both sides.
+    /// How far a state may reach along its vector, and how far it reaches at least if it draws anything:
+    /// in the limit, the farthest of it.
     fn span(&self, state: &State, levels: Option<u32>) -> [f64; 2] {
-        let length = state.vector.length();
-        match &self.discs {
-            Some(discs) => [
-                state.offset + state.vector.dot(discs.centre),
-                length * discs.radii[state.object],
-            ],
-            None => [state.offset, length * self.radius(levels)],
-        }
+        let Some(hulls) = &self.hulls else {
+            let size = state.vector.length() * self.radius(levels);
+            return [state.offset + size, state.offset - size];
+        };
+        let [farthest, surely] = hulls.along(state.object, state.vector);
+        let least = match levels {
+            None => surely,
+            Some(_) => -hulls.along(state.object, -state.vector)[0],
+        };
+        [state.offset + farthest, state.offset + least]
     }
 
-    /// What the limit of a state surely reaches, along its vector.
-    fn reached(&self, state: &State) -> f64 {
-        let discs = self.discs.as_ref();
-        let anchors = discs.map_or(&[][..], |discs| &discs.anchors[state.object]);
-        let along = anchors.iter().map(|point| state.vector.dot(*point));
-        state.offset + along.fold(f64::NEG_INFINITY, f64::max)
+    /// What a state adds to its offset in the limit, where that is known to `negligible`.
+    fn rest(&self, state: &State, negligible: f64) -> Option<f64> {
+        let hulls = self.hulls.as_ref()?;
+        let [farthest, surely] = hulls.along(state.object, state.vector);
+        (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
+    }
+
+    /// How far from its origin, along its vector, anything of a state may lie.
+    fn size(&self, state: &State, levels: Option<u32>) -> f64 {
+        match &self.hulls {
+            Some(hulls) => {
+                let along = [state.vector, -state.vector];
+                let along = along.map(|vector| hulls.along(state.object, vector)[0]);
+                along[0].max(along[1])
+            }
+            None => state.vector.length() * self.radius(levels),
+        }
     }
 
     /// Rounding must not drop all that reaches farthest, where points of the limit tell what does.
     fn slack(&self) -> f64 {
-        self.discs.as_ref().map_or(0.0, |_| ROUNDING)
+        self.hulls.as_ref().map_or(0.0, |_| ROUNDING)
     }
 
     /// What adds nothing, as a multiple of the whole.
     fn negligible(&self) -> f64 {
-        self.discs.as_ref().map_or(NEGLIGIBLE, |_| ROUNDING)
+        self.hulls.as_ref().map_or(NEGLIGIBLE, |_| ROUNDING)
     }
 
     /// The radius around its origin, in its own unit frame, of all that an object draws within a
@@ -152,14 +157,21 @@ impl Graph {
             return None;
         }
         let (spread, ratio) = (self.spread(&pad), self.longest_ratio());
+        let alive = self.alive(limit);
+        let needs_hulls = self.affine || ratio >= 1.0;
         let reach = Reach {
             spread,
             ratio,
-            discs: (self.affine || ratio >= 1.0)
-                .then(|| self.discs(&pad))
+            hulls: needs_hulls
+                .then(|| {
+                    self.hulls(
+                        &|object| self.corners(object, pad(&self.objects[object])),
+                        limit.then_some(&alive),
+                    )
+                })
                 .flatten(),
-            alive: self.alive(limit),
-            pads: self.objects.iter().map(pad).collect(),
+            alive,
+            pads: self.objects.iter().map(&pad).collect(),
         };
         Some(Boxes { graph: self, reach })
     }
@@ -204,21 +216,6 @@ impl Graph {
             constant = constant.max(shift + own);
         }
         constant
-    }
-
-    /// Discs about the parts of a system; `None` if it is not known to contract.
-    fn discs(&self, pad: impl Fn(&Object) -> f64) -> Option<Discs> {
-        let centre = self.middle;
-        let radii = self.reaches(|object| {
-            let base_element = &self.base_elements()[object.base_element];
-            base_element.radius_about(centre) + pad(object)
-        });
-        let known = radii.iter().all(|radius| radius.is_finite());
-        known.then(|| Discs {
-            centre,
-            radii,
-            anchors: self.limit_points(),
-        })
     }
 
     /// Objects that surely draw something at every later level or, for the limit, that are drawn
@@ -277,11 +274,8 @@ impl Graph {
                     best = best.max(state.offset + reached);
                 }
                 if reach.alive[state.object] {
-                    let [offset, size] = reach.span(state, levels);
-                    certain = certain.max(offset - size);
-                    if levels.is_none() {
-                        certain = certain.max(reach.reached(state));
-                    }
+                    let [_, surely] = reach.span(state, levels);
+                    certain = certain.max(surely);
                 }
             }
             if last {
@@ -290,8 +284,8 @@ impl Graph {
             certain = certain.max(best);
             let certain = certain - reach.slack() * (1.0 + certain.abs());
             for state in states {
-                let [offset, size] = reach.span(&state, levels);
-                let hopeless = offset + size < certain;
+                let [farthest, _] = reach.span(&state, levels);
+                let hopeless = farthest < certain;
                 let dead = steps.is_none() && !reach.alive[state.object];
                 if hopeless || dead {
                     continue;
@@ -299,9 +293,15 @@ impl Graph {
                 if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
                     // What is not surely drawn at this very step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
-                    if known && size <= reach.negligible() * (1.0 + state.offset.abs()) {
+                    let negligible = reach.negligible() * (1.0 + state.offset.abs());
+                    let rest = if steps.is_none() && reach.hulls.is_some() {
+                        reach.rest(&state, negligible)
+                    } else {
+                        (reach.size(&state, levels) <= negligible).then_some(0.0)
+                    };
+                    if let Some(rest) = rest.filter(|_| known) {
                         if reach.alive[state.object] {
-                            best = best.max(state.offset + state.lost);
+                            best = best.max(state.offset + (state.lost + rest));
                         }
                         continue;
                     }
@@ -344,7 +344,13 @@ impl Boxes<'_> {
         let support = |direction| self.graph.support(direction, steps, &self.reach);
         let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
         let min = -DVec2::new(support(-DVec2::X)?, support(-DVec2::Y)?);
-        let bounds = Bounds::new(min + 0.0, max + 0.0);
+        // What rounding leaves of zero.
+        let nothing = self.reach.slack() * min.abs().max(max.abs()).max_element();
+        let rounded = |corner: DVec2| {
+            let is_nothing = corner.abs().cmple(DVec2::splat(nothing));
+            DVec2::select(is_nothing, DVec2::ZERO, corner)
+        };
+        let bounds = Bounds::new(rounded(min), rounded(max));
         bounds.is_finite().then_some(bounds)
     }
 }

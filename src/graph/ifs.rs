@@ -63,11 +63,14 @@ impl Graph {
     }
 }
 
-/// About the middle of what a graph comes to in the limit: that of the box of some points.
+/// About the middle of what a graph comes to in the limit.
 fn middle(graph: &Graph) -> DVec2 {
     let mut bounds = Bounds::EMPTY;
-    for point in &graph.limit_points()[0] {
-        bounds.add(*point);
+    let drawn = graph.alive(true);
+    if let Some(hulls) = graph.hulls(&|object| graph.corners(object, 0.0), Some(&drawn)) {
+        for corner in hulls.corners(0) {
+            bounds.add(*corner);
+        }
     }
     let middle = (bounds.min() + bounds.max()) / 2.0;
     if middle.is_finite() {

@@ -20,6 +20,7 @@ mod contract;
 mod count;
 mod error;
 mod forecast;
+mod hull;
 mod ifs;
 mod instancing;
 mod likely;
@@ -334,9 +335,14 @@ impl Graph {
 
     /// The first object of every behaviour.
     pub(crate) fn behaviours(&self) -> impl Iterator<Item = &Object> {
+        self.behaviours_by_number().map(|(_, object)| object)
+    }
+
+    /// The same with their numbers.
+    fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object)> {
         // Behaviours are numbered in the order of the objects.
         let mut next = 0;
-        self.objects.iter().filter(move |object| {
+        self.objects.iter().enumerate().filter(move |(_, object)| {
             let first = object.behaviour == next;
             next += usize::from(first);
             first

@@ -7,10 +7,14 @@ use crate::expression::Interval;
 use crate::geometry::DVec2;
 use crate::rule::Placement;
 
+use super::hull::around;
 use super::{Evaluated, Graph, Instance, Object, Replacement};
 
 /// Radii that still change by less than this multiple are good enough.
 const TOLERANCE: f64 = 1e-3;
+
+/// Where maps contract less than this, radii of discs one after the other are far too large.
+const LITTLE: f64 = 0.75;
 
 /// So many times, at most, all radii are made smaller.
 const MOST_SWEEPS: usize = 64;
@@ -91,7 +95,20 @@ impl Graph {
                 break;
             }
         }
+        if self.affine && ratio > LITTLE {
+            self.narrow(&mut radii, &own);
+        }
         radii
+    }
+
+    /// Takes smaller radii where polygons about what becomes of objects tell them.
+    fn narrow(&self, radii: &mut [f64], own: &[f64]) {
+        let disc = |object: usize| around(self.middle, own[object]).collect();
+        if let Some(hulls) = self.hulls(&disc, None) {
+            for (object, radius) in radii.iter_mut().enumerate() {
+                *radius = radius.min(hulls.radius(object, self.middle));
+            }
+        }
     }
 
     /// The radius of a disc that holds the outline of an object, where it is drawn, and its unit

@@ -1,6 +1,7 @@
 //! Whether the maps of a system contract when they are applied one after the other.
 
 use super::Ifs;
+use super::Shrinking;
 use super::norm::{in_best_coordinates, spectral_radius, stretch};
 use crate::geometry::DMat2;
 
@@ -45,11 +46,13 @@ pub struct Contraction {
 }
 
 impl Ifs {
-    /// Whether the system contracts, from products of up to 100 000 words; see
-    /// [`Ifs::contraction_within`].
+    /// Whether the system contracts, from products of up to 100 000 words (see
+    /// [`Ifs::contraction_within`]) and, if they do not tell, from the convex hulls of what all
+    /// products of a length make of a disc.
     #[must_use]
     pub fn contraction(&self) -> Contraction {
-        self.contraction_within(MOST_PRODUCTS)
+        let (linear, successors) = self.linear();
+        Contraction::of(&linear, successors)
     }
 
     /// Whether the system contracts, from no more than so many products (and those of single maps).
@@ -60,12 +63,18 @@ impl Ifs {
     /// product of which some beginning shrinks below the lower bound is not followed.
     #[must_use]
     pub fn contraction_within(&self, products: usize) -> Contraction {
-        let linear: Vec<DMat2> = self.maps().iter().map(|map| map.affine.matrix2).collect();
+        let (linear, successors) = self.linear();
+        Contraction::within(&linear, successors, products)
+    }
+
+    /// The linear parts, and the maps that may follow each, if not all may.
+    fn linear(&self) -> (Vec<DMat2>, Option<Vec<Vec<usize>>>) {
+        let linear = self.maps().iter().map(|map| map.affine.matrix2);
         let mut successors = self.successors();
         for list in successors.iter_mut().flatten() {
             list.sort_unstable();
         }
-        Contraction::within(&linear, successors, products)
+        (linear.collect(), successors)
     }
 }
 
@@ -73,7 +82,28 @@ impl Contraction {
     /// Whether linear maps contract, of which each may be followed by some: by any, if there are no
     /// lists.
     pub(crate) fn of(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>) -> Self {
-        Self::within(linear, successors, MOST_PRODUCTS)
+        let mut contraction = Self::within(linear, successors.clone(), MOST_PRODUCTS);
+        if contraction.verdict == Verdict::Undecided {
+            let mut images = Vec::new();
+            match successors {
+                Some(lists) => {
+                    images.resize(linear.len(), Vec::new());
+                    for (map, successors) in lists.iter().enumerate() {
+                        for &next in successors {
+                            images[next].push((linear[next], map));
+                        }
+                    }
+                }
+                None => images.push(linear.iter().map(|&linear| (linear, 0)).collect()),
+            }
+            if let Some(shrinking) = Shrinking::found(&images) {
+                let factor = libm::pow(shrinking.stretch, 1.0 / f64::from(shrinking.length));
+                contraction.verdict = Verdict::Contracts;
+                contraction.upper = contraction.upper.min(factor).max(contraction.lower);
+                contraction.length = contraction.length.max(shrinking.length);
+            }
+        }
+        contraction
     }
 
     /// The same from no more than so many products. The lists are in ascending order.

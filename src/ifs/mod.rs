@@ -39,6 +39,7 @@ mod measure;
 mod moments;
 mod norm;
 mod shape;
+mod shrinking;
 mod system;
 mod walk;
 
@@ -51,6 +52,7 @@ pub use map::{Map, about, axes, complex, complex_conjugate, toward};
 pub use measure::{Measure, Part};
 pub use moments::Moments;
 pub use shape::Shape;
+pub(crate) use shrinking::Shrinking;
 pub use system::System;
 pub(crate) use system::hull;
 pub use walk::{Choice, Step, Walk};

@@ -1,7 +1,7 @@
 //! A system as a file has it.
 
 use super::{Contraction, Ifs, IfsError, Shape};
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, convex_hull};
 use crate::heading::Heading;
 
 /// A system, and what its file says beside its mathematics.
@@ -85,29 +85,12 @@ impl Ifs {
     }
 }
 
-/// The convex hull of points, as a polygon, a segment or a point (Andrew's monotone chain).
+/// The convex hull of points, as a polygon, a segment or a point.
 pub(crate) fn hull(points: &[DVec2]) -> Shape {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    sorted.dedup();
-    let side = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain[..]
-                && (b - a).perp_dot(point - a) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut around = side(&mut sorted.iter().copied());
-    around.extend(side(&mut sorted.iter().rev().copied()));
+    let around = convex_hull(points.to_vec(), 0.0);
     let shape = match around[..] {
         [from, to] => Shape::polyline(&[from, to]),
         _ => Shape::polygon(&around),
     };
-    shape.unwrap_or_else(|| Shape::Point(sorted.first().copied().unwrap_or_default()))
+    shape.unwrap_or_else(|| Shape::Point(around.first().copied().unwrap_or_default()))
 }

@@ -174,6 +174,7 @@ mod tests {
     use crate::grow::{self, Division, Growth, walk_with};
     use crate::parallel::with_team;
     use crate::render::layout::Layout;
+    use crate::render::sketch::Means;
     use crate::render::{Detail, Format, Options, Size, write_drawing};
     use crate::style::ColorBy;
 
@@ -255,7 +256,14 @@ mod tests {
             };
             let pass = Pass::Class(0);
             let aim = Arc::new(Aim::of(&scene, pass));
-            let fresh = || Sketcher::new(&scene, pass, None, (None, None), aim.clone());
+            let means = Means {
+                comb: None,
+                coarse: None,
+                hidden: None,
+                stamps: None,
+                aim,
+            };
+            let fresh = || Sketcher::new(&scene, pass, means.clone());
             walk_with(team, &graph, &growth, division, fresh, |sketcher, _| {
                 let points = sketcher.sketch.points.len();
                 (all, most) = (all + points, most.max(points));

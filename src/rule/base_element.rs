@@ -143,6 +143,15 @@ impl BaseElement {
         ]
     }
 
+    /// The points between which the outline lies: ends of pieces, and those that curves are drawn to.
+    pub(crate) fn control_points(&self) -> impl Iterator<Item = DVec2> {
+        let points = self.pieces.iter().flat_map(|piece| match *piece {
+            Piece::Line(end) => [end; 3],
+            Piece::Cubic(a, b, end) => [a, b, end],
+        });
+        std::iter::once(self.start).chain(points)
+    }
+
     /// The support function: the largest x·u over the outline's points x.
     #[must_use]
     pub fn support(&self, direction: DVec2) -> f64 {

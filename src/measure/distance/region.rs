@@ -142,12 +142,7 @@ fn within(coordinate: f64, count: usize) -> usize {
 
 /// The radius of a disc about a point that holds an outline.
 pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
-    let pieces = outline.pieces().iter();
-    let points = pieces.flat_map(|piece| match *piece {
-        Piece::Line(end) => [end; 3],
-        Piece::Cubic(a, b, end) => [a, b, end],
-    });
-    let points = points.chain([outline.start()]);
+    let points = outline.control_points();
     points
         .map(|point| (point - middle).length())
         .fold(0.0, f64::max)

@@ -9,6 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use super::balls::Balls;
 use super::hull::Flat;
 use super::system::ratio;
+use crate::geometry::convex_hull;
 
 /// Rounds in which a hull grows, and corners that it may get.
 const MOST_ROUNDS: usize = 600;
@@ -53,7 +54,10 @@ fn hulls(flat: &Flat) -> Option<Vec<Vec<DVec2>>> {
         for copy in &flat.copies {
             points[copy.from].extend(moved(&copy.map, &hulls[copy.to]));
         }
-        let next: Vec<Vec<DVec2>> = points.into_iter().map(convex).collect();
+        let next: Vec<Vec<DVec2>> = points
+            .into_iter()
+            .map(|points| convex_hull(points, STILL))
+            .collect();
         if next.iter().any(|corners| corners.len() > MOST_CORNERS) {
             return None;
         }
@@ -67,33 +71,6 @@ fn hulls(flat: &Flat) -> Option<Vec<Vec<DVec2>>> {
         }
     }
     None
-}
-
-/// The corners of a convex hull (Andrew 1979).
-fn convex(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup_by(|a, b| a.distance(*b) < STILL);
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain[..] {
-                let along = point - a;
-                if along.perp_dot(b - a) < -STILL * along.length() {
-                    break;
-                }
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    if points.len() < 3 {
-        return points;
-    }
-    let mut corners = half(&mut points.iter().copied());
-    corners.extend(half(&mut points.iter().rev().copied()));
-    corners
 }
 
 /// Whether a line separates two convex polygons, along a side of one of them.

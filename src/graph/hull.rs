@@ -1,0 +1,269 @@
+//! Convex polygons about what becomes of objects: tight where maps contract little, or only one after
+//! the other.
+
+use crate::geometry::{DAffine2, DVec2, convex_hull, distance_to_hull, thinned};
+
+use super::contract::Products;
+use super::{Graph, Replacement};
+
+/// Polygons are as near as this multiple of their size to the least ones, if that does not take too
+/// long.
+const TOLERANCE: f64 = 1e-4;
+
+/// Rounding leaves no more than this multiple of coordinates unknown.
+const ROUNDING: f64 = 1e-14;
+
+/// Corners that may be mapped, and the rounds that are taken however many that are.
+const MOST_WORK: usize = 1 << 20;
+const LEAST_ROUNDS: usize = 4;
+
+/// Polygons of more corners are made coarser.
+const MOST_CORNERS: usize = 256;
+
+/// Polygons about what becomes of objects.
+pub(super) struct Hulls {
+    /// The number of each object's polygon: its behaviour, or one of its own if it is not replaced.
+    of: Vec<usize>,
+    /// Their corners, counter-clockwise; none where nothing is left.
+    corners: Vec<Vec<DVec2>>,
+    /// The corner that is farthest to the right; the first one is farthest to the left.
+    rightmost: Vec<usize>,
+    /// All lies within these distances of the polygons; in the limit, they are as near to its hull.
+    within: Vec<f64>,
+}
+
+impl Hulls {
+    /// How far what becomes of an object may reach along a vector, and surely reaches in the limit.
+    pub(super) fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
+        let along = self.farthest(object, vector);
+        let within = vector.length() * self.within[self.of[object]];
+        [along + within, along - within]
+    }
+
+    fn farthest(&self, object: usize, vector: DVec2) -> f64 {
+        let corners = self.corners(object);
+        let Some(first) = corners.first() else {
+            return f64::NEG_INFINITY;
+        };
+        let right = self.rightmost[self.of[object]];
+        // Along the lower and along the upper half, corners reach farther and farther, then less.
+        let half = if vector.y < 0.0 {
+            0..right
+        } else {
+            right..corners.len()
+        };
+        let (mut low, mut high) = (half.start, half.end);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            let next = corners.get(middle + 1).unwrap_or(first);
+            if (*next - corners[middle]).dot(vector) > 0.0 {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        corners.get(low).unwrap_or(first).dot(vector)
+    }
+
+    /// The radius of a disc about a point that holds all that becomes of an object.
+    pub(super) fn radius(&self, object: usize, centre: DVec2) -> f64 {
+        let corners = self.corners(object).iter();
+        let far = corners.map(|corner| corner.distance(centre));
+        far.fold(0.0, f64::max) + self.within[self.of[object]]
+    }
+
+    fn sorted(mut self) -> Self {
+        let rightmost = self.corners.iter().map(|corners| {
+            let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
+            (0..corners.len()).max_by(order).unwrap_or_default()
+        });
+        self.rightmost = rightmost.collect();
+        self
+    }
+
+    /// The corners of an object's polygon.
+    pub(super) fn corners(&self, object: usize) -> &[DVec2] {
+        &self.corners[self.of[object]]
+    }
+}
+
+/// Points whose convex hull holds an object by itself.
+type Own<'a> = dyn Fn(usize) -> Vec<DVec2> + 'a;
+
+impl Graph {
+    /// Polygons about what becomes of objects: at every step, or in the limit if it is told which objects
+    /// are drawn there.
+    ///
+    /// The hulls K(o) = conv(own(o) ∪ ⋃ f(K(c))) over the instances c in the place of o are a fixed
+    /// point. Polygons that one round changes by ε are within ε times the sum of what products of maps
+    /// stretch of it (Banach).
+    ///
+    /// `None` where products are not found that contract, and where graphs are not plain.
+    pub(super) fn hulls(&self, own: &Own<'_>, drawn: Option<&[bool]>) -> Option<Hulls> {
+        if !self.is_plain() || self.resets().contains(&true) {
+            return None;
+        }
+        let Products { sum, weights } = self.products()?;
+        let is_drawn = |object: usize| drawn.is_none_or(|drawn| drawn[object]);
+        let images = self.images(is_drawn);
+        let (mut hulls, points) = self.points_of_hulls(own, drawn, images.len());
+        let mut behaviours = vec![1.0; images.len()];
+        for (object, weight) in self.objects.iter().zip(weights) {
+            behaviours[object.behaviour] = weight;
+        }
+        for (behaviour, corners) in hulls.corners[..images.len()].iter_mut().enumerate() {
+            // Whatever polygons begin with is gone in the limit.
+            let is_empty = points[behaviour].is_empty() && images[behaviour].is_empty();
+            corners.extend((!is_empty).then_some(self.middle));
+        }
+        let (mut work, mut asked) = (0, 0);
+        let (mut tolerance, mut coarse) = (0.0, 0.25);
+        for round in 0.. {
+            let polygons = &hulls.corners[..images.len()];
+            let next = points.iter().zip(&images).map(|(points, images)| {
+                let images = images.iter().flat_map(|(map, behaviour)| {
+                    let corners = polygons[*behaviour].iter();
+                    corners.map(|corner| map.transform_point2(*corner))
+                });
+                let points: Vec<DVec2> = points.iter().copied().chain(images).collect();
+                work += points.len();
+                thinned(&convex_hull(points, 0.0), tolerance)
+            });
+            let next: Vec<Vec<DVec2>> = next.collect();
+            let ends = work > MOST_WORK && round >= LEAST_ROUNDS;
+            if next.iter().any(|corners| corners.len() > MOST_CORNERS) {
+                coarse *= 1.5;
+                tolerance *= 1.5;
+            }
+            if ends || round == asked {
+                asked += 1 + round / 4;
+                let changes: Vec<f64> = { next.iter().zip(polygons) }
+                    .map(|(a, b)| apart(a, b))
+                    .collect();
+                // What is left is what thinning does.
+                let settled = changes.iter().all(|change| *change <= 2.0 * tolerance);
+                let change = changes.iter().zip(&behaviours);
+                let change = change.map(|(change, weight)| (change + tolerance) / weight);
+                let change = sum * change.fold(0.0, f64::max);
+                for (within, weight) in hulls.within.iter_mut().zip(&behaviours) {
+                    *within = change * weight;
+                }
+                let corners = || next.iter().flatten();
+                let size = corners().map(|corner| corner.distance(self.middle));
+                let away = corners().map(|corner| corner.length());
+                let [size, away] = [size.fold(0.0, f64::max), away.fold(0.0, f64::max)];
+                let wanted = TOLERANCE * size + ROUNDING * away;
+                let within = &hulls.within[..images.len()];
+                if ends || settled || within.iter().all(|within| *within <= wanted) {
+                    let is_known = within.iter().all(|it| it.is_finite());
+                    return is_known.then(|| hulls.sorted());
+                }
+                tolerance = coarse * wanted / sum;
+            }
+            hulls.corners.splice(..images.len(), next);
+        }
+        None
+    }
+
+    /// What each behaviour's polygon is made of beside images: what is drawn and not replaced, and at
+    /// every step what is. Polygons of what is not replaced stand behind those of behaviours.
+    fn points_of_hulls(
+        &self,
+        own: &Own<'_>,
+        drawn: Option<&[bool]>,
+        behaviours: usize,
+    ) -> (Hulls, Vec<Vec<DVec2>>) {
+        let mut hulls = Hulls {
+            of: Vec::new(),
+            corners: vec![Vec::new(); behaviours],
+            rightmost: Vec::new(),
+            within: vec![f64::INFINITY; behaviours],
+        };
+        for (number, object) in self.objects.iter().enumerate() {
+            if self.is_replaced(number) {
+                hulls.of.push(object.behaviour);
+                continue;
+            }
+            hulls.of.push(hulls.corners.len());
+            let is_drawn = drawn.is_none_or(|drawn| drawn[number]);
+            let points = is_drawn.then(|| own(number));
+            hulls
+                .corners
+                .push(convex_hull(points.unwrap_or_default(), 0.0));
+            hulls.within.push(0.0);
+        }
+        let mut points = vec![Vec::new(); behaviours];
+        for (number, object) in self.behaviours_by_number() {
+            for (_, instance) in self.children(number) {
+                if !self.is_replaced(instance.object) {
+                    let corners = hulls.corners(instance.object).iter();
+                    let map = instance.frame.map;
+                    points[object.behaviour]
+                        .extend(corners.map(|corner| map.transform_point2(*corner)));
+                }
+            }
+        }
+        if drawn.is_none() {
+            for (number, object) in self.objects.iter().enumerate() {
+                if self.is_replaced(number) {
+                    points[object.behaviour].extend(own(number));
+                }
+            }
+        }
+        let points = points.into_iter().map(|points| convex_hull(points, 0.0));
+        (hulls, points.collect())
+    }
+
+    /// The maps in the place of each behaviour's objects, and the behaviours that are replaced there.
+    pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(DAffine2, usize)>> {
+        let mut images = vec![Vec::new(); self.behaviours().count()];
+        for (number, object) in self.behaviours_by_number() {
+            for (_, instance) in self.children(number) {
+                let child = &self.objects[instance.object];
+                let image = (instance.frame.map, child.behaviour);
+                let is_new = || !images[object.behaviour].contains(&image);
+                if self.is_replaced(instance.object) && counts(instance.object) && is_new() {
+                    images[object.behaviour].push(image);
+                }
+            }
+        }
+        images
+    }
+
+    /// Points whose convex hull holds an object's outline, with so much around it.
+    pub(super) fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
+        let points = self.base_elements()[self.objects[object].base_element].control_points();
+        if pad > 0.0 {
+            points.flat_map(|point| around(point, pad)).collect()
+        } else {
+            points.collect()
+        }
+    }
+
+    fn is_replaced(&self, object: usize) -> bool {
+        matches!(self.objects[object].replacement, Replacement::Fixed(_))
+    }
+}
+
+/// The corners of a polygon about a disc.
+pub(super) fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
+    const CORNERS: u32 = 32;
+    let turn = std::f64::consts::TAU / f64::from(CORNERS);
+    let far = radius / libm::cos(turn / 2.0);
+    (0..CORNERS).map(move |corner| {
+        let angle = turn * f64::from(corner);
+        centre + far * DVec2::new(libm::cos(angle), libm::sin(angle))
+    })
+}
+
+/// How far two convex polygons are apart (Hausdorff).
+fn apart(a: &[DVec2], b: &[DVec2]) -> f64 {
+    match (a.is_empty(), b.is_empty()) {
+        (true, true) => return 0.0,
+        (false, false) => (),
+        _ => return f64::INFINITY,
+    }
+    let there = a.iter().map(|point| distance_to_hull(*point, b));
+    let back = b.iter().map(|point| distance_to_hull(*point, a));
+    there.chain(back).fold(0.0, f64::max)
+}

@@ -1,0 +1,155 @@
+//! Boxes of systems that contract little, or by their products only, against other ways to find them.
+
+use kfrac::geometry::{DAffine2, DMat2, DVec2};
+use kfrac::graph::Graph;
+use kfrac::ifs::{Definition, Ifs, Map};
+
+use crate::system;
+
+/// Numbers from -1 to 1, by a linear congruence.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ 0x1405_7b7e_f767_814f;
+        let bits = u32::try_from(self.0 >> 33).unwrap();
+        f64::from(bits) / f64::from(1u32 << 30) - 1.0
+    }
+}
+
+fn written(maps: &[DAffine2]) -> String {
+    let lines = maps.iter().map(|map| {
+        let ([a, b, c, d], [x, y]) = (map.matrix2.to_cols_array(), map.translation.to_array());
+        format!("  - {{matrix: [[{a:?}, {c:?}], [{b:?}, {d:?}]], shift: [{x:?}, {y:?}]}}\n")
+    });
+    format!("maps:\n{}", lines.collect::<String>())
+}
+
+/// How far some point of the limit set is along a direction: of the maps that may come next, those are
+/// followed that lead farthest (beam search) to some points of the limit set.
+fn reached(maps: &[DAffine2], points: &[DVec2], direction: DVec2) -> f64 {
+    const FOLLOWED: usize = 400;
+    let far = |vector: DVec2, offset: f64| {
+        let along = points.iter().map(|point| vector.dot(*point));
+        offset + along.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut beam = vec![(far(direction, 0.0), direction, 0.0)];
+    while beam.iter().any(|(_, vector, _)| vector.length() > 1e-13) {
+        let mut next = Vec::new();
+        for (_, vector, offset) in beam {
+            next.extend(maps.iter().map(|map| {
+                let offset = offset + vector.dot(map.translation);
+                let vector = map.matrix2.transpose() * vector;
+                (far(vector, offset), vector, offset)
+            }));
+        }
+        next.sort_by(|a, b| b.0.total_cmp(&a.0));
+        next.truncate(FOLLOWED);
+        beam = next;
+    }
+    beam[0].0
+}
+
+/// Of a random orbit, the points that are farthest along some directions.
+fn orbit(maps: &[DAffine2], numbers: &mut impl FnMut() -> f64) -> Vec<DVec2> {
+    let directions = (0..24).map(|turn| DVec2::from_angle(f64::from(turn) * 0.2618));
+    let directions: Vec<DVec2> = directions.collect();
+    let mut point = fixed_point(maps[0]);
+    let mut farthest = vec![point; directions.len()];
+    for _ in 0..100_000 {
+        let choice = numbers();
+        let map = usize::from(choice > -0.33) + usize::from(choice > 0.33);
+        point = maps[map].transform_point2(point);
+        for (direction, far) in directions.iter().zip(&mut farthest) {
+            if direction.dot(point) > direction.dot(*far) {
+                *far = point;
+            }
+        }
+    }
+    farthest
+}
+
+fn fixed_point(map: DAffine2) -> DVec2 {
+    (DMat2::IDENTITY - map.matrix2).inverse() * map.translation
+}
+
+fn box_of(maps: &[DAffine2]) -> [DVec2; 2] {
+    let bounds = Graph::of_system(&system(&written(maps))).limit_bounds();
+    let bounds = bounds.unwrap_or_else(|| panic!("{maps:?}"));
+    [bounds.min(), bounds.max()]
+}
+
+fn assert_near(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance * (1.0 + b.abs()), "{a} and {b}");
+}
+
+/// Of maps x → A x ± t, points are Σ ± Aᵏ t: how far they reach is a series.
+#[test]
+fn boxes_of_pairs_are_sums_of_series() {
+    for radius in [0.5, 0.9, 0.97, 0.99, 0.995] {
+        for (angle, skew) in [(0.0, 0.0), (1.0f64, 0.0), (2.3, 3.0), (0.7, -20.0)] {
+            let turn = radius * DMat2::from_angle(angle);
+            let there = DMat2::from_cols(DVec2::X, DVec2::new(skew, 1.0));
+            let linear = there * turn * there.inverse();
+            let shift = DVec2::new(0.3, 0.7);
+            let pair = [shift, -shift].map(|it| DAffine2::from_mat2_translation(linear, it));
+            let (mut term, mut reach) = (shift, DVec2::ZERO);
+            for _ in 0..10_000 {
+                reach += term.abs();
+                term = linear * term;
+            }
+            let [min, max] = box_of(&pair);
+            for axis in [0, 1] {
+                assert_near(max[axis], reach[axis], 1e-11);
+                assert_near(min[axis], -reach[axis], 1e-11);
+            }
+        }
+    }
+}
+
+/// Maps whose own norms are above 1, made to have a radius by the bound from below.
+#[test]
+fn boxes_hold_what_products_contract() {
+    let mut numbers = Numbers(7);
+    let mut next = || numbers.next();
+    for radius in [0.5, 0.8, 0.9, 0.95, 0.98] {
+        for _ in 0..2 {
+            let mut maps: Vec<DAffine2> = (0..3)
+                .map(|_| {
+                    let linear = DMat2::from_cols_array(&[next(), 6.0 * next(), next(), next()]);
+                    DAffine2::from_mat2_translation(linear, DVec2::new(next(), next()))
+                })
+                .collect();
+            let own = Ifs::new(Definition {
+                maps: maps
+                    .iter()
+                    .map(|map| scaled(*map, 0.01))
+                    .map(Map::new)
+                    .collect(),
+                ..Definition::default()
+            });
+            let lower = 100.0 * own.unwrap().contraction().lower;
+            for map in &mut maps {
+                *map = scaled(*map, radius / lower);
+            }
+            let [min, max] = box_of(&maps);
+            let points = orbit(&maps, &mut next);
+            let slack = 1e-9 * (max - min);
+            for point in &points {
+                assert!((*point + slack).cmpge(min).all() && (*point - slack).cmple(max).all());
+            }
+            for (direction, reach) in [
+                (DVec2::X, max.x),
+                (DVec2::NEG_X, -min.x),
+                (DVec2::Y, max.y),
+                (DVec2::NEG_Y, -min.y),
+            ] {
+                assert_near(reached(&maps, &points, direction), reach, 1e-9);
+            }
+        }
+    }
+}
+
+fn scaled(map: DAffine2, factor: f64) -> DAffine2 {
+    DAffine2::from_mat2_translation(factor * map.matrix2, map.translation)
+}
