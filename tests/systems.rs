@@ -486,6 +486,30 @@ fn what_is_not_decided_is_said() {
 }
 
 #[test]
+fn what_overlaps_too_much_to_be_grown_can_be_drawn_at_random() {
+    let text = "kind: ifs\nmaps:\n  - {times: [0.9, 0.1]}\n  - {times: [0.7, -0.55], shift: [1, 0]}\n  \
+                - {times: [-0.3, 0.85], shift: [0, 1]}\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("full.yaml"), text).unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
+    let arguments = [
+        "grow",
+        "full.yaml",
+        "--max-elements",
+        "10000",
+        "-o",
+        "full.png",
+    ];
+    let output = command
+        .current_dir(&folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("--method chaos --points 10M"), "{said}");
+}
+
+#[test]
 fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     let kfrac = |arguments: &[&str]| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));

@@ -148,8 +148,14 @@ impl GrowthArguments {
             }
             RenderError::Walk(WalkError::TooManyElements { limit }) => {
                 let limit = counted(&limit.into(), "element");
+                let otherwise = match loaded.model {
+                    Model::Ifs(_) => {
+                        ", and --method chaos --points 10M draws it by random iteration"
+                    }
+                    _ => "",
+                };
                 anyhow!(
-                    "{} has more than {limit}; --max-elements allows more",
+                    "{} has more than {limit}; --max-elements allows more{otherwise}",
                     loaded.name
                 )
                 .into()
