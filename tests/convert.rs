@@ -452,3 +452,24 @@ fn other_rules_become_strings_with_ways() {
     }
     assert_same("a tree", [&graphs[0], &graphs[1]], Set::Limit);
 }
+
+/// Branches as long as what they stand on, which leads back to it by way of a shorter one only.
+#[test]
+fn what_shrinks_by_way_of_others_is_not_doubted() {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue
+        .component(Shelf::Instancing, "ternary-tree")
+        .unwrap();
+    let tree = model(&Document::read(&source, &catalogue).unwrap());
+    let rule = convert(&tree, Kind::Rule, Keeps::Limit).unwrap();
+    let (model, doubts) = rule.resolve(&[]).unwrap();
+    assert!(doubts.is_empty(), "{doubts}");
+    let boxes = [tree, model].map(|it| it.compile(4).unwrap().limit_bounds().unwrap());
+    assert!((boxes[0].size() - boxes[1].size()).length() < 1e-9);
+    // A branch that leads to itself as long as it is has no limit.
+    let text = "initiator: {elements: [{from: [0, 0], to: [1, 0], use: a}]}\ngenerators:\n  \
+                a: {elements: [{from: [0, 0], to: [1, 0], use: b}]}\n  \
+                b: {elements: [{from: [0, 0], to: [1, 0], use: a}]}\n";
+    let (_, doubts) = document_of(text).resolve(&[]).unwrap();
+    assert!(doubts.to_string().contains("does not shrink"), "{doubts}");
+}

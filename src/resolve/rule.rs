@@ -9,10 +9,12 @@ mod selection;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::diagnostic::Place;
+use crate::diagnostic::{Diagnostic, Place};
 use crate::document::RuleDocument;
 use crate::heading::Heading;
 use crate::rule::{BaseElement, Moment, Rule, Selection};
+
+use generator::loops_shrink;
 
 use super::Resolver;
 
@@ -24,6 +26,9 @@ pub(super) struct OfRule {
     base_element_places: Vec<(Place, usize)>,
     generator_names: Vec<String>,
     generator_numbers: HashMap<String, usize>,
+    /// What is said of elements that are not shorter than what they replace, unless they become so
+    /// before they are replaced the same way again.
+    growing: Vec<Diagnostic>,
 }
 
 impl Resolver<OfRule> {
@@ -54,13 +59,20 @@ impl Resolver<OfRule> {
             .collect();
         let selection = self.selection(document, &moment);
         self.check_generators_are_selected(document);
+        let growing = std::mem::take(&mut self.kind.growing);
+        let selection = selection.unwrap_or(Selection::Always(0));
+        if !growing.is_empty() && !loops_shrink(&generators, &selection) {
+            growing
+                .into_iter()
+                .for_each(|doubt| self.diagnostics.push(doubt));
+        }
         Rule {
             heading,
             origin,
             points,
             initiator,
             generators,
-            selection: selection.unwrap_or(Selection::Always(0)),
+            selection,
             base_elements: std::mem::take(&mut self.kind.base_elements),
         }
     }

@@ -9,7 +9,7 @@ use crate::geometry::DVec2;
 
 use super::OfRule;
 use crate::resolve::Resolver;
-use crate::rule::{Generator, ListedElement, Origin, Part, Placement};
+use crate::rule::{Generator, ListedElement, Origin, Part, Placement, Selection};
 
 impl Resolver<OfRule> {
     pub(super) fn generator(
@@ -112,7 +112,7 @@ impl Resolver<OfRule> {
         }
     }
 
-    /// Warns of fertile elements that are not shorter than what they replace.
+    /// Keeps in mind fertile elements that are not shorter than what they replace.
     fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
         let value = |number: usize| constant_point(&points[number]);
         let relative = parts
@@ -139,10 +139,47 @@ impl Resolver<OfRule> {
                 let warning = Diagnostic::warning(message)
                     .at(&written[element.to].place)
                     .hint(hint);
-                self.diagnostics.push(warning);
+                self.kind.growing.push(warning);
             }
         }
     }
+}
+
+/// Whether what leads back to a generator becomes shorter on the way, whatever elements may be replaced
+/// by: the largest products of lengths on all ways settle (Bellman 1958).
+pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> bool {
+    /// Lengths are rounded; what comes back as long as it was must not seem to shrink.
+    const SLACK: f64 = 1.0 + 1e-9;
+    let candidates = selection.candidates();
+    let mut ways = Vec::new();
+    for (from, generator) in generators.iter().enumerate() {
+        let parts = generator.parts.iter();
+        let relative = parts.filter(|part| part.placement != Placement::SeedsAsInitiator);
+        let elements = relative.flat_map(|part| &part.elements);
+        for element in elements.filter(|element| element.fertile) {
+            let ends = [element.from, element.to];
+            let [Some(start), Some(end)] = ends.map(|it| constant_point(&generator.points[it]))
+            else {
+                return false;
+            };
+            let length = (end - start).length() * SLACK;
+            match element.generator {
+                Some(to) => ways.push((from, to, length)),
+                None => ways.extend(candidates.iter().map(|&to| (from, to, length))),
+            }
+        }
+    }
+    let mut longest = vec![1.0; generators.len()];
+    (0..=generators.len()).any(|_| {
+        let mut has_settled = true;
+        for &(from, to, length) in &ways {
+            if longest[from] * length > longest[to] {
+                longest[to] = longest[from] * length;
+                has_settled = false;
+            }
+        }
+        has_settled
+    })
 }
 
 fn constant_point([x, y]: &[Program; 2]) -> Option<DVec2> {
