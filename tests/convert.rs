@@ -473,3 +473,15 @@ fn what_shrinks_by_way_of_others_is_not_doubted() {
     let (_, doubts) = document_of(text).resolve(&[]).unwrap();
     assert!(doubts.to_string().contains("does not shrink"), "{doubts}");
 }
+
+/// Messages call objects as the file does.
+#[test]
+fn what_is_refused_is_called_by_its_name() {
+    let text = "kind: instancing\nobjects:\n  twig: [{polyline: [[0, 0], [0, 1]]}]\n  \
+                bough: {union: [twig, {object: leaf, translate: [0, 1]}], scale: 1/2}\n  \
+                leaf: {union: [twig, {object: bough, scale: [1/2, 1/3]}], scale: 1/2}\n\
+                scene: [bough]\n";
+    let refused = convert(&model(&document_of(text)), Kind::Rule, Keeps::Approximants);
+    let said = refused.unwrap_err().to_string();
+    assert!(said.contains("of the object 'leaf'"), "{said}");
+}

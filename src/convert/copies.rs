@@ -80,6 +80,7 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
         objects,
         scene: replaced(&structure.scene)?,
         words: structure.words,
+        names: Vec::new(),
     })
 }
 

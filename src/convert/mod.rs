@@ -26,7 +26,7 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
-use crate::graph::CompileError;
+use crate::graph::{CompileError, Graph};
 use crate::heading::Heading;
 use crate::model::{Kind, Model};
 
@@ -105,7 +105,15 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
             let shapes = graph.base_elements().to_vec();
             Structure::of_ifs(system.ifs(), shapes)
         }
-        _ => Structure::of_graph(&graph, steps, keeps)?,
+        Model::Instancing(own) => {
+            let objects = Graph::canonical_objects(own).into_iter();
+            let name = |object: usize| own.objects()[object].name.clone();
+            let names: Vec<_> = objects
+                .map(|it| it.map_or_else(String::new, name))
+                .collect();
+            Structure::of_graph(&graph, steps, keeps, &names)?
+        }
+        _ => Structure::of_graph(&graph, steps, keeps, &[])?,
     };
     let own = match to {
         Kind::Ifs => ifs::write(&structure, keeps)?,

@@ -30,6 +30,8 @@ pub(super) struct Structure {
     pub(super) scene: Vec<Placed>,
     /// What messages call an instance of an object.
     pub(super) words: Words,
+    /// What the file calls objects, if it does, by number.
+    pub(super) names: Vec<String>,
 }
 
 /// What the parts of a file are called.
@@ -43,7 +45,13 @@ pub(super) enum Words {
 impl Structure {
     /// The objects of a graph, one for each behaviour; where they know how many steps are to come, those of
     /// a number of steps. For the limit, what comes to nothing is left out.
-    pub(super) fn of_graph(graph: &Graph, steps: u32, keeps: Keeps) -> Result<Self, Refusal> {
+    /// `names` are what the file calls the graph's objects, if it does.
+    pub(super) fn of_graph(
+        graph: &Graph,
+        steps: u32,
+        keeps: Keeps,
+        names: &[String],
+    ) -> Result<Self, Refusal> {
         let alive = match keeps {
             Keeps::Limit => graph.alive(true),
             Keeps::Approximants => vec![true; graph.objects().len()],
@@ -73,8 +81,9 @@ impl Structure {
                 _ => live[object.behaviour],
             }
         };
-        let mut objects = Vec::new();
-        for object in graph.behaviours() {
+        let (mut objects, mut called) = (Vec::new(), Vec::new());
+        for (number, object) in graph.behaviours_by_number() {
+            called.extend(names.get(number).cloned());
             objects.push(match &object.replacement {
                 Replacement::Fixed(production) => {
                     let all = production.placed_instances().map(|(_, instance)| instance);
@@ -93,6 +102,7 @@ impl Structure {
             } else {
                 Words::Elements
             },
+            names: called,
         }
         .renumbered();
         if structure.scene.is_empty() {
@@ -143,6 +153,7 @@ impl Structure {
             objects,
             scene,
             words: Words::Maps,
+            names: Vec::new(),
         }
     }
 
@@ -175,7 +186,9 @@ impl Structure {
             })
             .collect()
         };
+        let names = order.iter().filter_map(|&object| self.names.get(object));
         Self {
+            names: names.cloned().collect(),
             objects: order
                 .iter()
                 .map(|&object| renumbered(&self.objects[object]))
@@ -213,6 +226,9 @@ impl Structure {
         let number = number + 1;
         match object {
             None => format!("{what} {number} of {scene}"),
+            Some(object) if object < self.names.len() => {
+                format!("{what} {number} of the {of} '{}'", self.names[object])
+            }
             Some(_) if self.objects.len() == 1 => format!("{what} {number} of the {of}"),
             Some(object) => format!("{what} {number} of {of} {}", object + 1),
         }

@@ -339,7 +339,7 @@ impl Graph {
     }
 
     /// The same with their numbers.
-    fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object)> {
+    pub(crate) fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object)> {
         // Behaviours are numbered in the order of the objects.
         let mut next = 0;
         self.objects.iter().enumerate().filter(move |(_, object)| {
