@@ -47,7 +47,7 @@ impl Hidden {
             first: Filled::layers(scene.classes.count()),
             reaches: reaches.into(),
             overhang: match style.width {
-                Width::Pixels(width) => width * overhang(style),
+                Width::Pixels(width) => width * graph.widest().unwrap_or(1.0) * overhang(style),
                 Width::Relative(_) => 0.0,
             },
         }

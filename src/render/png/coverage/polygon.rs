@@ -158,11 +158,13 @@ impl Plane {
     /// otherwise nothing.
     #[inline]
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
-        let is_small = match vertices.len() {
-            ..=FEW_VERTICES => self.polygon_of::<FEW_VERTICES>(vertices),
-            ..=SOME_VERTICES => self.polygon_of::<SOME_VERTICES>(vertices),
-            ..=MOST_VERTICES => self.polygon_of::<MOST_VERTICES>(vertices),
-            _ => false,
+        let count = vertices.len();
+        let is_small = if count <= FEW_VERTICES {
+            self.polygon_of::<FEW_VERTICES>(vertices)
+        } else if count <= SOME_VERTICES {
+            self.polygon_of::<SOME_VERTICES>(vertices)
+        } else {
+            self.polygon_of::<MOST_VERTICES>(vertices)
         };
         is_small || self.area(vertices)
     }
