@@ -241,7 +241,7 @@ fn windows_of_the_library_show_their_part() {
         ("peano", 3, 0.2),
         ("koch-snowflake", 4, 0.3),
         ("pythagoras", 8, 0.6),
-        ("self-seeding-square", 3, 0.6),
+        ("self-seeding-square", 3, 0.7),
         ("mandala", 3, 0.6),
         ("base-element", 4, 0.3),
         ("penrose-stars", 3, 0.9),
