@@ -1,4 +1,4 @@
-//! Outlines of closed base elements as polygons, no finer than a surface shows them.
+//! Outlines of base elements as straight lines, no finer than a surface shows them.
 
 use std::sync::OnceLock;
 
@@ -6,7 +6,7 @@ use crate::geometry::DVec2;
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
-use super::png::bounding_within;
+use super::png::{bounding_within, flattened_within};
 
 /// Outlines of straight sides are made coarser if they have more than this.
 const FEW_SIDES: usize = 8;
@@ -33,8 +33,9 @@ impl Coarse {
         any.then_some(Self { grain, outlines })
     }
 
-    /// The corners of a base element, in its unit frame and with its inside to the left, where its frame
-    /// stretches lengths to so many pixels at most; `None` where it is to be drawn as it is.
+    /// The corners of a base element, in its unit frame, where its frame stretches lengths to so many
+    /// pixels at most: of a closed one with its inside to the left, of an open one from end to end.
+    /// `None` where it is to be drawn as it is.
     pub(super) fn corners(
         &self,
         graph: &Graph,
@@ -49,7 +50,7 @@ impl Coarse {
             reason = "not negative; casts saturate"
         )]
         let corners = levels.get(halvings as usize)?;
-        let made = || polygon(&graph.base_elements()[base_element], libm::exp2(-halvings));
+        let made = || straightened(&graph.base_elements()[base_element], libm::exp2(-halvings));
         Some(corners.get_or_init(made))
     }
 }
@@ -58,11 +59,13 @@ impl Coarse {
 fn is_fine(base_element: &BaseElement) -> bool {
     let pieces = base_element.pieces();
     let has_curves = pieces.iter().any(|piece| matches!(piece, Piece::Cubic(..)));
-    base_element.is_closed() && (has_curves || pieces.len() > FEW_SIDES)
+    has_curves || pieces.len() > FEW_SIDES
 }
 
-/// The corners of a polygon that lies within a tolerance of a closed outline, or within two of curves.
-fn polygon(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
+/// The corners of lines that lie within a tolerance of an outline, or within two of curves that bound
+/// an area.
+fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
+    let is_closed = base_element.is_closed();
     let mut corners = vec![base_element.start()];
     let mut at = base_element.start();
     let mut has_curves = false;
@@ -72,37 +75,42 @@ fn polygon(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
             Piece::Cubic(a, b, end) => {
                 has_curves = true;
                 let curve = [at, a, b, end].map(|point| point.to_array());
-                // As far on either side, for the sides bound as much.
-                let sides = bounding_within(curve, 2.0 * tolerance);
-                corners.extend(sides.map(DVec2::from));
+                if is_closed {
+                    // As far on either side, for the sides bound as much.
+                    let sides = bounding_within(curve, 2.0 * tolerance);
+                    corners.extend(sides.map(DVec2::from));
+                } else {
+                    corners.extend(flattened_within(curve, tolerance).map(DVec2::from));
+                }
             }
         }
         at = piece.end();
     }
-    // It ends where it starts.
-    corners.pop();
     if !has_curves {
         corners = thinned(&corners, tolerance);
     }
-    if base_element.signed_area() < 0.0 {
-        corners.reverse();
+    if is_closed {
+        // It ends where it starts.
+        corners.pop();
+        if base_element.signed_area() < 0.0 {
+            corners.reverse();
+        }
     }
     corners
 }
 
-/// The corners of a polygon without those that may be left out: no corner is farther than a tolerance from
-/// the side that comes to stand for it (Ramer 1972; Douglas & Peucker 1973).
+/// The corners of a line, from end to end, without those that may be left out: no corner is farther than
+/// a tolerance from the side that comes to stand for it (Ramer 1972; Douglas & Peucker 1973).
 fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
-    let Some(&first) = corners.first() else {
+    let Some(last) = corners.len().checked_sub(1) else {
         return Vec::new();
     };
-    let ring: Vec<DVec2> = corners.iter().copied().chain([first]).collect();
-    let mut stays = vec![false; ring.len()];
-    stays[0] = true;
-    let mut open = vec![(0, ring.len() - 1)];
+    let mut stays = vec![false; corners.len()];
+    (stays[0], stays[last]) = (true, true);
+    let mut open = vec![(0, last)];
     while let Some((from, to)) = open.pop() {
-        let [start, end] = [ring[from], ring[to]];
-        let far = |&corner: &usize| distance(ring[corner], start, end);
+        let [start, end] = [corners[from], corners[to]];
+        let far = |&corner: &usize| distance(corners[corner], start, end);
         let farthest = (from + 1..to).max_by(|a, b| far(a).total_cmp(&far(b)));
         if let Some(corner) = farthest.filter(|corner| far(corner) > tolerance) {
             stays[corner] = true;
@@ -127,7 +135,7 @@ fn distance(point: DVec2, start: DVec2, end: DVec2) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{distance, polygon, thinned};
+    use super::{distance, straightened, thinned};
     use crate::geometry::DVec2;
     use crate::rule::{BaseElement, Piece};
 
@@ -155,7 +163,7 @@ mod tests {
         let mut before = 0;
         for level in 0..14 {
             let tolerance = libm::exp2(-f64::from(level));
-            let corners = polygon(&circle, tolerance);
+            let corners = straightened(&circle, tolerance);
             let off = |corner: &DVec2| (corner.length() - 1.0).abs();
             assert!(
                 corners
@@ -171,20 +179,37 @@ mod tests {
     }
 
     #[test]
+    fn open_curves_keep_their_ends() {
+        let [start, a, b, end] = [[0.0, 0.0], [0.2, 0.7], [0.8, -0.6], [1.0, 0.0]].map(DVec2::from);
+        let curve = BaseElement::new(start, vec![Piece::Cubic(a, b, end)], false).unwrap();
+        let finest = straightened(&curve, 1e-7);
+        for level in 2..14 {
+            let tolerance = libm::exp2(-f64::from(level));
+            let corners = straightened(&curve, tolerance);
+            assert_eq!([corners[0], corners[corners.len() - 1]], [start, end]);
+            for &point in &finest {
+                let sides = corners.iter().zip(&corners[1..]);
+                let far = sides.map(|(a, b)| distance(point, *a, *b));
+                assert!(far.fold(f64::INFINITY, f64::min) <= tolerance);
+            }
+        }
+    }
+
+    #[test]
     fn what_is_left_out_lies_within_the_tolerance() {
         let corner = |number: u32| {
             let turn = f64::from(number) / 500.0 * std::f64::consts::TAU;
             let radius = 1.0 + 0.1 * libm::sin(37.0 * turn) + 0.01 * libm::cos(301.0 * turn);
             DVec2::from_angle(turn) * radius
         };
-        let corners: Vec<DVec2> = (0..500).map(corner).collect();
+        let corners: Vec<DVec2> = (0..=500).map(corner).collect();
         let mut before = corners.len() + 1;
         for tolerance in [1e-6, 1e-3, 0.02, 0.1, 0.3] {
             let thin = thinned(&corners, tolerance);
             assert!(thin.len() < before, "{tolerance}");
             before = thin.len();
-            let nexts = thin.iter().cycle().skip(1);
-            let sides: Vec<_> = thin.iter().zip(nexts).collect();
+            let sides: Vec<_> = thin.iter().zip(&thin[1..]).collect();
+            assert_eq!([thin[0], thin[thin.len() - 1]], [corners[0], corners[500]]);
             for &corner in &corners {
                 let far = sides.iter().map(|(a, b)| distance(corner, **a, **b));
                 assert!(far.fold(f64::INFINITY, f64::min) <= tolerance);

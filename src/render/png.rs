@@ -13,7 +13,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coverage::{RoundPen, Sheet, Stamp, bounding_within};
+pub(super) use coverage::{RoundPen, Sheet, Stamp, bounding_within, flattened_within};
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 

@@ -277,14 +277,14 @@ impl<'a> Sketcher<'a> {
         };
         let [meets_start, meets_end] = meets_frame(base_element, reversed);
         let (start, pieces) = base_element.outline(reversed);
-        let start = map.transform_point2(start);
+        let start = self.position(map.transform_point2(start));
         let open = self.open.map(|open| &mut self.sketch.marks[open]);
         match open {
             Some(Mark::Line(line)) if element.joined && line.look == look => {
                 let shares = line.meets_frame[1] && meets_start;
                 line.meets_frame[1] = meets_end;
                 if !shares {
-                    self.line_to(start);
+                    self.go_to(start);
                 }
             }
             _ => {
@@ -294,8 +294,22 @@ impl<'a> Sketcher<'a> {
                     meets_frame: [meets_start, meets_end],
                 }));
                 self.open = Some(self.sketch.marks.len() - 1);
-                self.start_at(start);
+                self.sketch.points.push(start);
             }
+        }
+        // What a ring encircles is told by its curves.
+        let corners = self.corners(element).filter(|_| look.kind == Kind::Line);
+        if let Some([first, between @ .., last]) = corners {
+            let map = self.scene.canvas.map(&map);
+            let mut go_to = |corner: &DVec2| {
+                self.go_to(position(map.transform_point2(*corner) * FINE));
+            };
+            if reversed {
+                between.iter().rev().chain([first]).for_each(&mut go_to);
+            } else {
+                between.iter().chain([last]).for_each(&mut go_to);
+            }
+            return;
         }
         for piece in pieces {
             self.piece(&piece.transformed(&map));
@@ -369,7 +383,7 @@ impl<'a> Sketcher<'a> {
             }
         };
         match (is_drawn, is_closed) {
-            (true, true) if self.means.coarse.is_some() && self.is_hidden(&element.subtree()) => {
+            (true, _) if self.means.coarse.is_some() && self.is_hidden(&element.subtree()) => {
                 self.pass_by(Mark::Break);
             }
             (true, true) => self.polygon(element, base_element),

@@ -11,8 +11,15 @@ type Curve = [[f64; 2]; 4];
 
 /// Where the lines end which a curve is drawn as.
 pub(crate) fn flattened(curve: [Position; 4]) -> impl Iterator<Item = Position> {
-    let curve = places(curve);
-    lines(curve, least_lines(curve, TOLERANCE), 1.0).map(rounded)
+    flattened_within(places(curve), TOLERANCE).map(rounded)
+}
+
+/// The same of a curve in any units, within a tolerance.
+pub(crate) fn flattened_within(
+    curve: Curve,
+    tolerance: f64,
+) -> impl ExactSizeIterator<Item = [f64; 2]> {
+    lines(curve, least_lines(curve, tolerance), 1.0)
 }
 
 /// Where lines end which a curve is drawn as where it bounds a polygon: they are as close, and bound

@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
 pub(crate) use area::{MOST_CORNERS, has_room};
-pub(crate) use curve::{bounding, bounding_within, flattened};
+pub(crate) use curve::{bounding, bounding_within, flattened, flattened_within};
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
