@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use common::{compiled, document, document_of, grown, resolved};
 use kfrac::geometry::DVec2;
-use kfrac::graph::Graph;
+use kfrac::graph::{Graph, Replacement};
 use kfrac::grow::Growth;
 use kfrac::measure::{Distance, Precision, Set, Subject, hausdorff};
 
@@ -91,10 +91,84 @@ condensation:
     assert_is(&distance(&graph(disk), &graph(point), 1e-2), 1.0, 3e-2);
 }
 
+/// Of such maps there are so many products down to the error that none can look at them all.
+#[test]
+fn copies_that_overlap_a_lot_are_covered() {
+    let corners = ["[0, 0]", "[16, 0]", "[8, 14]"];
+    let maps = corners.map(|corner| format!("  - {{scale: 0.9, fixed: {corner}}}\n"));
+    let copies = graph(&format!("kind: ifs\nmaps:\n{}", maps.concat()));
+    let corners = corners.join(", ");
+    let triangle = format!("condensation:\n  - polygon: [{corners}]\n");
+    let triangle = graph(&format!(
+        "kind: ifs\nmaps: [{{scale: 1/2, fixed: [8, 5]}}]\n{triangle}"
+    ));
+    let found = distance(&copies, &triangle, 1e-2);
+    assert!(found.may_be_same() && found.error < 0.17, "{found:?}");
+    // Without a corner of it, it is the line that is left.
+    let line = graph("kind: ifs\nmaps: [{scale: 1/2}, {scale: 1/2, shift: [8, 0]}]\n");
+    assert_is(&distance(&copies, &line, 1e-2), 14.0, 0.17);
+}
+
+/// Objects of sizes and sets of their own, whose copies overlap.
+#[test]
+fn structures_that_overlap_a_lot_are_covered() {
+    let structure = "\
+kind: instancing
+objects:
+  large:
+    - {object: small, scale: 9}
+    - {object: large, scale: 0.8, rotate: 30, translate: [3, 0]}
+  small:
+    - {segment: [[0, 0], [1, 0]]}
+    - {object: large, scale: 0.1, rotate: -20, translate: [0, 0.5]}
+    - {object: small, scale: 0.85, rotate: 70, translate: [0.3, 0.2]}
+scene: [{object: large, scale: [1, 2]}, {segment: [[40, 0], [41, 0]]}]
+";
+    let structure = graph(structure);
+    let found = distance(&structure, &structure, 1e-2);
+    let subject = Subject::new(&structure, Set::Limit).unwrap();
+    let size = subject.bounds().size().max_element();
+    assert!(found.error <= 0.011 * size, "{found:?}, {size}");
+    // Points of the set, each by some ten maps that are picked by turns.
+    let cover = subject.cover(0.005 * size, 4_000_000).unwrap();
+    let mut missed = 0;
+    for point in orbit(&structure, 2000) {
+        let near = |other: &DVec2| (*other - point).length() <= 0.005 * size;
+        missed += usize::from(!cover.iter().any(near));
+    }
+    assert_eq!(missed, 0);
+}
+
 #[test]
 fn two_dragons_differ() {
     let found = distance(&rule("dragon"), &rule("twindragon"), 1e-2);
     assert!(!found.may_be_same() && found.value() > 0.1, "{found:?}");
+}
+
+/// Points of the limit set, by long walks from the initiator to what is kept.
+fn orbit(graph: &Graph, count: u64) -> Vec<DVec2> {
+    let walk = |seed: u64| {
+        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+        let mut pick = |count: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as usize % count
+        };
+        let start = &graph.initiator(0).instances;
+        let first = &start[pick(start.len())];
+        let (mut object, mut map) = (first.object, first.frame.map);
+        for _ in 0..400 {
+            let Replacement::Fixed(production) = &graph.objects()[object].replacement else {
+                break;
+            };
+            let next = &production.body.instances[pick(production.body.instances.len())];
+            (object, map) = (next.object, map * next.frame.map);
+        }
+        let outline = &graph.base_elements()[graph.objects()[object].base_element];
+        map.transform_point2(outline.start())
+    };
+    (1..=count).map(walk).collect()
 }
 
 /// The corners of an approximant.

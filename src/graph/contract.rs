@@ -7,11 +7,11 @@ use super::{Graph, Instance, Replacement};
 
 /// How much products of maps stretch: with objects' weights u, one from an object c to one o that it is
 /// in, over n instances, no more than N(n) u(o) / u(c).
-pub(super) struct Products {
+pub(crate) struct Products {
     /// No less than the sum of N(n) over all n.
-    pub(super) sum: f64,
+    pub(crate) sum: f64,
     /// By object, 1 or more.
-    pub(super) weights: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
 }
 
 impl Graph {
@@ -23,7 +23,7 @@ impl Graph {
     }
 
     /// How much products stretch; `None` if they are not found to contract.
-    pub(super) fn products(&self) -> Option<Products> {
+    pub(crate) fn products(&self) -> Option<Products> {
         let ratio = self.longest_ratio();
         let even = |sum| Products {
             sum,
@@ -62,7 +62,7 @@ impl Graph {
     /// by more than λ u(o) / u(c), λ < 1. They are the largest products of stretches over λ along any way
     /// (Bellman 1958).
     fn products_by_weights(&self) -> Option<Products> {
-        const FACTORS: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
+        const FACTORS: [f64; 8] = [0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999];
         let count = self.objects.len();
         let weights = |factor: f64| {
             let mut weights = vec![1.0f64; count];

@@ -4,6 +4,7 @@ mod cover;
 mod hausdorff;
 mod nearest;
 mod region;
+mod squares;
 
 pub use cover::{NoCover, Set, Subject};
 pub use hausdorff::{Distance, Precision, hausdorff};

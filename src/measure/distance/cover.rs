@@ -6,6 +6,7 @@ use crate::graph::{Graph, NoLimit, Replacement};
 use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, extent, walk};
 
 use super::region::{Region, TooMany, radius_of};
+use super::squares::Squares;
 
 /// Why a set is not covered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -81,7 +82,8 @@ impl<'a> Subject<'a> {
     /// one.
     ///
     /// Copies that are smaller than that become one point each, in the middle of a disc that holds
-    /// the copy, and of points that are near each other one is kept.
+    /// the copy, and of points that are near each other one is kept. Where copies overlap a lot, squares
+    /// of grids that they come to stand for them.
     ///
     /// # Errors
     ///
@@ -105,7 +107,7 @@ impl<'a> Subject<'a> {
     ) -> Result<(), NoCover> {
         let mut region = Region::new(&self.bounds, radius, most, visit);
         match &self.set {
-            Set::Limit => cover_limit(self.graph, &mut region)?,
+            Set::Limit => cover_limit(self.graph, most, &mut region)?,
             Set::Approximant(growth) => {
                 let mut visitor = Approximant {
                     graph: self.graph,
@@ -135,7 +137,7 @@ fn discs(graph: &Graph) -> Bounds {
 }
 
 /// The radius of a disc about the graph's middle that holds what becomes of each object.
-fn reaches(graph: &Graph) -> Vec<f64> {
+pub(super) fn reaches(graph: &Graph) -> Vec<f64> {
     let middle = graph.middle();
     graph.reaches(|object| match object.replacement {
         Replacement::Kept => radius_of(&graph.base_elements()[object.base_element], middle),
@@ -143,14 +145,30 @@ fn reaches(graph: &Graph) -> Vec<f64> {
     })
 }
 
-fn cover_limit(graph: &Graph, region: &mut Region<'_>) -> Result<(), NoCover> {
+/// Where more copies are looked at for each point, they overlap.
+const OVERLAPPING: usize = 8;
+
+/// So many copies do not tell.
+const FEW: usize = 4096;
+
+/// Covers a limit set by its copies that are as small as the radius, or by squares where these overlap
+/// a lot.
+fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<(), NoCover> {
     let alive = graph.alive(true);
     let middle = graph.middle();
     let reaches = reaches(graph);
     let mut open: Vec<(usize, DAffine2)> = Vec::new();
     let initiator = graph.initiator(0).instances.iter().rev();
     open.extend(initiator.map(|instance| (instance.object, instance.frame.map)));
+    let (mut looked_at, mut may_be_squares) = (0, true);
     while let Some((number, map)) = open.pop() {
+        looked_at += 1;
+        if may_be_squares && looked_at > FEW + OVERLAPPING * region.visited() {
+            may_be_squares = false;
+            if let Some(squares) = Squares::found(graph, region.radius, most)? {
+                return Ok(squares.visit(region)?);
+            }
+        }
         if !alive[number] {
             continue;
         }
@@ -164,7 +182,7 @@ fn cover_limit(graph: &Graph, region: &mut Region<'_>) -> Result<(), NoCover> {
             region.work(1)?;
             continue;
         }
-        if reach <= region.radius {
+        if reach <= region.near {
             region.add(middle)?;
             continue;
         }

@@ -3,7 +3,7 @@
 use crate::geometry::DVec2;
 
 use super::cover::{NoCover, Subject};
-use super::nearest::Nearest;
+use super::nearest::{Nearest, Open};
 
 /// How exactly a distance is told, and for how much work.
 #[derive(Clone, Copy, Debug)]
@@ -108,10 +108,10 @@ pub fn hausdorff(
 
 /// The farthest that a point of one set is from the nearest of another.
 fn farthest(from: &Nearest, to: &Nearest) -> f64 {
-    let (mut farthest, mut near) = (0.0, 0);
+    let (mut farthest, mut near, mut open) = (0.0, 0, Open::new());
     for &point in from.points() {
         // A point that is near enough does not matter, so its nearest need not be found.
-        let (place, square) = to.find(point, farthest, near);
+        let (place, square) = to.find(point, farthest, near, &mut open);
         near = place;
         farthest = f64::max(farthest, square);
     }

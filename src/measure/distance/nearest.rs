@@ -10,6 +10,10 @@ pub(super) struct Nearest {
     by_height: Vec<bool>,
 }
 
+/// Ranges that are still to be looked into, with the square of the least distance that their points may
+/// have: memory that one search after the other uses.
+pub(super) type Open = Vec<(usize, usize, f64)>;
+
 /// Ranges of no more points than this are looked through.
 const FEW: usize = 8;
 
@@ -44,10 +48,16 @@ impl Nearest {
 
     /// The place of the nearest point and the square of its distance, or of one that is within the
     /// distance whose square is `enough`; `guess` is the place of a point that may be near.
-    pub(super) fn find(&self, point: DVec2, enough: f64, guess: usize) -> (usize, f64) {
+    pub(super) fn find(
+        &self,
+        point: DVec2,
+        enough: f64,
+        guess: usize,
+        open: &mut Open,
+    ) -> (usize, f64) {
         let mut best = (guess, (self.points[guess] - point).length_squared());
-        // Ranges with the square of the least distance that they may have.
-        let mut open = vec![(0, self.points.len(), 0.0)];
+        open.clear();
+        open.push((0, self.points.len(), 0.0));
         while let Some((start, end, away)) = open.pop() {
             if best.1 <= enough {
                 break;
@@ -103,11 +113,12 @@ mod tests {
         let sets: [Vec<DVec2>; 3] = [line.collect(), grid.collect(), scattered.clone().collect()];
         for set in sets {
             let tree = Nearest::new(set.clone());
+            let mut open = Open::new();
             for point in scattered.clone() {
                 let squares = set.iter().map(|other| (*other - point).length_squared());
                 let expected = squares.fold(f64::INFINITY, f64::min);
-                assert_eq!(tree.find(point, 0.0, 3).1, expected);
-                let (place, square) = tree.find(point, 4.0, 0);
+                assert_eq!(tree.find(point, 0.0, 3, &mut open).1, expected);
+                let (place, square) = tree.find(point, 4.0, 0, &mut open);
                 assert!(square <= expected.max(4.0));
                 assert_eq!((tree.points()[place] - point).length_squared(), square);
             }

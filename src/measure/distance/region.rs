@@ -14,8 +14,10 @@ pub struct TooMany {
 /// The points of a set, so far.
 pub(super) struct Region<'a> {
     visit: &'a mut dyn FnMut(DVec2),
-    /// How near points that are added must be to what they stand for.
+    /// None of the set may be farther from a point, nor a point from the set.
     pub(super) radius: f64,
+    /// How near points that are added must be to what they stand for.
+    pub(super) near: f64,
     most: usize,
     /// The points that have been visited.
     visited: usize,
@@ -42,10 +44,10 @@ struct Covered {
 
 impl Covered {
     /// The side of squares, as a multiple of the radius.
-    const SIDE: f64 = 0.35;
+    const SIDE: f64 = 0.15;
 
     /// Larger discs are not looked for, nor are rows of squares that do not fit into a word.
-    const WIDEST: usize = 16;
+    const WIDEST: usize = 40;
 
     /// Grids of more squares than this are not made: 128 mebibytes.
     const MOST: f64 = 1e9;
@@ -160,24 +162,42 @@ impl<'a> Region<'a> {
         Self {
             visit,
             visited: 0,
-            radius: NEAR * radius,
+            radius,
+            near: NEAR * radius,
             most,
             worked: 0,
             covered: Covered::new(bounds, radius),
         }
     }
 
-    /// Adds a point that stands for some of the set, no farther from it than the radius.
+    /// The same where every point is visited, also those that are near others.
+    pub(super) fn of_all(radius: f64, most: usize, visit: &'a mut dyn FnMut(DVec2)) -> Self {
+        Self {
+            visit,
+            visited: 0,
+            radius,
+            near: radius,
+            most,
+            worked: 0,
+            covered: None,
+        }
+    }
+
+    /// Adds a point that stands for some of the set.
     pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
-        if !self.covers(point, self.radius) {
+        self.add_within(point, self.near)
+    }
+
+    /// Adds a point of which what it stands for is no farther than a distance less than the radius.
+    pub(super) fn add_within(&mut self, point: DVec2, near: f64) -> Result<(), TooMany> {
+        if !self.covers(point, near) {
             self.visited += 1;
             if self.visited > self.most {
                 return Err(TooMany { most: self.most });
             }
             (self.visit)(point);
-            let radius = self.radius / NEAR;
             if let Some(covered) = &mut self.covered {
-                covered.add(point, radius);
+                covered.add(point, self.radius);
             }
         }
         self.work(1)
@@ -187,6 +207,11 @@ impl<'a> Region<'a> {
     pub(super) fn covers(&self, middle: DVec2, radius: f64) -> bool {
         let covered = self.covered.as_ref();
         covered.is_some_and(|covered| covered.has(middle, radius))
+    }
+
+    /// The number of points that have been visited.
+    pub(super) fn visited(&self) -> usize {
+        self.visited
     }
 
     pub(super) fn work(&mut self, work: usize) -> Result<(), TooMany> {
@@ -205,9 +230,9 @@ impl<'a> Region<'a> {
     ) -> Result<(), TooMany> {
         // The inside is known to half the radius from the line, and that to the other half.
         let radius = if outline.is_closed() {
-            self.radius / 2.0
+            self.near / 2.0
         } else {
-            self.radius
+            self.near
         };
         let mut from = map.transform_point2(outline.start());
         let mut corners = vec![from];
@@ -273,9 +298,9 @@ impl<'a> Region<'a> {
     }
 
     /// Adds points of a grid that lie in a polygon, under the nonzero rule. What is in the polygon
-    /// has a point of the grid within half the radius, or the outline is as near as that.
+    /// has a point of the grid within half the distance, or the outline is as near as that.
     fn add_inside(&mut self, corners: &[DVec2]) -> Result<(), TooMany> {
-        let step = self.radius * std::f64::consts::FRAC_1_SQRT_2;
+        let step = self.near * std::f64::consts::FRAC_1_SQRT_2;
         let mut bounds = Bounds::EMPTY;
         corners.iter().for_each(|&corner| bounds.add(corner));
         let (min, max) = (bounds.min(), bounds.max());

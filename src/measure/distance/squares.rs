@@ -1,0 +1,460 @@
+//! Limit sets as squares of grids: where copies overlap, a place is looked at once.
+
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame};
+use crate::graph::{Graph, Instance, Replacement};
+use crate::rule::BaseElement;
+
+use super::cover::reaches;
+use super::region::{Region, TooMany};
+
+/// The limit sets of all objects that the initiator leads to, each as squares of a grid in its own unit
+/// frame.
+///
+/// Where the map of an instance takes the middle of a square that holds something, a square of the other
+/// object holds something as well, and so on until there are no new ones. Let no middle be farther than
+/// δ u(o) from what the squares of an object o stand for, where products of n maps from an object c to o
+/// stretch by N(n) u(o) / u(c) at most, and S be the sum of all N(n). Then the middles and the set are
+/// within S δ u(o) of each other (Hutchinson 1981; Barnsley's collage theorem).
+pub(super) struct Squares<'g> {
+    graph: &'g Graph,
+    /// The objects that are drawn in the limit.
+    alive: Vec<bool>,
+    grids: Vec<Grid>,
+    /// The grid of each behaviour.
+    of: Vec<Option<usize>>,
+}
+
+/// Squares in tiles of 8 × 8, a word each, row by row from the lower left.
+struct Grid {
+    /// An object whose set this is.
+    object: usize,
+    corner: DVec2,
+    /// The side of squares.
+    side: f64,
+    /// The number of tiles in a row, and that of rows.
+    tiles: [usize; 2],
+    /// Squares that hold something.
+    marked: Vec<u64>,
+    /// Those whose images are not marked yet.
+    fresh: Vec<u64>,
+}
+
+/// An instance of what the squares of one grid stand for, in another one.
+struct Image {
+    /// From places in units of the one's squares to those of the other's.
+    map: DAffine2,
+    grid: usize,
+}
+
+/// The side of tiles, in squares.
+const TILE: usize = 8;
+
+/// From the corner of a tile to its middle, in squares.
+const HALF_TILE: DVec2 = DVec2::splat(4.0);
+
+/// More squares are not held: 128 mebibytes with those that are fresh.
+const MOST_SQUARES: f64 = (1u64 << 29) as f64;
+
+/// The most images that are marked, as a multiple of the points that are allowed.
+const MARKED_A_POINT: usize = 96;
+
+/// No middle is farther from what its square stands for than this multiple of the radius within which
+/// the set must be of points. The rest is left for what is covered by points nearby.
+const NEAR: f64 = 0.75;
+
+impl<'g> Squares<'g> {
+    /// Squares that stand for the limit set, for points that are within a radius of it.
+    ///
+    /// `None` where the graph does not tell how much products of maps stretch.
+    ///
+    /// # Errors
+    ///
+    /// If it takes too many squares, for `most` points.
+    pub(super) fn found(
+        graph: &'g Graph,
+        radius: f64,
+        most: usize,
+    ) -> Result<Option<Self>, TooMany> {
+        if !graph.is_plain() || graph.depth().is_some() || graph.resets().contains(&true) {
+            return Ok(None);
+        }
+        let Some(products) = graph.products() else {
+            return Ok(None);
+        };
+        let mut squares = Self {
+            graph,
+            alive: graph.alive(true),
+            grids: Vec::new(),
+            of: vec![None; graph.behaviours().count()],
+        };
+        squares.find_objects();
+        let weights = squares.grids.iter();
+        let weights: Vec<f64> = weights.map(|it| products.weights[it.object]).collect();
+        let stretched = squares
+            .initiator()
+            .map(|(grid, map)| stretch(map) * weights[grid]);
+        let stretched = products.sum * stretched.fold(0.0, f64::max);
+        if stretched <= 0.0 {
+            return Ok(None);
+        }
+        let errors = weights.iter().map(|it| it * NEAR * radius / stretched);
+        let errors: Vec<f64> = errors.collect();
+        // A rough picture tells where fine squares are needed.
+        const ROUGHER: f64 = 16.0;
+        let (reaches, centre) = (reaches(graph), graph.middle());
+        let disc = |grid: &Grid| {
+            let reach = reaches[grid.object];
+            Bounds::new(centre - reach, centre + reach)
+        };
+        let discs: Vec<Bounds> = squares.grids.iter().map(disc).collect();
+        let rough: Vec<f64> = errors.iter().map(|error| ROUGHER * error).collect();
+        squares.mark(&discs, &rough, most)?;
+        let narrow = squares.grids.iter().zip(&rough);
+        let narrow = narrow.map(|(grid, error)| grid.bounds(products.sum * error));
+        let narrow: Vec<Bounds> = narrow.collect();
+        squares.mark(&narrow, &errors, most)?;
+        Ok(Some(squares))
+    }
+
+    /// Adds points of the set to a region.
+    pub(super) fn visit(&self, region: &mut Region<'_>) -> Result<(), TooMany> {
+        // Points of a wide grid come first: few of them cover what has an inside.
+        const WIDE: f64 = 1.0;
+        let near = NEAR * region.radius;
+        let kept = self.graph.initiator(0).instances.iter();
+        for instance in kept.filter(|it| self.is_kept(it.object)) {
+            region.add_outline(self.outline_of(instance.object), &instance.frame.map)?;
+        }
+        for (number, map) in self.initiator() {
+            let grid = &self.grids[number];
+            let map = *map * grid.places();
+            let side = stretch(&map);
+            let step = whole(WIDE * region.radius / side).max(1);
+            for y in (0..TILE * grid.tiles[1]).step_by(step) {
+                for x in (0..TILE * grid.tiles[0]).step_by(step) {
+                    if grid.has(x, y) {
+                        region.add_within(map.transform_point2(middle(x, y)), near)?;
+                    }
+                }
+            }
+            for (tile, squares) in grid.marked.iter().enumerate() {
+                let [x, y] = grid.corner_of(tile);
+                let centre = map.transform_point2(place(x, y) + HALF_TILE);
+                if *squares == 0 || region.covers(centre, near + HALF_TILE.length() * side) {
+                    continue;
+                }
+                for bit in bits(*squares) {
+                    let middle = middle(x + bit % TILE, y + bit / TILE);
+                    region.add_within(map.transform_point2(middle), near)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The grids of what is replaced in the initiator, and where it stands.
+    fn initiator(&self) -> impl Iterator<Item = (usize, &DAffine2)> {
+        let instances = self.graph.initiator(0).instances.iter();
+        instances.filter_map(|it| Some((self.grid_of(it.object)?, &it.frame.map)))
+    }
+
+    fn grid_of(&self, object: usize) -> Option<usize> {
+        let object = &self.graph.objects()[object];
+        let is_replaced = matches!(object.replacement, Replacement::Fixed(_));
+        self.of[object.behaviour].filter(|_| is_replaced)
+    }
+
+    /// Makes a grid for each object that the initiator leads to.
+    fn find_objects(&mut self) {
+        let graph = self.graph;
+        let start = graph.initiator(0).instances.iter();
+        let mut open: Vec<usize> = start.map(|instance| instance.object).collect();
+        while let Some(object) = open.pop() {
+            let found = &graph.objects()[object];
+            let is_replaced = matches!(found.replacement, Replacement::Fixed(_));
+            if !self.alive[object] || !is_replaced || self.of[found.behaviour].is_some() {
+                continue;
+            }
+            self.of[found.behaviour] = Some(self.grids.len());
+            self.grids.push(Grid {
+                object,
+                corner: DVec2::ZERO,
+                side: 1.0,
+                tiles: [0; 2],
+                marked: Vec::new(),
+                fresh: Vec::new(),
+            });
+            open.extend(graph.children(object).map(|(_, it)| it.object));
+        }
+    }
+
+    /// What is kept in the place of an object, and drawn in the limit.
+    fn kept(&self, object: usize) -> impl Iterator<Item = &'g Instance> {
+        let children = self.graph.children(object).map(|(_, instance)| instance);
+        children.filter(|it| self.is_kept(it.object))
+    }
+
+    /// What is replaced there, and leads to what is drawn.
+    fn replaced(&self, object: usize) -> impl Iterator<Item = &'g Instance> {
+        let children = self.graph.children(object).map(|(_, instance)| instance);
+        children.filter(|it| self.grid_of(it.object).is_some())
+    }
+
+    fn is_kept(&self, object: usize) -> bool {
+        let replacement = &self.graph.objects()[object].replacement;
+        self.alive[object] && matches!(replacement, Replacement::Kept)
+    }
+
+    fn outline_of(&self, object: usize) -> &'g BaseElement {
+        &self.graph.base_elements()[self.graph.objects()[object].base_element]
+    }
+
+    /// Marks all squares that hold something, in boxes about the sets of the grids. `errors` are the most
+    /// that a middle may be from what its square stands for.
+    fn mark(&mut self, bounds: &[Bounds], errors: &[f64], most: usize) -> Result<(), TooMany> {
+        let too_many = TooMany { most };
+        self.lay_out(bounds, errors).ok_or(too_many)?;
+        self.mark_own(errors, most)?;
+        let images = most.saturating_mul(MARKED_A_POINT);
+        self.mark_images(images).ok_or(too_many)
+    }
+
+    /// Makes squares as large as they may be, half of that where outlines are to be known to the other
+    /// half. What comes to lie outside, by errors, goes to the squares at the border, which are nearer
+    /// to all of the set.
+    fn lay_out(&mut self, bounds: &[Bounds], errors: &[f64]) -> Option<()> {
+        let mut squares = 0.0;
+        for (number, (bounds, error)) in bounds.iter().zip(errors).enumerate() {
+            let has_own = self.kept(self.grids[number].object).next().is_some();
+            let half = if has_own { error / 2.0 } else { *error };
+            let side = half * std::f64::consts::SQRT_2;
+            let tile = side * place(TILE, TILE);
+            let tiles = (bounds.size() / tile).ceil().max(DVec2::ONE);
+            squares += 64.0 * tiles.x * tiles.y;
+            if squares.is_nan() || squares > MOST_SQUARES {
+                return None;
+            }
+            let grid = &mut self.grids[number];
+            grid.corner = bounds.min();
+            grid.side = side;
+            grid.tiles = [whole(tiles.x), whole(tiles.y)];
+            grid.marked = vec![0; grid.tiles[0] * grid.tiles[1]];
+            grid.fresh = grid.marked.clone();
+        }
+        Some(())
+    }
+
+    /// Marks the outlines that objects keep, and a point of the set of each object.
+    fn mark_own(&mut self, errors: &[f64], most: usize) -> Result<(), TooMany> {
+        for (number, error) in errors.iter().enumerate() {
+            let object = self.grids[number].object;
+            let kept: Vec<&Instance> = self.kept(object).collect();
+            for instance in kept {
+                let outline = self.outline_of(instance.object);
+                let grid = &mut self.grids[number];
+                let places = grid.places().inverse();
+                let mut mark = |point| grid.mark(places.transform_point2(point));
+                let mut region = Region::of_all(error / 2.0, most, &mut mark);
+                region.add_outline(outline, &instance.frame.map)?;
+            }
+            let point = self.point(object);
+            let grid = &mut self.grids[number];
+            if let Some(point) = point {
+                grid.mark(grid.places().inverse().transform_point2(point));
+            }
+        }
+        Ok(())
+    }
+
+    /// The point of an object's set to which the first instances lead that are replaced, if they go on
+    /// for ever.
+    fn point(&self, mut object: usize) -> Option<DVec2> {
+        const MOST_LEVELS: usize = 100_000;
+        const NEGLIGIBLE: f64 = 1e-17;
+        let mut map = DAffine2::IDENTITY;
+        for _ in 0..MOST_LEVELS {
+            let instance = self.replaced(object).next()?;
+            map *= instance.frame.map;
+            object = instance.object;
+            if stretch(&map) <= NEGLIGIBLE {
+                break;
+            }
+        }
+        Some(map.translation)
+    }
+
+    /// Marks the images of all that is marked, and their images. `None` if that is too much.
+    fn mark_images(&mut self, most: usize) -> Option<()> {
+        let images = self.images();
+        let mut left = most;
+        let mut is_fresh = true;
+        while is_fresh {
+            is_fresh = false;
+            for (number, images) in images.iter().enumerate() {
+                for tile in 0..self.grids[number].fresh.len() {
+                    let squares = std::mem::take(&mut self.grids[number].fresh[tile]);
+                    if squares == 0 {
+                        continue;
+                    }
+                    is_fresh = true;
+                    let [x, y] = self.grids[number].corner_of(tile);
+                    left = left.checked_sub(images.len() * squares.count_ones() as usize)?;
+                    for Image { map, grid } in images {
+                        let grid = &mut self.grids[*grid];
+                        if grid.holds(map, place(x, y) + HALF_TILE) {
+                            continue;
+                        }
+                        let corner = map.transform_point2(middle(x, y));
+                        let DMat2 { x_axis, y_axis } = map.matrix2;
+                        for bit in bits(squares) {
+                            let along = place(bit % TILE, bit / TILE);
+                            grid.mark(corner + along.x * x_axis + along.y * y_axis);
+                        }
+                    }
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Where the squares of each grid come to.
+    fn images(&self) -> Vec<Vec<Image>> {
+        let mut images: Vec<Vec<Image>> = self.grids.iter().map(|_| Vec::new()).collect();
+        for (number, grid) in self.grids.iter().enumerate() {
+            let places = grid.places().inverse();
+            for instance in self.replaced(grid.object) {
+                let Some(inner) = self.grid_of(instance.object) else {
+                    continue;
+                };
+                let map = places * instance.frame.map * self.grids[inner].places();
+                images[inner].push(Image { map, grid: number });
+            }
+        }
+        images
+    }
+}
+
+impl Grid {
+    /// From places in units of squares to the unit frame.
+    fn places(&self) -> DAffine2 {
+        DAffine2::from_scale_angle_translation(DVec2::splat(self.side), 0.0, self.corner)
+    }
+
+    /// A box about the middles of the squares that hold something, and so much around them.
+    fn bounds(&self, around: f64) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for (tile, squares) in self.marked.iter().enumerate() {
+            if *squares != 0 {
+                let [x, y] = self.corner_of(tile);
+                for corner in [place(x, y), place(x + TILE, y + TILE)] {
+                    bounds.add(self.places().transform_point2(corner));
+                }
+            }
+        }
+        Bounds::new(bounds.min() - around, bounds.max() + around)
+    }
+
+    /// The column and row of a tile's first square.
+    fn corner_of(&self, tile: usize) -> [usize; 2] {
+        [TILE * (tile % self.tiles[0]), TILE * (tile / self.tiles[0])]
+    }
+
+    /// The tile of a square, and its bit.
+    #[inline]
+    fn find(&self, x: usize, y: usize) -> (usize, u64) {
+        let tile = y / TILE * self.tiles[0] + x / TILE;
+        (tile, 1 << (y % TILE * TILE + x % TILE))
+    }
+
+    /// The square that a place lies in, or the one nearest to it.
+    #[inline]
+    fn nearest(&self, place: DVec2) -> [usize; 2] {
+        let [columns, rows] = self.tiles;
+        [within(place.x, columns), within(place.y, rows)]
+    }
+
+    /// Whether something is known to be in all squares that a map takes a tile to, about a place in its
+    /// middle: so it is mostly where there is an inside.
+    fn holds(&self, map: &DAffine2, tile: DVec2) -> bool {
+        const MOST: usize = 4;
+        let middle = map.transform_point2(tile);
+        let half = map.matrix2.abs() * HALF_TILE;
+        let [left, bottom] = self.nearest(middle - half);
+        let [right, top] = self.nearest(middle + half);
+        let (columns, rows) = (left / TILE..=right / TILE, bottom / TILE..=top / TILE);
+        let is_full = |row: usize| {
+            let row = &self.marked[row * self.tiles[0]..];
+            row[columns.clone()]
+                .iter()
+                .all(|squares| *squares == u64::MAX)
+        };
+        columns.end() - columns.start() < MOST
+            && rows.end() - rows.start() < MOST
+            && rows.clone().all(is_full)
+    }
+
+    fn has(&self, x: usize, y: usize) -> bool {
+        let (tile, bit) = self.find(x, y);
+        self.marked[tile] & bit != 0
+    }
+
+    /// Says that the square of a place holds something.
+    #[inline]
+    fn mark(&mut self, place: DVec2) {
+        let [x, y] = self.nearest(place);
+        let (tile, bit) = self.find(x, y);
+        let is_new = bit & !self.marked[tile];
+        self.marked[tile] |= is_new;
+        self.fresh[tile] |= is_new;
+    }
+}
+
+/// The lower left corner of a square.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "rows of squares are short")]
+fn place(x: usize, y: usize) -> DVec2 {
+    DVec2::new(x as f64, y as f64)
+}
+
+fn middle(x: usize, y: usize) -> DVec2 {
+    place(x, y) + 0.5
+}
+
+/// The bits that are set.
+fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (word != 0).then(|| word.trailing_zeros() as usize);
+        word &= word.wrapping_sub(1);
+        bit
+    })
+}
+
+/// The square along a row of tiles that a coordinate lies in; the nearest for those beyond.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "rows of squares are short, and casts from floats saturate"
+)]
+fn within(coordinate: f64, tiles: usize) -> usize {
+    (coordinate as i32).clamp(0, (TILE * tiles) as i32 - 1) as usize
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn whole(number: f64) -> usize {
+    number as usize
+}
+
+/// The most that a map stretches anything.
+fn stretch(map: &DAffine2) -> f64 {
+    let frame = Frame {
+        map: *map,
+        ..Frame::UNIT
+    };
+    frame.stretch()
+}
