@@ -274,6 +274,11 @@ impl Assembly<'_> {
         else {
             return;
         };
+        let scales = of.iter().find(|(key, _)| key.name == "scale");
+        let pieces = match scales.map(|(_, node)| &node.value) {
+            Some(Value::Sequence(scales)) => scales.len().max(2),
+            _ => 2,
+        };
         let Some((_, points)) = of.iter_mut().find(|(key, _)| key.name == "points") else {
             return;
         };
@@ -289,17 +294,20 @@ impl Assembly<'_> {
             Err(error) => {
                 self.diagnostics.push(error);
                 self.complete = false;
-                let point = |x| {
-                    let number = |value| Node {
-                        place: points.place.clone(),
-                        value: Value::Number(value),
-                    };
+                // Points that nothing is wrong with, so that no more is told of them.
+                let number = |value| Node {
+                    place: points.place.clone(),
+                    value: Value::Number(value),
+                };
+                let point = |place: usize| {
+                    let [x, y] = [place, place % 2]
+                        .map(|it| f64::from(u32::try_from(it).unwrap_or(u32::MAX)));
                     Node {
                         place: points.place.clone(),
-                        value: Value::Sequence(vec![number(x), number(0.0)]),
+                        value: Value::Sequence(vec![number(x), number(y)]),
                     }
                 };
-                points.value = Value::Sequence([0.0, 0.5, 1.0].map(point).into());
+                points.value = Value::Sequence((0..=pieces).map(point).collect());
             }
         }
     }

@@ -258,7 +258,7 @@ pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Opti
         initial,
         edges: fields
             .take("edges")
-            .map(|node| (read_edges(reader, node), first_line(&node.place))),
+            .and_then(|node| Some((read_edges(reader, node)?, first_line(&node.place)))),
     };
     ifs.heading.complete = complete && !reader.names_are_missing;
     Some(ifs)
@@ -442,24 +442,28 @@ fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> 
     Some(list.iter().map(|node| reader.point(node)).collect())
 }
 
-fn read_edges(reader: &mut Reader, node: &Node) -> Vec<EdgeDocument> {
+/// `None` if any of them is not understood: what the others lack is not told then.
+fn read_edges(reader: &mut Reader, node: &Node) -> Option<Vec<EdgeDocument>> {
     const HINT: &str = "edges: {1: [1, 2], 2: [1]}: 2 may follow 1, and so on";
     let mut edges = Vec::new();
     let Value::Mapping(entries) = &node.value else {
         reader.mismatch(node, "a mapping of maps to those that may follow", HINT);
-        return edges;
+        return None;
     };
+    let mut are_read = true;
     for (key, node) in entries {
         let from = || written(key);
         match &node.value {
             Value::Sequence(followers) => {
-                edges.extend(followers.iter().filter_map(|follower| {
-                    Some(EdgeDocument {
+                for follower in followers {
+                    let to = reader.name(follower);
+                    are_read &= to.is_some();
+                    edges.extend(to.map(|to| EdgeDocument {
                         from: from(),
-                        to: reader.name(follower)?,
+                        to,
                         weight: None,
-                    })
-                }));
+                    }));
+                }
             }
             Value::Mapping(followers) => {
                 edges.extend(followers.iter().map(|(follower, weight)| EdgeDocument {
@@ -468,8 +472,11 @@ fn read_edges(reader: &mut Reader, node: &Node) -> Vec<EdgeDocument> {
                     weight: Some(reader.number(weight)),
                 }));
             }
-            _ => reader.mismatch(node, "a list of the maps that may follow", HINT),
+            _ => {
+                reader.mismatch(node, "a list of the maps that may follow", HINT);
+                are_read = false;
+            }
         }
     }
-    edges
+    are_read.then_some(edges)
 }
