@@ -298,12 +298,12 @@ impl<'g> Squares<'g> {
                     }
                     is_fresh = true;
                     let [x, y] = self.grids[number].corner_of(tile);
-                    left = left.checked_sub(images.len() * squares.count_ones() as usize)?;
                     for Image { map, grid } in images {
                         let grid = &mut self.grids[*grid];
                         if grid.holds(map, place(x, y) + HALF_TILE) {
                             continue;
                         }
+                        left = left.checked_sub(squares.count_ones() as usize)?;
                         let corner = map.transform_point2(middle(x, y));
                         let DMat2 { x_axis, y_axis } = map.matrix2;
                         for bit in bits(squares) {
