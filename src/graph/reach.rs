@@ -256,14 +256,14 @@ impl Graph {
     }
 
     /// The length that all fertile elements of the initiator have, and the ratio of all fertile
-    /// instances, if there is one of each and the graph is plain: elements are replaced down to a
-    /// length in so many steps then.
+    /// instances, if there is one of each, the graph is plain and all begins in step 0: elements are
+    /// replaced down to a length in so many steps then.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
         if !self.is_plain() || !self.is_similar() || self.is_levelled() {
             return None;
         }
-        if self.resets().contains(&true) {
+        if !self.roots.elements.is_empty() || self.resets().contains(&true) {
             return None;
         }
         let fertile = |instance: &&Instance| {
