@@ -14,6 +14,7 @@
 //! reads only the slots of its scope; the same expression has the same value, bit for bit, on
 //! every machine.
 
+mod circle;
 mod compile;
 pub(crate) mod degrees;
 mod functions;

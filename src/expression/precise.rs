@@ -6,6 +6,7 @@ use dashu_float::round::mode::HalfEven;
 use dashu_float::{ConstCache, Context, DBig, FBig, FpError, Repr};
 use dashu_int::IBig;
 
+use super::circle::Circle;
 use super::functions::Meaning;
 use super::operator::{One, Two};
 use super::scope::constant;
@@ -43,6 +44,7 @@ pub(crate) struct Precision {
     bits: usize,
     context: Context<HalfEven>,
     cache: ConstCache,
+    circle: Circle,
 }
 
 /// Bits beyond those that are asked for, which differences of nearly equal numbers may cost.
@@ -54,6 +56,7 @@ impl Precision {
             bits,
             context: Context::new(bits + GUARD),
             cache: ConstCache::new(),
+            circle: Circle::default(),
         }
     }
 
@@ -199,12 +202,20 @@ impl Precision {
             One::Ln => self.known(near, |context, cache| context.ln(of, Some(cache))),
             One::Log2 => self.known(near, |context, cache| context.log2(of, Some(cache))),
             One::Log10 => self.known(near, |context, cache| context.log10(of, Some(cache))),
-            One::Sin => self.known(near, |context, cache| {
-                context.sin_unit(of, 360, Some(cache))
-            }),
-            One::Cos => self.known(near, |context, cache| {
-                context.cos_unit(of, 360, Some(cache))
-            }),
+            One::Sin | One::Cos => {
+                let bits = self.context.precision();
+                let cache = &mut self.cache;
+                if let Some(pair) = self.circle.sine_cosine(x.near, &x.exact, bits, cache) {
+                    let [sine, cosine] = pair;
+                    let is_sine = operation == One::Sin;
+                    let exact = if is_sine { sine } else { cosine };
+                    return Precise { near, exact };
+                }
+                self.known(near, |context, cache| match operation {
+                    One::Sin => context.sin_unit(of, 360, Some(cache)),
+                    _ => context.cos_unit(of, 360, Some(cache)),
+                })
+            }
             One::Tan => self.known(near, |context, cache| {
                 context.tan_unit(of, 360, Some(cache))
             }),
