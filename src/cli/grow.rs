@@ -12,6 +12,7 @@ use crate::grow::Walked;
 use crate::render::{self, Canvas, Instanced, Plotted, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::wording;
+use crate::zoom;
 
 use super::chaos::ChaosArguments;
 use super::goal::Goal;
@@ -158,11 +159,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     arguments.refuse_instances(format)?;
     let look = arguments.zoom.look(arguments.picture.has_view())?;
     if look.is_some() && !matches!(format, Format::Picture(_)) {
-        let message = "--zoom is of pictures: write a .png or a .svg";
+        let message = "--zoom is of pictures: write a .png, .svg, .pdf or .dxf";
         return Err(Failure::Usage(message.into()));
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
+    if look.is_some() {
+        zoom::check_model(&loaded.model).map_err(anyhow::Error::from)?;
+    }
     let goal = match look {
         None if arguments.svg.is_instanced() => Goal::whole(arguments.steps, &loaded)?,
         None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,

@@ -129,8 +129,8 @@ pub enum ZoomError {
     CountsIndex,
     /// Every number of steps of an L-system is grown out of an initiator of its own.
     #[error(
-        "there is nothing to zoom into without end: every step of it starts anew; --view X,Y,W,H draws \
-         a part of a step"
+        "there is nothing to zoom into without end: it does not rewrite edges, so that every step of it \
+         starts anew; --view X,Y,W,H draws a part of a step"
     )]
     StartsAnew,
     /// The graph does not tell how far what becomes of elements reaches.
@@ -254,11 +254,21 @@ pub fn zoom(
     descent::Descent::new(graph, growth, window, &reaches, &mut constants).run(&centre)
 }
 
+/// Refuses a model that has no points to zoom into, before a graph is made of it.
+///
+/// # Errors
+///
+/// If every step of an L-system starts anew: its words may be long.
+pub fn check_model(model: &Model) -> Result<(), ZoomError> {
+    match model {
+        Model::LSystem(system) if !Graph::rewrites_edges(system) => Err(ZoomError::StartsAnew),
+        _ => Ok(()),
+    }
+}
+
 /// Whether there may be points to zoom into.
 pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError> {
-    if matches!(source.model, Model::LSystem(system) if !Graph::rewrites_edges(system)) {
-        return Err(ZoomError::StartsAnew);
-    }
+    check_model(source.model)?;
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);
     }

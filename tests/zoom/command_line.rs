@@ -95,6 +95,12 @@ fn mistakes_are_told() {
             1,
             "zoom into",
         ),
+        // Its words are never written down: they are long.
+        (
+            &["signals-a", "--zoom", "10", "--at", "0.(0)"],
+            1,
+            "does not rewrite edges",
+        ),
     ] {
         let (code, text) = said(arguments);
         assert!(text.contains(part), "{arguments:?}: {text}");
