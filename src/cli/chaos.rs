@@ -256,6 +256,11 @@ impl ChaosGame<'_> {
         let histogram = play(&self.system, &window, &game).map_err(|error| {
             Stopped::Said(match error {
                 GameError::Cancelled => Failure::Interrupted,
+                error @ GameError::TooManyBins { .. } => anyhow::anyhow!(
+                    "{error}; a smaller --size works, and --method deterministic draws large pictures \
+                     in bands"
+                )
+                .into(),
                 other => anyhow::Error::new(other).into(),
             })
         })?;

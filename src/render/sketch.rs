@@ -82,6 +82,8 @@ pub(super) struct Sketcher<'a> {
     class: Option<u64>,
     /// The mark of the line or area that the next element may go on with.
     open: Option<usize>,
+    /// The last width that a stroke had, as a length where widths are relative, and its class.
+    width: (f64, i32),
 }
 
 impl<'a> Sketcher<'a> {
@@ -98,6 +100,7 @@ impl<'a> Sketcher<'a> {
             },
             class: None,
             open: None,
+            width: (f64::NAN, 0),
         }
     }
 
@@ -316,13 +319,21 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    fn width_class(&self, element: &Element) -> i32 {
+    fn width_class(&mut self, element: &Element) -> i32 {
         let Scene { graph, style, .. } = self.scene;
-        if let (Width::Pixels(width), Some(_)) = (style.width, graph.widest()) {
-            return width_class(libm::log2(width * element.coat.width() * FINE));
+        let width = match style.width {
+            Width::Pixels(_) if graph.widest().is_none() => return 0,
+            Width::Pixels(width) => width * element.coat.width(),
+            Width::Relative(_) => element.frame.stretch() * element.coat.width(),
+        };
+        if width != self.width.0 {
+            let octave = match style.width {
+                Width::Pixels(_) => libm::log2(width * FINE),
+                Width::Relative(_) => self.octave(width).unwrap_or(0.0),
+            };
+            self.width = (width, width_class(octave));
         }
-        self.octave(element.frame.stretch() * element.coat.width())
-            .map_or(0, width_class)
+        self.width.1
     }
 
     /// The logarithm to base 2 of the width that the stroke of an element of a length has, in

@@ -23,16 +23,14 @@ use super::png::{Sheet, Stamp};
 use super::scene::Scene;
 use super::surface::{FINE, Position, Stamped, Stencil, position};
 
-/// Places to a pixel, along either axis: as many of these as there are runs for; for lines, half as many.
-const PHASES: [f64; 2] = [128.0, 64.0];
+/// Places to a pixel, along either axis, and the most elements of a run: the first of these for which
+/// there are enough runs. For lines half as many places; of outlines that have more than four pieces as
+/// many fewer elements, but no less than few.
+const GRIDS: [(f64, u64); 3] = [(128.0, 128), (128.0, 64), (64.0, 64)];
+const FEW_ELEMENTS: u64 = 8;
 
 /// Steps to a pixel in which linear parts are told apart.
 const LINEAR: f64 = 4096.0;
-
-/// Runs have no more elements than this where there are stamps of them; of outlines that have more than
-/// four pieces as many fewer, but no less than few.
-const LONGEST_RUN: u64 = 64;
-const FEW_ELEMENTS: u64 = 8;
 
 /// Fewer elements than this are drawn one by one, in a run and in a picture; likewise.
 const FEWEST_IN_RUN: u64 = 4;
@@ -91,16 +89,18 @@ impl Stamps {
         let drawn = graph.objects().iter().filter(|object| object.visible);
         let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
         let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
-        let longest_run = (LONGEST_RUN / worth).max(FEW_ELEMENTS);
         let is_large =
             scene.is_to_detail && scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
         if !is_large || graph.coats() || graph.even_lengths().is_none() {
             return None;
         }
-        let runs = scene.elements / longest_run / sides(scene)?;
+        let sides = sides(scene)?;
         let part = if stencil.pen.is_some() { 0.5 } else { 1.0 };
-        let mut phases = PHASES.into_iter().map(|phases| phases * part);
-        let phases = phases.find(|phases| {
+        let grids = GRIDS.into_iter();
+        let mut grids =
+            grids.map(|(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
+        let (phases, longest_run) = grids.find(|(phases, longest_run)| {
+            let runs = scene.elements / longest_run / sides;
             let places = whole(phases * phases).unsigned_abs();
             runs >= places.saturating_mul(USES)
         })?;

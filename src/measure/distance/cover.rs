@@ -165,7 +165,8 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
         looked_at += 1;
         if may_be_squares && looked_at > FEW + OVERLAPPING * region.visited() {
             may_be_squares = false;
-            if let Some(squares) = Squares::found(graph, region.radius, most)? {
+            // Where it takes too many of them, copies may do.
+            if let Ok(Some(squares)) = Squares::found(graph, region.radius, most) {
                 return Ok(squares.visit(region)?);
             }
         }
