@@ -94,6 +94,9 @@ pub(super) struct Png<'t, 'w> {
     /// Where it is, and where the subpath starts.
     at: Position,
     start: Position,
+    /// Whether the next path is of words, whose letters have holes: subpaths that are covered one by one
+    /// would fill them.
+    has_holes: bool,
     /// Whether the path may hold polygons that are drawn as coverage,
     covers: bool,
     /// and the vertices of one that comes.
@@ -155,6 +158,7 @@ impl<'t, 'w> Png<'t, 'w> {
             flat: None,
             at: [0; 2],
             start: [0; 2],
+            has_holes: false,
             covers: false,
             ring: Vec::new(),
             outline,
@@ -270,7 +274,8 @@ impl Surface for Png<'_, '_> {
         self.flat = flat.and_then(|stroke| FlatStroke::of(stroke.pen, self.part.size()));
         let strokes = self.nib.is_some() || self.flat.is_some();
         let is_opaque = paint.fill.is_some_and(|fill| fill == fill.opaque());
-        self.covers = may_cover && is_opaque && (paint.stroke.is_none() || strokes);
+        let has_holes = std::mem::take(&mut self.has_holes);
+        self.covers = may_cover && is_opaque && !has_holes && (paint.stroke.is_none() || strokes);
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let inks = match (
             paint.fill.filter(|_| self.covers),
@@ -480,5 +485,7 @@ impl Surface for Png<'_, '_> {
         Ok(())
     }
 
-    fn label(&mut self, _: &str) {}
+    fn label(&mut self, _: &str) {
+        self.has_holes = true;
+    }
 }

@@ -425,3 +425,38 @@ fn what_is_hidden_would_not_show() {
         }
     }
 }
+
+/// A square in a square, the other way round, is a hole in a letter of this size.
+#[test]
+fn letters_have_holes() {
+    let square = |from: i64, to: i64| [[from, from], [to, from], [to, to], [from, to]];
+    let fill = Paint {
+        fill: Some(Colour::BLACK),
+        stroke: None,
+    };
+    for (side, wall) in [(600, 200), (4000, 1000)] {
+        let mut hole = square(wall, side - wall);
+        hole.reverse();
+        let pixels = with_team(NonZero::<usize>::MIN, |team| {
+            let mut png = Png::begin(SIZE, None, team).unwrap();
+            png.label("a word");
+            png.begin(&fill).unwrap();
+            for contour in [square(0, side), hole] {
+                png.move_to(contour[0]);
+                contour[1..].iter().for_each(|&vertex| png.line_to(vertex));
+                png.close();
+            }
+            png.end().unwrap();
+            // What comes next is no word.
+            png.begin(&fill).unwrap();
+            assert!(png.covers);
+            png.end().unwrap();
+            png.into_pixels().0.take()
+        });
+        let ink = |place: i64| {
+            let place = usize::try_from(place / 100).unwrap();
+            pixels[4 * (place * SIZE[0] as usize + place) + 3]
+        };
+        assert_eq!([wall / 2, side / 2].map(ink), [255, 0], "{side}");
+    }
+}
