@@ -509,18 +509,20 @@ fn what_overlaps_too_much_to_be_grown_can_be_drawn_at_random() {
     assert!(said.contains("--method chaos --points 10M"), "{said}");
 }
 
+/// The status of the program, its output, and what it says beside that.
+fn kfrac(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
+    let output = command.args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
 #[test]
 fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
-    let kfrac = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
-        let output = command.args(arguments).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (
-            output.status.code(),
-            text(output.stdout),
-            text(output.stderr),
-        )
-    };
     let sweep = ["sheet", "tree-libeskind-hadas", "--steps", "2", "-o", "-"];
     let (code, sheet, said) =
         kfrac(&[&sweep[..], &["--set", "frame=1..3", "--samples", "3"]].concat());
@@ -566,5 +568,38 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     let variance = measure["covariance"][0][0].as_f64().unwrap();
     assert_close("variance", variance, 0.125, 1e-12);
     assert_eq!(info["default_weights"], true);
+    assert_eq!(info["weights_by"], "determinants");
     assert_eq!(info["contraction"]["contracts"], true);
+}
+
+#[test]
+fn info_says_where_weights_come_from() {
+    let info = |rule: &str, form: &[&str]| {
+        let (code, info, said) = kfrac(&[&["info", rule, "--steps", "0"], form].concat());
+        assert_eq!(code, Some(0), "{said}");
+        info
+    };
+    let weights = |rule: &str| {
+        let info = info(rule, &[]);
+        let mut lines = info.lines().filter(|line| line.starts_with("weights "));
+        lines
+            .next()
+            .map(|line| line["weights".len()..].trim().to_owned())
+    };
+    let determinants = "by the determinants of the maps, or a twentieth of their mean if that is more, \
+                        since the file gives none";
+    let widths = "by the widths of the pieces between the points, since the file gives none";
+    assert_eq!(weights("gasket").as_deref(), Some(determinants));
+    assert_eq!(weights("profile").as_deref(), Some(widths));
+    assert_eq!(weights("barnsley-fern"), None);
+    for (rule, is_default, by) in [
+        ("profile", true, "widths".into()),
+        ("barnsley-fern", false, serde_json::Value::Null),
+    ] {
+        let info: serde_json::Value = serde_json::from_str(&info(rule, &["--json"])).unwrap();
+        assert_eq!(
+            (&info["default_weights"], &info["weights_by"]),
+            (&is_default.into(), &by)
+        );
+    }
 }

@@ -9,10 +9,21 @@ use crate::ifs::{System, Verdict};
 #[derive(Serialize)]
 pub(super) struct SystemInfo {
     maps: Vec<MapInfo>,
-    /// Whether the weights are worked out from the maps' determinants.
+    /// Whether the file gives the maps no weights.
     default_weights: bool,
+    /// What they are in proportion to, then.
+    weights_by: Option<Weights>,
     contraction: ContractionInfo,
     measure: Option<MeasureInfo>,
+}
+
+/// Where the weights of maps come from that the file gives none.
+#[derive(Clone, Copy, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Weights {
+    Determinants,
+    /// Those of the pieces of a curve through points.
+    Widths,
 }
 
 #[derive(Serialize)]
@@ -51,9 +62,15 @@ impl SystemInfo {
             mean: point(measure.moments.mean),
             covariance: measure.moments.covariance.to_cols_array_2d(),
         });
+        let weights_by = if system.is_interpolation() {
+            Some(Weights::Widths)
+        } else {
+            ifs.has_default_weights().then_some(Weights::Determinants)
+        };
         Self {
             maps: maps.collect(),
-            default_weights: ifs.has_default_weights(),
+            default_weights: weights_by.is_some(),
+            weights_by,
             contraction: ContractionInfo {
                 contracts: match contraction.verdict {
                     Verdict::Contracts => Some(true),
@@ -85,9 +102,14 @@ impl SystemInfo {
                 format!("{name}: weight {}, {fixed}", decimal(map.weight)),
             ));
         }
-        if self.default_weights {
-            let how = "by the determinants of the maps, since the file gives none";
-            lines.push(("weights", how.into()));
+        if let Some(weights) = self.weights_by {
+            let by = match weights {
+                Weights::Determinants => {
+                    "by the determinants of the maps, or a twentieth of their mean if that is more"
+                }
+                Weights::Widths => "by the widths of the pieces between the points",
+            };
+            lines.push(("weights", format!("{by}, since the file gives none")));
         }
         let ContractionInfo {
             contracts,

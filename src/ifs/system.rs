@@ -13,6 +13,8 @@ pub struct System {
     pub(crate) ifs: Ifs,
     /// Whether the images of the initial set, in the order of the maps, make one line.
     pub(crate) chained: bool,
+    /// Whether the maps are those of [`interpolate`](super::interpolate).
+    pub(crate) interpolates: bool,
     pub(crate) contraction: Contraction,
 }
 
@@ -33,6 +35,13 @@ impl System {
     #[must_use]
     pub fn contraction(&self) -> &Contraction {
         &self.contraction
+    }
+
+    /// Whether the maps are those of a curve through points, with the weights that
+    /// [`interpolate`](super::interpolate) gives them.
+    #[must_use]
+    pub fn is_interpolation(&self) -> bool {
+        self.interpolates
     }
 }
 
@@ -64,6 +73,7 @@ impl System {
             contraction: ifs.contraction(),
             ifs,
             chained: self.chained && maps.is_empty(),
+            interpolates: self.interpolates,
         })
     }
 }

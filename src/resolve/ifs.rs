@@ -94,6 +94,7 @@ impl Resolver<OfIfs> {
             heading,
             ifs,
             chained,
+            interpolates: matches!(document.maps, Some(MapsDocument::Interpolated(_))),
             contraction,
         })
     }
