@@ -57,6 +57,12 @@ impl Bounds {
         self.min.is_finite() && self.max.is_finite()
     }
 
+    /// Whether two boxes have a point in common.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// Makes room for a point.
     #[inline]
     pub fn add(&mut self, point: DVec2) {

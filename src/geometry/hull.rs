@@ -43,7 +43,7 @@ pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
             let between = &corners[first + 1..*next];
             { between }
                 .iter()
-                .all(|corner| distance(*corner, start, end) <= tolerance)
+                .all(|corner| distance_to_segment(*corner, start, end) <= tolerance)
         };
         let next = (first + 2..=corners.len()).take_while(skips).last();
         first = next.unwrap_or(first + 1);
@@ -57,13 +57,13 @@ pub(crate) fn distance_to_hull(point: DVec2, corners: &[DVec2]) -> f64 {
     let (mut nearest, mut is_inside) = (f64::INFINITY, corners.len() > 2);
     for (&from, &to) in sides {
         is_inside &= (to - from).perp_dot(point - from) >= 0.0;
-        nearest = nearest.min(distance(point, from, to));
+        nearest = nearest.min(distance_to_segment(point, from, to));
     }
     if is_inside { 0.0 } else { nearest }
 }
 
 /// How far a point is from a segment.
-fn distance(point: DVec2, from: DVec2, to: DVec2) -> f64 {
+pub(crate) fn distance_to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
     let along = to - from;
     let square = along.length_squared();
     let at = if square > 0.0 {

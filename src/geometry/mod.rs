@@ -14,4 +14,4 @@ pub use direction::Direction;
 pub use frame::{Frame, placement};
 pub use glam::{DAffine2, DMat2, DVec2};
 
-pub(crate) use hull::{convex_hull, distance_to_hull, thinned};
+pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

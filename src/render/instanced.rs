@@ -83,6 +83,7 @@ pub(super) fn write(
         has_more: false,
         fractals: survey.fractals,
         is_part: false,
+        empty: None,
         plotted: None,
         instanced: Some(instanced),
     })

@@ -181,19 +181,23 @@ impl<'a> Surveyor<'a> {
             shortest
         };
         let Self { graph, growth, .. } = *self;
+        let sight = Sight::to_length(graph, shortest);
+        let shown = canvas.shown(stroke);
+        let links = sight.links(graph, &growth);
+        let met = Bounds::new(shown.min() - links, shown.max() + links);
         let survey = Survey::new(graph, style, growth.steps)
-            .of_what_is_in(Sight::to_length(graph, shortest))
+            .of_what_is_in(sight.clone())
             .with_ranks_of(&growth);
         // What comes near a pixel tinges it.
         let shown = canvas.shown(stroke + 1.0);
-        let sight = survey.sight().clone();
         let sight = sight.within(&shown, graph, &growth, style, survey.counts_ranks());
         let survey = if sight.cuts() {
-            survey.of_what_is_in(sight).walked(&growth, *threads)?
+            let survey = survey.of_what_is_in(sight).of_what_comes_into(met);
+            survey.walked(&growth, *threads)?
         } else {
             let mut survey = self.survey(sight)?;
             survey.steps = growth.steps;
-            survey
+            survey.of_what_comes_into(met)
         };
         self.check(&survey)?;
         Ok(survey)

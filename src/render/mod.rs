@@ -217,10 +217,29 @@ pub struct Picture {
     pub fractals: u64,
     /// Whether some may not have been visited because they lie outside a window.
     pub is_part: bool,
+    /// What is known where nothing comes into its window: of that which is drawn, all outlines have
+    /// boxes that lie outside.
+    pub empty: Option<Empty>,
     /// What it takes as a plot, if it is one.
     pub plotted: Option<Plotted>,
     /// What it is made of, if that is nested instances; its elements are then not counted.
     pub instanced: Option<Instanced>,
+}
+
+/// A window that shows nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Empty {
+    /// Where there is something, if that is told: about the point X,Y of a [`Look`].
+    pub nearest: Option<Nearest>,
+}
+
+/// What is nearest to the middle of a zoomed picture that shows nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// How far it is, in the rule's units, to a thousandth.
+    pub distance: f64,
+    /// How much larger than the whole the picture may be that shows it at its edge.
+    pub factor: f64,
 }
 
 /// Why a picture is not made.
@@ -323,6 +342,7 @@ fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plot
         has_more: survey.has_more,
         fractals: survey.fractals,
         is_part: survey.sight().is_bounded(),
+        empty: survey.shows_nothing().then(Empty::default),
         plotted,
         instanced: None,
     }

@@ -89,8 +89,7 @@ impl Sight {
             return self;
         };
         let reaches = graph.reaches(|object| own_reach(graph, object, style));
-        let longest = graph.longest_after(growth.steps).max(self.shortest);
-        let pad = links(graph, longest);
+        let pad = self.links(graph, growth);
         if !pad.is_finite() || reaches.iter().all(|reach| reach.is_infinite()) {
             return self;
         }
@@ -105,6 +104,11 @@ impl Sight {
             window: Some(window),
             ..self
         }
+    }
+
+    /// How far the lines may lead from elements that link them.
+    pub(super) fn links(&self, graph: &Graph, growth: &Growth<'_>) -> f64 {
+        links(graph, graph.longest_after(growth.steps).max(self.shortest))
     }
 
     /// The same of another part of the plane, where a part is seen.

@@ -11,7 +11,7 @@ use crate::grow::{
 };
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
-use super::sight::Sight;
+use super::sight::{Sight, starts_rings};
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
 /// Spans of a survey, and of what follows from it, have about so many elements,
@@ -97,6 +97,11 @@ pub struct Survey<'g> {
     /// Ranks, where colours tell them and they are known.
     pub(super) ranks: Option<Ranks>,
     sight: Sight,
+    /// What part of the plane is shown, if not all of it.
+    shown: Option<Bounds>,
+    /// Whether an outline has been met whose box comes into that part; where there is no walk, whether
+    /// the box of all of them does.
+    is_met: bool,
     fractal: Fractal,
     /// The last rank in the fractal that a span goes on with, as far as it goes on.
     last_index: Option<u128>,
@@ -125,6 +130,8 @@ impl<'g> Survey<'g> {
             is_to_detail: false,
             ranks: None,
             sight: Sight::unbounded(),
+            shown: None,
+            is_met: false,
             fractal: Fractal::default(),
             last_index: None,
             goes_on: false,
@@ -137,6 +144,25 @@ impl<'g> Survey<'g> {
     #[must_use]
     pub(super) fn of_what_is_in(self, sight: Sight) -> Self {
         Self { sight, ..self }
+    }
+
+    /// The same survey, which learns as well whether anything comes into a part of the plane.
+    pub(super) fn of_what_comes_into(self, shown: Bounds) -> Self {
+        Self {
+            is_met: shown.meets(&self.bounds),
+            shown: Some(shown),
+            ..self
+        }
+    }
+
+    /// Whether there is surely nothing in that part. Closed chains may enclose it, where they are filled.
+    pub(super) fn shows_nothing(&self) -> bool {
+        let encloses = self.style.fill.is_some() && starts_rings(self.graph);
+        let is_outside = |shown: &Bounds| !shown.meets(&self.bounds);
+        !self.is_met
+            && self
+                .shown
+                .is_some_and(|shown| !encloses || is_outside(&shown))
     }
 
     /// The same with what the graph tells of ranks, if colours tell them.
@@ -304,6 +330,7 @@ impl<'g> Survey<'g> {
     fn add(&mut self, span: &Self, seam: Seam) {
         self.bounds.add_all(&span.bounds);
         self.strokes |= span.strokes;
+        self.is_met |= span.is_met;
         self.elements += span.elements;
         self.fractals += span.fractals;
         let last_index = span
@@ -439,7 +466,15 @@ impl Visitor for Survey<'_> {
             if !self.is_bounded {
                 let base_element = &self.graph.base_elements()[object.base_element];
                 let pad = self.pad(object) * element.frame.stretch();
-                base_element.add_to(&mut self.bounds, &element.frame.map, pad);
+                match &self.shown {
+                    Some(shown) if !self.is_met => {
+                        let mut own = Bounds::EMPTY;
+                        base_element.add_to(&mut own, &element.frame.map, pad);
+                        self.is_met = shown.meets(&own);
+                        self.bounds.add_all(&own);
+                    }
+                    _ => base_element.add_to(&mut self.bounds, &element.frame.map, pad),
+                }
             }
         }
         Ok(())

@@ -10,7 +10,7 @@ use crate::zoom::{self, Address, Factor, Source, Window};
 use super::layout::Layout;
 use super::sight::starts_rings;
 use super::survey::{overhang, relative_overhang};
-use super::{Canvas, Detail, Options, Picture, RenderError, Size};
+use super::{Canvas, Detail, Nearest, Options, Picture, RenderError, Size};
 
 /// What a zoomed picture shows.
 #[derive(Clone, Debug)]
@@ -68,6 +68,7 @@ pub fn write_zoomed(
         at: look.at.clone(),
     };
     let steps = options.detail.filter(|detail| !detail.decides_steps);
+    let to_limit = steps.is_none();
     let zoom_growth = zoom::Growth {
         seed: growth.seed,
         steps: steps.map(|_| growth.steps),
@@ -93,7 +94,15 @@ pub fn write_zoomed(
         ..options.clone()
     };
     let growth = Growth { steps, ..*growth };
-    super::write(&found.graph, &growth, &options, out)
+    let mut picture = super::write(&found.graph, &growth, &options, out)?;
+    if let (Some(empty), true, Address::Point(middle)) = (&mut picture.empty, to_limit, &look.at) {
+        let half = f64::from(canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
+        empty.nearest = zoom::distance(graph, *middle).map(|distance| Nearest {
+            distance,
+            factor: half / (distance * canvas.scale()),
+        });
+    }
+    Ok(picture)
 }
 
 /// The canvas of everything: of the limit set where the graph tells its box, or else of what a rough

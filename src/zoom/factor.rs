@@ -67,6 +67,9 @@ impl fmt::Display for Factor {
 }
 
 impl Factor {
+    /// The least that there is.
+    pub(crate) const LEAST: f64 = 1e-6;
+
     /// Nothing is magnified.
     #[must_use]
     pub fn one() -> Self {

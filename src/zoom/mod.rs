@@ -44,10 +44,13 @@ mod factor;
 mod fixed;
 mod items;
 mod merge;
+mod nearest;
 mod roots;
 
 pub use address::{Address, AddressError};
 pub use factor::{Factor, FactorError};
+
+pub(crate) use nearest::distance;
 
 use std::sync::atomic::AtomicBool;
 

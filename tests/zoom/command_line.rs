@@ -117,6 +117,37 @@ fn a_zoom_writes_pictures_of_both_formats() {
     }
 }
 
+/// What lies off the set is an empty picture, which is said, with where there is something.
+#[test]
+fn a_window_beside_the_set_is_said_to_be_empty() {
+    let note = "note: nothing of koch lies within the window";
+    let beside = ["koch", "--zoom", "1000", "--at", "0.5,0.1", "-o"];
+    for file in ["beside.png", "beside.svg"] {
+        let (code, text) = said(&[&beside[..], &[file]].concat());
+        assert_eq!(code, Some(0), "{text}");
+        let (first, _) = text.split_once('\n').unwrap();
+        // From the nearest corners, which stand at (4/9, √3/9) and its mirror image.
+        let nearest =
+            "; the nearest of it is about 0.11 from the middle, and --zoom 1.3 shows that";
+        assert_eq!(first, format!("{note}{nearest}"), "{text}");
+        let (_, text) = said(&[&beside[..], &[file, "--quiet"]].concat());
+        assert_eq!(text, "");
+    }
+    for rest in [["--zoom", "1.3"], ["--steps", "0"]] {
+        let at = ["koch", "--at", "0.5,0.1", "-o", "near.png"];
+        let (code, text) = said(&[&at[..], &rest].concat());
+        assert!(code == Some(0) && !text.contains("note"), "{text}");
+    }
+    let (_, text) = said(&[&beside[..], &["steps.png", "--steps", "3"]].concat());
+    assert!(text.starts_with(&format!("{note}\n")), "{text}");
+    let (_, text) = said(&["koch", "--view", "5,5,1,1", "-o", "view.png"]);
+    assert!(text.starts_with(&format!("{note}\n")), "{text}");
+    // What a chain encloses shows, for it is filled.
+    let inside = ["koch-snowflake", "--zoom", "50", "--at", "0.5,-0.2"];
+    let (code, text) = said(&[&inside[..], &["--fill", "teal", "-o", "inside.png"]].concat());
+    assert!(code == Some(0) && !text.contains("note"), "{text}");
+}
+
 /// A rule whose own style tells elements by their number is drawn in one colour, and says so.
 #[test]
 fn rules_that_colour_by_index_are_zoomed_into_in_one_colour() {

@@ -1,0 +1,123 @@
+//! How far a point is from a limit set.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::geometry::{DAffine2, DVec2, Frame, distance_to_segment};
+use crate::graph::{Graph, Object, Replacement};
+use crate::rule::{BaseElement, Piece};
+
+/// Copies that are looked into at most.
+const MOST: usize = 100_000;
+
+/// The distance is known to this part of it.
+const ENOUGH: f64 = 1e-3;
+
+/// How far a point is from the nearest of a limit set, to a thousandth; what is kept counts with
+/// its outlines. `None` where the graph does not tell, or it takes too many copies.
+///
+/// Copies are looked into in the order of the discs that hold them, the nearest first, until no disc
+/// comes nearer than some point is known to be.
+pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
+    if !graph.is_plain() || graph.depth().is_some() {
+        return None;
+    }
+    let alive = graph.alive(true);
+    let is_kept = |object: &Object| matches!(object.replacement, Replacement::Kept);
+    let reaches = graph.reaches(|object| match object.replacement {
+        Replacement::Kept => graph.outline_radius(object),
+        _ => 0.0,
+    });
+    let mut nearest = f64::INFINITY;
+    let mut open = BinaryHeap::new();
+    let meet = |object: usize, map: DAffine2, nearest: &mut f64| {
+        let found = &graph.objects()[object];
+        if !alive[object] {
+            return None;
+        }
+        if is_kept(found) {
+            let outline = &graph.base_elements()[found.base_element];
+            *nearest = nearest.min(distance_to_outline(point, outline, &map));
+            return None;
+        }
+        let frame = Frame { map, ..Frame::UNIT };
+        let away = map.transform_point2(graph.middle()).distance(point);
+        let reach = frame.stretch() * reaches[object];
+        *nearest = nearest.min(away + reach);
+        Some(Copy {
+            least: (away - reach).max(0.0),
+            object,
+            map,
+        })
+    };
+    let initiator = graph.initiator(0).instances.iter();
+    open.extend(initiator.filter_map(|it| meet(it.object, it.frame.map, &mut nearest)));
+    for _ in 0..MOST {
+        let Some(copy) = open.pop() else {
+            return nearest.is_finite().then_some(nearest);
+        };
+        if nearest - copy.least <= ENOUGH * nearest {
+            return Some(nearest);
+        }
+        let children = graph.children(copy.object);
+        let children = children.map(|(_, it)| (it.object, copy.map * it.frame.map));
+        open.extend(children.filter_map(|(object, map)| meet(object, map, &mut nearest)));
+    }
+    None
+}
+
+/// A copy of an object's limit set.
+struct Copy {
+    /// No point of it is nearer.
+    least: f64,
+    object: usize,
+    map: DAffine2,
+}
+
+/// The nearest is the greatest.
+impl Ord for Copy {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.least.total_cmp(&self.least)
+    }
+}
+
+impl PartialOrd for Copy {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Copy {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Copy {}
+
+/// How far a point is from the image of an outline, curves being taken as chords.
+fn distance_to_outline(point: DVec2, outline: &BaseElement, map: &DAffine2) -> f64 {
+    const CHORDS: u32 = 32;
+    let mut from = map.transform_point2(outline.start());
+    let mut nearest = f64::INFINITY;
+    for piece in outline.pieces() {
+        let ends: Vec<DVec2> = match piece.transformed(map) {
+            Piece::Line(end) => vec![end],
+            Piece::Cubic(a, b, end) => {
+                let start = from;
+                let at = |chord: u32| {
+                    let t = f64::from(chord) / f64::from(CHORDS);
+                    let (first, second) = (start.lerp(a, t), a.lerp(b, t));
+                    let third = b.lerp(end, t);
+                    first.lerp(second, t).lerp(second.lerp(third, t), t)
+                };
+                (1..=CHORDS).map(at).collect()
+            }
+        };
+        for end in ends {
+            nearest = nearest.min(distance_to_segment(point, from, end));
+            from = end;
+        }
+    }
+    nearest
+}
