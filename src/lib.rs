@@ -75,6 +75,7 @@ pub mod render;
 mod resolve;
 pub mod rule;
 pub mod style;
+mod whole;
 mod wording;
 pub mod zoom;
 

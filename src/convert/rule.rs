@@ -2,7 +2,7 @@
 
 use crate::build::written::{self, Entries, sequence};
 use crate::document::node::Value;
-use crate::geometry::{DAffine2, DVec2, Frame};
+use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::rule::{BaseElement, Piece};
 
 use super::Refusal;
@@ -104,11 +104,7 @@ impl Writer<'_> {
 
 /// Refuses a map that is no similarity, or that leaves a point.
 pub(super) fn similarity(map: &DAffine2, called: &dyn Fn() -> String) -> Result<(), Refusal> {
-    let frame = Frame {
-        map: *map,
-        ..Frame::UNIT
-    };
-    let longest = frame.stretch();
+    let longest = stretch(&map.matrix2);
     if longest == 0.0 {
         return Err(Refusal::Point(called()));
     }

@@ -9,6 +9,7 @@ use crate::render::{
     write_drawing,
 };
 use crate::style::{Cap, Colour, Join};
+use crate::whole::whole;
 
 /// What is in the first set only, in the second only, and in both: told apart by all eyes (Okabe and
 /// Ito 2008).
@@ -82,12 +83,7 @@ impl Pixels {
         if pixel.min_element() < 0.0 {
             return;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "casts from floats saturate"
-        )]
-        let [column, row] = [pixel.x, pixel.y].map(|at| at as usize);
+        let [column, row] = pixel.to_array().map(whole);
         if column < width && row < height {
             self.plane[row * width + column] = true;
         }

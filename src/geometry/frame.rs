@@ -65,15 +65,21 @@ impl Frame {
     #[inline]
     #[must_use]
     pub fn stretch(&self) -> f64 {
-        let (x, y) = (self.map.matrix2.x_axis, self.map.matrix2.y_axis);
-        // The parts that keep and that reverse the sense of rotation; of a similarity one is zero.
-        let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
-        let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
-        if reversed == 0.0 {
-            kept.sqrt() / 2.0
-        } else {
-            (kept.sqrt() + reversed.sqrt()) / 2.0
-        }
+        stretch(&self.map.matrix2)
+    }
+}
+
+/// The most that a linear map makes anything longer: its larger singular value.
+#[inline]
+pub(crate) fn stretch(matrix: &DMat2) -> f64 {
+    let (x, y) = (matrix.x_axis, matrix.y_axis);
+    // The parts that keep and that reverse the sense of rotation; of a similarity one is zero.
+    let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
+    let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
+    if reversed == 0.0 {
+        kept.sqrt() / 2.0
+    } else {
+        (kept.sqrt() + reversed.sqrt()) / 2.0
     }
 }
 

@@ -14,4 +14,5 @@ pub use direction::Direction;
 pub use frame::{Frame, placement};
 pub use glam::{DAffine2, DMat2, DVec2};
 
+pub(crate) use frame::stretch;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

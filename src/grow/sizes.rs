@@ -1,6 +1,7 @@
 //! How many elements come of an object in a few steps.
 
 use crate::graph::{Alternative, Graph, Object, Replacement};
+use crate::whole::whole;
 
 /// Steps beyond these are not counted.
 const MOST_STEPS: usize = 64;
@@ -208,16 +209,6 @@ fn lengthen(
 /// By how many classes a length is longer than another, from their ratio.
 fn classes(ratio: f64) -> f64 {
     LENGTHS_AN_OCTAVE * libm::log2(ratio)
-}
-
-/// The whole number below, if that is not negative, or else 0.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
-fn whole(number: f64) -> usize {
-    number as usize
 }
 
 fn sum(objects: impl Iterator<Item = usize>, counts: &[u64]) -> u64 {

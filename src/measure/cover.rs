@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::whole::whole;
 
 /// How a set is covered by boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +70,7 @@ impl Grid {
         let map = DAffine2::from_scale(DVec2::splat(1.0 / size))
             * DAffine2::from_translation(-corner)
             * DAffine2::from_mat2(self.turn());
-        (map, extent.to_array().map(whole))
+        (map, extent.to_array().map(boxes))
     }
 
     /// The turn alone.
@@ -79,13 +80,9 @@ impl Grid {
     }
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
-fn whole(extent: f64) -> usize {
-    (extent.ceil() as usize).max(1)
+/// How many boxes hold an extent.
+fn boxes(extent: f64) -> usize {
+    whole(extent.ceil()).max(1)
 }
 
 /// What `count` tells of every grid, in the order of the grids.

@@ -1,6 +1,7 @@
 //! How a set's mass is spread over boxes, and its lacunarity.
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::whole::whole;
 
 use super::bits::Bits;
 use super::cover::Grid;
@@ -114,13 +115,8 @@ impl Masses {
         (map, Self::empty(width, height, size))
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "points lie on the grid, and casts from floats saturate"
-    )]
     fn number(&self, at: DVec2) -> usize {
-        let (column, row) = (at.x as usize, at.y as usize);
+        let [column, row] = at.to_array().map(whole);
         row.min(self.height - 1) * self.width + column.min(self.width - 1)
     }
 

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, fence};
 use std::sync::{Arc, OnceLock};
 
 use crate::geometry::DVec2;
+use crate::whole::whole;
 
 /// No layer: pixels of none are asked for.
 const NONE: u64 = 0;
@@ -108,15 +109,6 @@ impl Filled {
         let planes = self.planes.iter().filter_map(OnceLock::get);
         planes.fold(0, |all, cells| all | cells[cell].load(Relaxed)) == u64::MAX
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "what is in a picture"
-)]
-fn whole(place: f64) -> usize {
-    place as usize
 }
 
 #[cfg(test)]

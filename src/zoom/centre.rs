@@ -7,6 +7,7 @@ use crate::geometry::DMat2;
 use crate::graph::{Graph, Instance, Production, Replacement};
 use crate::grow::{Evaluator, Moment, Standing};
 use crate::rule::Placement;
+use crate::whole::whole;
 
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
@@ -94,7 +95,7 @@ pub(super) fn centre(
             standing: &standing,
             object,
             moment,
-            bits: left(product.log2 - enough) + SPARE,
+            bits: whole((product.log2 - enough).ceil()) + SPARE,
         };
         maps.extend(constants.children(parent, &[&child]));
         product.multiply(child.frame.map.matrix2);
@@ -109,16 +110,6 @@ pub(super) fn centre(
     let start = [middle.x, middle.y].map(|it| Precise::of(it).fixed(bits));
     let image = |point: Vector, map: &Arc<Fixed>| map.image(&point, bits);
     Ok(maps.iter().rev().fold(start, image))
-}
-
-/// A number of bits.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
-fn left(bits: f64) -> usize {
-    bits.ceil() as usize
 }
 
 /// How much shorter things become on a way.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use crate::geometry::{DAffine2, DVec2, Frame};
+use crate::geometry::{DAffine2, DVec2, Frame, stretch};
 use crate::graph::{Chain, Graph, Instance, Production, Replacement, Seed};
 use crate::grow::{Evaluator, Moment, Standing};
 
@@ -251,11 +251,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let middle = map.transform_point2(self.graph.middle());
         let half = self.half / pixel(exponent);
         let nearest = middle.clamp(-half, half);
-        let frame = Frame {
-            map: *map,
-            ..Frame::UNIT
-        };
-        let reach = self.reaches[object] * frame.stretch();
+        let reach = self.reaches[object] * stretch(&map.matrix2);
         middle.distance(nearest) > reach * (1.0 + DOUBT) + doubt
     }
 
@@ -383,11 +379,7 @@ pub(super) fn pixel(exponent: usize) -> f64 {
 
 /// The doubt about the places of what a map holds that stands somewhere near the window.
 fn doubt(map: &DAffine2) -> f64 {
-    let frame = Frame {
-        map: *map,
-        ..Frame::UNIT
-    };
-    DOUBT * (map.translation.length() + frame.stretch())
+    DOUBT * (map.translation.length() + stretch(&map.matrix2))
 }
 
 fn scaled(map: &DAffine2, by: f64) -> DAffine2 {

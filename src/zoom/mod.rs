@@ -58,6 +58,7 @@ use crate::document::{Document, Setting};
 use crate::geometry::DVec2;
 use crate::graph::{CompileError, Graph, NoLimit, Object};
 use crate::model::Model;
+use crate::whole::whole;
 
 /// A model, and the file that says its numbers.
 #[derive(Clone, Copy)]
@@ -245,13 +246,8 @@ pub fn zoom(
     if let Address::Point(point) = window.at {
         check_point(point, window)?;
     }
-    let lead = (window.factor.log2() + window.scale.log2()).max(0.0).ceil();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "factors are limited"
-    )]
-    let bits = lead as usize + GRAIN + SPARE;
+    let lead = (window.factor.log2() + window.scale.log2()).ceil();
+    let bits = whole(lead) + GRAIN + SPARE;
     let mut constants = constants::Constants::new(source, graph, bits)?;
     let centre = centre::centre(graph, growth, window, &mut constants)?;
     descent::Descent::new(graph, growth, window, &reaches, &mut constants).run(&centre)

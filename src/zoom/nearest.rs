@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::geometry::{DAffine2, DVec2, Frame, distance_to_segment};
+use crate::geometry::{DAffine2, DVec2, distance_to_segment, stretch};
 use crate::graph::{Graph, Object, Replacement};
 use crate::rule::{BaseElement, Piece};
 
@@ -40,9 +40,8 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
             *nearest = nearest.min(distance_to_outline(point, outline, &map));
             return None;
         }
-        let frame = Frame { map, ..Frame::UNIT };
         let away = map.transform_point2(graph.middle()).distance(point);
-        let reach = frame.stretch() * reaches[object];
+        let reach = stretch(&map.matrix2) * reaches[object];
         *nearest = nearest.min(away + reach);
         Some(Copy {
             least: (away - reach).max(0.0),

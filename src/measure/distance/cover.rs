@@ -1,7 +1,7 @@
 //! Points that stand for a set: none of the set is farther than a radius from them, nor are they from
 //! it.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, NoLimit, Replacement};
 use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, extent, walk};
 
@@ -174,10 +174,9 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
             continue;
         }
         let object = &graph.objects()[number];
-        let frame = Frame { map, ..Frame::UNIT };
         let (middle, reach) = (
             map.transform_point2(middle),
-            frame.stretch() * reaches[number],
+            stretch(&map.matrix2) * reaches[number],
         );
         if region.covers(middle, reach) {
             region.work(1)?;

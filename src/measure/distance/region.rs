@@ -2,6 +2,7 @@
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
+use crate::whole::whole;
 
 /// A set that takes more points than are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -60,12 +61,7 @@ impl Covered {
         if count.is_nan() || count > Self::MOST {
             return None;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the counts are positive and small"
-        )]
-        let [columns, rows] = [counts.x as usize, counts.y as usize];
+        let [columns, rows] = counts.to_array().map(whole);
         Some(Self {
             corner,
             side,
@@ -133,13 +129,8 @@ impl Covered {
 }
 
 /// The square of a row, or the row, that a coordinate lies in; the nearest for those beyond.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
 fn within(coordinate: f64, count: usize) -> usize {
-    (coordinate as usize).min(count - 1)
+    whole(coordinate).min(count - 1)
 }
 
 /// The radius of a disc about a point that holds an outline.

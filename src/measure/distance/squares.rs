@@ -1,8 +1,9 @@
 //! Limit sets as squares of grids: where copies overlap, a place is looked at once.
 
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame};
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::BaseElement;
+use crate::whole::whole;
 
 use super::cover::reaches;
 use super::region::{Region, TooMany};
@@ -92,7 +93,7 @@ impl<'g> Squares<'g> {
         let weights: Vec<f64> = weights.map(|it| products.weights[it.object]).collect();
         let stretched = squares
             .initiator()
-            .map(|(grid, map)| stretch(map) * weights[grid]);
+            .map(|(grid, map)| stretch(&map.matrix2) * weights[grid]);
         let stretched = products.sum * stretched.fold(0.0, f64::max);
         if stretched <= 0.0 {
             return Ok(None);
@@ -128,7 +129,7 @@ impl<'g> Squares<'g> {
         for (number, map) in self.initiator() {
             let grid = &self.grids[number];
             let map = *map * grid.places();
-            let side = stretch(&map);
+            let side = stretch(&map.matrix2);
             let step = whole(WIDE * region.radius / side).max(1);
             for y in (0..TILE * grid.tiles[1]).step_by(step) {
                 for x in (0..TILE * grid.tiles[0]).step_by(step) {
@@ -276,7 +277,7 @@ impl<'g> Squares<'g> {
             let instance = self.replaced(object).next()?;
             map *= instance.frame.map;
             object = instance.object;
-            if stretch(&map) <= NEGLIGIBLE {
+            if stretch(&map.matrix2) <= NEGLIGIBLE {
                 break;
             }
         }
@@ -439,22 +440,4 @@ fn bits(mut word: u64) -> impl Iterator<Item = usize> {
 )]
 fn within(coordinate: f64, tiles: usize) -> usize {
     (coordinate as i32).clamp(0, (TILE * tiles) as i32 - 1) as usize
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
-fn whole(number: f64) -> usize {
-    number as usize
-}
-
-/// The most that a map stretches anything.
-fn stretch(map: &DAffine2) -> f64 {
-    let frame = Frame {
-        map: *map,
-        ..Frame::UNIT
-    };
-    frame.stretch()
 }

@@ -12,6 +12,7 @@ use rand_pcg::rand_core::Rng;
 
 use crate::geometry::DVec2;
 use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
+use crate::whole::whole;
 
 use super::{GRAZED, LimitSet, Placed};
 
@@ -134,7 +135,7 @@ impl<'s> Descent<'s> {
             self.looked_at += 1;
             let [columns, rows] = [0, 1].map(|axis| {
                 let (low, high) = (middle[axis] - radius, middle[axis] + radius);
-                within(low)..within(high + 1.0).min(boxes[axis])
+                whole(low)..whole(high + 1.0).min(boxes[axis])
             });
             if self.looked_at > MOST_COPIES {
                 break;
@@ -163,16 +164,6 @@ impl<'s> Descent<'s> {
         cells.iter_mut().for_each(without_doubles);
         cells
     }
-}
-
-/// The box of a row that holds a coordinate; the first for those below.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "casts from floats saturate"
-)]
-fn within(coordinate: f64) -> usize {
-    coordinate as usize
 }
 
 /// Takes out copies that are the same as others.
