@@ -125,11 +125,6 @@ impl<K> Resolver<K> {
     }
 }
 
-fn is_name(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-}
-
 /// A value as a whole number from 0 to `most`.
 #[expect(
     clippy::cast_possible_truncation,

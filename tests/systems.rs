@@ -532,18 +532,21 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     }
     let parts = [
         "--set",
-        "re=0.3..0.5",
+        "s.re=0.3..0.5",
         "--set",
-        "im=0,0.5",
+        "s.im=0,0.5",
         "--samples",
         "2",
     ];
     let pair = ["sheet", "complex-pair", "--steps", "2", "-o", "-"];
     let (code, sheet, said) = kfrac(&[&pair[..], &parts].concat());
     assert_eq!(code, Some(0), "{said}");
-    for caption in ["re = 0.3, im = 0: ", "re = 0.5, im = 0.5: "] {
+    for caption in ["s.re = 0.3, s.im = 0: ", "s.re = 0.5, s.im = 0.5: "] {
         assert!(sheet.contains(caption), "{caption}");
     }
+    let line = ["--set", "s=[0.3,0]..[0.5,0.5]", "--samples", "2"];
+    let (code, same, said) = kfrac(&[&pair[..], &line].concat());
+    assert!(code == Some(0) && same == sheet, "{said}");
     let (code, _, said) = kfrac(&[&pair[..], &parts[..5], &["3"]].concat());
     assert!(code == Some(2) && said.contains("do not go with"), "{said}");
     let (code, _, said) = kfrac(&["info", "pythagoras", "--set", "angle=20,40"]);
@@ -570,6 +573,59 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     assert_eq!(info["default_weights"], true);
     assert_eq!(info["weights_by"], "determinants");
     assert_eq!(info["contraction"]["contracts"], true);
+}
+
+/// A complex parameter is two real ones, which maps take together.
+#[test]
+fn parameters_may_be_complex() {
+    let written = system(
+        "maps: [{times: [1/2, 1/3], shift: [1, 0]}, {times: [0.7, 1/3], fixed: [1/2, 1/3]}]",
+    );
+    let all = "maps: [{times: s, shift: [1, 0]}, {times: [0.2 + s.re, s.im], fixed: s}]";
+    for params in [
+        "s: [1/2, 1/3]",
+        "s: [1/2, 2*s.re/3]",
+        "one: 1, s: {value: [1/2, 1/3], min: [0, 0], max: [1, one], about: a factor}",
+    ] {
+        let named = system(&format!("params: {{{params}}}\n{all}"));
+        assert_eq!(maps(&named), maps(&written), "{params}");
+    }
+    let set = |text: &str| {
+        let (code, info, said) = kfrac(&[
+            "info",
+            "complex-pair",
+            "--steps",
+            "0",
+            "--set",
+            text,
+            "--json",
+        ]);
+        let info: serde_json::Value = serde_json::from_str(&info).unwrap_or_default();
+        (code, info["params"].clone(), said)
+    };
+    let (_, params, said) = set("s=[1/2, max(0, 1/4)]");
+    assert_eq!(
+        params,
+        serde_json::json!({"s.re": 0.5, "s.im": 0.25}),
+        "{said}"
+    );
+    let (_, params, _) = set("s.im=-0.5");
+    assert_eq!(params, serde_json::json!({"s.re": 0.55, "s.im": -0.5}));
+    for (text, message) in [
+        ("s=0.5", "'s' is complex: [real part, imaginary part]"),
+        ("s=[0.5,2]", "'s.im' is 2, above its largest value 1"),
+        ("s=[0.5", "a complex value is written [RE,IM]"),
+        ("s=[0,0],[0.1,0]", "several values are for `kfrac sheet`"),
+        ("r=[0,0]", "it has: s"),
+    ] {
+        let (code, _, said) = set(text);
+        assert!(code == Some(2) && said.contains(message), "{text}: {said}");
+    }
+    let (code, _, said) = kfrac(&["info", "pythagoras", "--set", "angle=[1,2]"]);
+    assert!(
+        code == Some(2) && said.contains("'angle' is a real number"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -200,8 +200,8 @@ impl Arguments {
             params.any(|param| param.name.value == setting.name)
         };
         let nobody = |setting: &&Setting| !documents.iter().any(|it| has(it, setting));
-        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::setting).collect();
-        let settings = settings?;
+        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
+        let settings = settings?.concat();
         let lost: Vec<_> = settings.iter().filter(nobody).cloned().collect();
         let mut both = Vec::new();
         for (path, document) in paths.into_iter().zip(documents) {

@@ -1,13 +1,21 @@
 //! Values of parameters as the command line has them: one, or several that make a family.
 
 use crate::document::Setting;
-use crate::expression::{Expression, Scope};
+use crate::expression::{Expression, PARTS, Scope};
 
 use super::Failure;
 
-/// A parameter with the values that it is to have.
+/// A parameter with the values that it is to have; of a complex one, the real and the imaginary parts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Assignment {
+    /// How the parameter is called.
+    name: String,
+    parts: Vec<Part>,
+}
+
+/// A number with the values that it is to have.
+#[derive(Clone, Debug, PartialEq)]
+struct Part {
     name: String,
     values: Values,
     /// How it is written, if it is one.
@@ -22,9 +30,14 @@ enum Values {
     Range([f64; 2]),
 }
 
-/// Reads `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`.
+/// Reads `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`; a value is a number or `[RE,IM]`.
 pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     let (name, written) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    let (name, written) = (name.trim().to_owned(), written.trim());
+    if written.starts_with('[') {
+        let parts = complex(&name, written)?;
+        return Ok(Assignment { name, parts });
+    }
     let values = match (value(written), written.split_once("..")) {
         // A comma may belong to a function.
         (Ok(value), _) => Values::One(value),
@@ -37,11 +50,64 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
             }
         }
     };
-    Ok(Assignment {
-        name: name.trim().into(),
+    let part = Part {
+        name: name.clone(),
         values,
         written: Expression::parse(written).ok(),
-    })
+    };
+    let parts = vec![part];
+    Ok(Assignment { name, parts })
+}
+
+/// The parts of complex values: `[RE,IM]`, several with commas between them, or two with `..`.
+fn complex(name: &str, written: &str) -> Result<Vec<Part>, String> {
+    const FORMS: &str =
+        "a complex value is written [RE,IM], several are [RE,IM],[RE,IM] or [RE,IM]..[RE,IM]";
+    let mut sides: [Vec<&str>; 2] = [Vec::new(), Vec::new()];
+    let (mut rest, mut is_range) = (written, false);
+    loop {
+        let (inside, after) = rest
+            .strip_prefix('[')
+            .and_then(|rest| rest.split_once(']'))
+            .ok_or(FORMS)?;
+        // A comma may belong to a function.
+        let mut commas = inside.match_indices(',');
+        let halves = commas.find_map(|(at, _)| {
+            let halves = [&inside[..at], &inside[at + 1..]];
+            let are_read = halves.iter().all(|half| Expression::parse(half).is_ok());
+            are_read.then_some(halves)
+        });
+        for (side, half) in sides.iter_mut().zip(halves.ok_or(FORMS)?) {
+            side.push(half);
+        }
+        let after = after.trim_start();
+        if after.is_empty() {
+            break;
+        }
+        let next = match after.strip_prefix("..") {
+            Some(next) if sides[0].len() == 1 => {
+                is_range = true;
+                Some(next)
+            }
+            _ => after.strip_prefix(',').filter(|_| !is_range),
+        };
+        rest = next.ok_or(FORMS)?.trim_start();
+    }
+    let part = |(part, side): (&str, Vec<&str>)| {
+        let all: Result<Vec<f64>, String> = side.iter().map(|text| value(text)).collect();
+        let all = all?;
+        let (values, written) = match all[..] {
+            [one] => (Values::One(one), Expression::parse(side[0]).ok()),
+            [first, last] if is_range => (Values::Range([first, last]), None),
+            _ => (Values::Several(all), None),
+        };
+        Ok(Part {
+            name: format!("{name}{part}"),
+            values,
+            written,
+        })
+    };
+    PARTS.into_iter().zip(sides).map(part).collect()
 }
 
 fn value(text: &str) -> Result<f64, String> {
@@ -58,20 +124,27 @@ fn value(text: &str) -> Result<f64, String> {
 }
 
 impl Assignment {
-    /// The one value.
-    pub(super) fn setting(&self) -> Result<Setting, Failure> {
+    /// The one value; of a complex parameter, its parts.
+    pub(super) fn settings(&self) -> Result<Vec<Setting>, Failure> {
+        let settings: Option<Vec<_>> = self.parts.iter().map(Part::setting).collect();
+        settings.ok_or_else(|| {
+            let message = format!(
+                "--set {}: several values are for `kfrac sheet`, which draws them side by side",
+                self.name
+            );
+            Failure::Usage(message)
+        })
+    }
+}
+
+impl Part {
+    fn setting(&self) -> Option<Setting> {
         match self.values {
-            Values::One(value) => Ok(Setting {
+            Values::One(value) => Some(Setting {
                 written: self.written.clone(),
                 ..self.with(value)
             }),
-            _ => {
-                let message = format!(
-                    "--set {}: several values are for `kfrac sheet`, which draws them side by side",
-                    self.name
-                );
-                Err(Failure::Usage(message))
-            }
+            Values::Several(_) | Values::Range(_) => None,
         }
     }
 
@@ -116,9 +189,9 @@ pub(super) fn split(
 ) -> Result<(Vec<Setting>, Vec<Vec<Setting>>), Failure> {
     let mut fixed = Vec::new();
     let mut swept: Vec<Vec<Setting>> = Vec::new();
-    for assignment in assignments {
+    for assignment in assignments.iter().flat_map(|it| &it.parts) {
         let Some(several) = assignment.several(samples) else {
-            fixed.push(assignment.setting()?);
+            fixed.extend(assignment.setting());
             continue;
         };
         if swept.is_empty() {
@@ -171,5 +244,20 @@ mod tests {
         assert_eq!(path, [[0.0, 5.0], [0.5, 6.0], [1.0, 8.0]]);
         assert_eq!(together(&["re=1,2", "im=1,2,3"]), None);
         assert_eq!(together(&["re=1,2", "re=1,2"]), None);
+        let path = [[0.0, 5.0], [0.5, 6.0], [1.0, 7.0]];
+        assert_eq!(together(&["s=[0, 5]..[1, 7]"]).unwrap(), path);
+        assert_eq!(together(&["s=[0,5],[1/2,max(6,1)], [1,7]"]).unwrap(), path);
+        assert_eq!(together(&["s=[0,5],[1/2,6],[1,7]", "s.re=0..1"]), None);
+        assert_eq!(values("s=[max(1, 2), 3]"), [2.0, 3.0]);
+        for wrong in [
+            "s=[1]",
+            "s=[1,2",
+            "s=[1,2,3]",
+            "s=[1,2]..3",
+            "s=[1,2]..[3,4]..[5,6]",
+            "s=[1,2],",
+        ] {
+            assert!(assignment(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use etcetera::BaseStrategy;
 
 use crate::catalogue::Catalogue;
-use crate::diagnostic::{Diagnostic, Severity, Source, did_you_mean};
+use crate::diagnostic::{Diagnostic, Severity, Source};
 use crate::document::{Document, Setting};
 use crate::graph::{CompileError, Graph};
 use crate::lsystem::RewriteError;
@@ -44,7 +44,8 @@ pub(super) struct RuleArguments {
     pub(super) rule: PathBuf,
     /// Sets a parameter of the rule; it may be given several times
     ///
-    /// The value may be an expression: --set angle=180/7. `kfrac info RULE` lists the parameters.
+    /// The value may be an expression: --set angle=180/7. That of a complex parameter is [RE,IM], which
+    /// shells want in quotes. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = family::assignment)]
     pub(super) set: Vec<Assignment>,
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
@@ -173,9 +174,9 @@ impl RuleArguments {
         catalogue: &Catalogue,
         quiet: bool,
     ) -> Result<Loaded, Failure> {
-        let settings: Result<_, _> = self.set.iter().map(Assignment::setting).collect();
+        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
         let document = Document::read(source, catalogue)?;
-        self.resolve(document, settings?, quiet)
+        self.resolve(document, settings?.concat(), quiet)
     }
 
     /// The same for several values of a parameter, or of some together, each with the settings that make
@@ -265,12 +266,7 @@ fn check_setting(
 ) -> Result<(), Failure> {
     let params = &document.heading().params;
     if !params.iter().any(|param| param.name.value == setting.name) {
-        let names = params.iter().map(|param| param.name.value.as_str());
-        let hint = match did_you_mean(&setting.name, names.clone()) {
-            Some(hint) => hint,
-            None if params.is_empty() => "it has none".into(),
-            None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
-        };
+        let hint = document.heading().instead_of(&setting.name);
         let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
         return Err(Failure::Usage(message));
     }

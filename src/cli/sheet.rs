@@ -60,7 +60,7 @@ Examples:
       Draws the first approximants of the Koch curve, into koch-sheet.svg
   kfrac sheet pythagoras --set angle=20..70 --samples 6
       Draws the tree for six angles
-  kfrac sheet complex-pair --set re=0.3..0.6 --set im=0.2..0.5 --samples 8 --columns 4
+  kfrac sheet complex-pair --set 's=[0.3,0.2]..[0.6,0.5]' --samples 8 --columns 4
       Draws a fractal for eight values of a complex number: both of its parts at once
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
       Draws three of them in a row, larger, as pixels

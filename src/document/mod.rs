@@ -44,7 +44,7 @@ use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Place, Source};
-use crate::expression::Expression;
+use crate::expression::{Expression, PARTS};
 use crate::model::Model;
 use crate::resolve;
 
@@ -98,6 +98,29 @@ impl Point {
             y: zero(),
             place: place.clone(),
         }
+    }
+
+    /// A complex number by its name.
+    pub(crate) fn named(name: &str, place: &Place) -> Self {
+        let part = |part: &str| Written {
+            value: Expression::parse(&format!("{name}{part}"))
+                .unwrap_or_else(|_| Expression::unknown()),
+            place: place.clone(),
+        };
+        let [x, y] = PARTS.map(part);
+        Self {
+            x,
+            y,
+            place: place.clone(),
+        }
+    }
+
+    /// The name of the complex number that it is, if it is written as one.
+    pub(crate) fn name(&self) -> Option<&str> {
+        let names = self.x.value.names();
+        let (name, _) = names.first()?;
+        let name = name.strip_suffix(PARTS[0])?;
+        (self.place.text() == name).then(|| self.place.text())
     }
 
     /// Whether two points are written the same.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
-use crate::expression::Expression;
+use crate::expression::{Expression, is_name};
 use crate::style::Named;
 
 use super::node::{Node, Value};
@@ -264,6 +264,21 @@ impl Reader {
             self.error_with_hint(&node.place, message, hint);
         }
         Point::unknown(&node.place)
+    }
+
+    /// The same, or the name of a complex parameter.
+    pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<Point> {
+        let node = node?;
+        match &node.value {
+            Value::Text(name) if is_name(name) => Some(Point::named(name, &node.place)),
+            Value::Text(text) => {
+                let message = format!("'{text}' is neither a point nor a name");
+                let hint = "write [x, y], or the name of a complex parameter";
+                self.error_with_hint(&node.place, message, hint);
+                Some(Point::unknown(&node.place))
+            }
+            _ => Some(self.point(node)),
+        }
     }
 
     pub(super) fn optional_point(&mut self, node: Option<&Node>) -> Option<Point> {

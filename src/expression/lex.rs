@@ -31,7 +31,14 @@ pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), Expr
         return number(text, start);
     }
     if first.is_ascii_alphabetic() || first == '_' {
-        let length = prefix(rest, |c| c.is_ascii_alphanumeric() || c == '_');
+        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let mut length = prefix(rest, is_part);
+        // A part of a complex number.
+        if let Some(after) = PARTS.iter().find_map(|it| rest[length..].strip_prefix(it))
+            && !after.starts_with(is_part)
+        {
+            length = rest.len() - after.len();
+        }
         return Ok((word(&rest[..length]), start..start + length));
     }
     if let Some((sign, hint)) = FOREIGN.iter().find(|(sign, _)| rest.starts_with(sign)) {
@@ -49,6 +56,15 @@ pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), Expr
     let range = start..start + first.len_utf8();
     Err(foreign_character(first, range))
 }
+
+/// Whether a text can be the name of a parameter.
+pub(crate) fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// What stands behind the name of a complex number for its real part, and for its imaginary part.
+pub(crate) const PARTS: [&str; 2] = [".re", ".im"];
 
 /// The signs of the grammar; of two with the same beginning the longer comes first.
 const SIGNS: [(&str, Token); 18] = [

@@ -6,9 +6,9 @@
 //!
 //! From loosest to tightest: `or`, `and`, `not`, comparisons (which do not chain), `+ -`, `* / %`,
 //! the minus sign, `^` (to the right: `-2^2` is -4, `2^3^2` is 512). `||`, `&&` and `!` are other
-//! spellings of the first three. Every name is a number; conditions come from comparisons,
-//! `odd`, `even`, `true` and `false`, and the two never mix. Trigonometry takes and gives degrees
-//! and is exact where the value is (see `degrees`).
+//! spellings of the first three. Every name is a number, those of the parts of a complex one, `s.re`
+//! and `s.im`, as well; conditions come from comparisons, `odd`, `even`, `true` and `false`, and the
+//! two never mix. Trigonometry takes and gives degrees and is exact where the value is (see `degrees`).
 //!
 //! What is guaranteed: nothing here panics or overflows the stack, whatever the text; a program
 //! reads only the slots of its scope; the same expression has the same value, bit for bit, on
@@ -34,6 +34,7 @@ mod tests;
 use std::ops::Range;
 
 pub use interval::Interval;
+pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};

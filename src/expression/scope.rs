@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::functions::{FUNCTIONS, Function};
+use super::lex::PARTS;
 use super::{ExpressionError, Range};
 use crate::diagnostic::{listed, nearest};
 
@@ -107,7 +108,23 @@ impl Scope {
             .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }
 
+    /// Whether a name means something, or may do so.
+    pub(crate) fn knows(&self, name: &str) -> bool {
+        self.get(name).is_some()
+    }
+
     pub(super) fn unknown(&self, name: &str, range: Range<usize>) -> ExpressionError {
+        let [real, imaginary] = PARTS.map(|part| format!("{name}{part}"));
+        if self.contains(&real) {
+            let message = format!("'{name}' is a complex number, and a real one is needed here");
+            let hint = format!("{real} and {imaginary} are its parts");
+            return ExpressionError::new(range, message).hint(hint);
+        }
+        let mut wholes = PARTS.iter().filter_map(|part| name.strip_suffix(part));
+        if let Some(whole) = wholes.find(|whole| self.contains(whole)) {
+            let message = format!("'{whole}' is a real number, which has no parts");
+            return ExpressionError::new(range, message).hint(format!("write {whole}"));
+        }
         let scopes = std::iter::successors(Some(self), |scope| scope.enclosing.as_deref());
         let own: BTreeSet<&str> = scopes
             .flat_map(|scope| scope.names.keys().map(String::as_str))

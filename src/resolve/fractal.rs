@@ -1,6 +1,5 @@
 //! Other fractals as sets: approximants of them, grown here and now.
 
-use crate::diagnostic::did_you_mean;
 use crate::document::{FractalDocument, Setting};
 use crate::geometry::DAffine2;
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
@@ -81,16 +80,12 @@ impl<K> Resolver<K> {
 
     /// The parameters that are set; `None` if something is wrong, which is said.
     fn settings(&mut self, document: &FractalDocument) -> Option<Vec<Setting>> {
-        let params = &document.file.heading().params;
-        let names = params.iter().map(|param| param.name.value.as_str());
+        let heading = document.file.heading();
+        let names = heading.params.iter().map(|param| param.name.value.as_str());
         let settings = document.set.iter().map(|(name, number)| {
             let value = self.constant(number);
             if !names.clone().any(|known| known == name.value) {
-                let hint = match did_you_mean(&name.value, names.clone()) {
-                    Some(hint) => hint,
-                    None if params.is_empty() => "it has none".into(),
-                    None => format!("it has: {}", names.clone().collect::<Vec<_>>().join(", ")),
-                };
+                let hint = heading.instead_of(&name.value);
                 let message = format!("this fractal has no parameter '{}'", name.value);
                 self.error_with_hint(&name.place, message, hint);
                 return None;

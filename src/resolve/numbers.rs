@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::document::{Number, Point};
-use crate::expression::{Expression, ExpressionError, Program, Scope, Type};
+use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type};
 use crate::geometry::DVec2;
 use crate::rule::Moment;
 
@@ -66,6 +66,22 @@ impl<K> Resolver<K> {
     }
 
     pub(super) fn constant_point(&mut self, point: &Point) -> Option<DVec2> {
+        if let Some(name) = point.name()
+            && !PARTS
+                .iter()
+                .all(|part| self.constants.knows(&format!("{name}{part}")))
+        {
+            let (message, hint) = if self.constants.knows(name) {
+                let message = format!("'{name}' is a real number, and a point is needed here");
+                (message, format!("write [{name}, 0]"))
+            } else {
+                let hint =
+                    "write [x, y], or the name of a parameter that is [real part, imaginary part]";
+                (format!("unknown name '{name}'"), hint.into())
+            };
+            self.error_with_hint(&point.place, message, hint);
+            return None;
+        }
         let (x, y) = (self.constant(&point.x), self.constant(&point.y));
         Some(DVec2::new(x?, y?))
     }

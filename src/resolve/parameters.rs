@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::document::{HeadingDocument, Number, ParameterDocument, Setting};
-use crate::expression::is_reserved;
+use crate::document::{HeadingDocument, Number, ParameterDocument, Setting, Written};
+use crate::expression::{PARTS, is_name, is_reserved};
 use crate::heading::Parameter;
 use crate::rule::Moment;
 
-use super::{Resolver, is_name};
+use super::Resolver;
 
 impl<K> Resolver<K> {
     /// The parameters, which expressions see from here on.
@@ -50,7 +50,11 @@ impl<K> Resolver<K> {
     }
 
     fn check_name(&mut self, written: &ParameterDocument) {
-        let (name, place) = (&written.name.value, &written.name.place);
+        // What is said of the name of a complex parameter is said with its real part.
+        if written.whole.is_some() && written.name.value.ends_with(PARTS[1]) {
+            return;
+        }
+        let Written { value: name, place } = written.called();
         if !is_name(name) {
             let message = format!("'{name}' cannot be a parameter's name");
             let hint = "a name has letters, digits and _, and begins with a letter";

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::HeadingDocument;
+use crate::document::{HeadingDocument, ParameterDocument};
+use crate::expression::PARTS;
 
 /// More parameters than this are not compared with others.
 const MOST_COMPARED: usize = 100;
@@ -15,14 +16,24 @@ pub(super) fn parameters(
     heading: &HeadingDocument,
     used: &HashSet<String>,
 ) -> impl Iterator<Item = Diagnostic> {
-    let names = heading.params.iter().map(|parameter| &parameter.name);
-    let (used, unused): (Vec<_>, Vec<_>) = names.partition(|name| used.contains(&name.value));
+    let is_used = |parameter: &&ParameterDocument| match &parameter.whole {
+        None => used.contains(&parameter.name.value),
+        Some(whole) => PARTS
+            .iter()
+            .any(|part| used.contains(&format!("{}{part}", whole.value))),
+    };
+    let (used, unused): (Vec<_>, Vec<_>) = heading.params.iter().partition(is_used);
     let source = heading.place.source();
+    // One part of a complex parameter stands for both.
+    let is_second =
+        |it: &&ParameterDocument| it.whole.is_some() && it.name.value.ends_with(PARTS[1]);
     let unused = unused
         .into_iter()
+        .filter(move |it| !is_second(it))
+        .map(ParameterDocument::called)
         .filter(|name| Arc::ptr_eq(name.place.source(), source));
     unused.enumerate().map(move |(number, name)| {
-        let known = used.iter().map(|name| name.value.as_str());
+        let known = used.iter().map(|it| it.called().value.as_str());
         let meant = did_you_mean(&name.value, known.filter(|_| number < MOST_COMPARED));
         let hint = meant.unwrap_or_else(|| "leave it out, or use it in an expression".into());
         let message = format!("nothing uses the parameter '{}'", name.value);

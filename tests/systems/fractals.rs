@@ -103,6 +103,10 @@ fn the_parameters_of_a_fractal_are_set() {
     let written = of("{fractal: {extends: pythagoras, params: {angle: 60}}, steps: 3}");
     assert_eq!(set, written);
     assert_ne!(set, of("{fractal: pythagoras, steps: 3}"));
+    let set = of("{fractal: complex-pair, steps: 2, set: {s: [lean/24, 0.2]}}");
+    let written = "{kind: ifs, extends: complex-pair, params: {s: [0.5, 0.2]}}";
+    assert_eq!(set, of(&format!("{{fractal: {written}, steps: 2}}")));
+    assert_ne!(set, of("{fractal: complex-pair, steps: 2}"));
     // As an object's, too.
     let objects = |fractal: &str| {
         let text = format!("kind: instancing\nobjects: {{a: [{fractal}]}}\nscene: [a]\n");

@@ -122,6 +122,9 @@ pub(super) const PLACE: Shape = Shape {
 const MAP_HINT: &str =
     "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}";
 
+/// A point, or the name of a complex parameter.
+const COMPLEX: Form = Form::Either(&[Form::Point, Form::Expression]);
+
 /// The keys that say what a map does.
 const PLACING: [Member; 7] = [
     key(
@@ -141,18 +144,23 @@ const PLACING: [Member; 7] = [
     ),
     key(
         "times",
-        Form::Point,
-        "A complex factor s, as [real part, imaginary part]: z goes to s z.",
+        COMPLEX,
+        "A complex factor s, as [real part, imaginary part] or the name of a complex parameter: z goes to \
+         s z.",
     ),
     key(
         "conjugate",
         Form::Flag(false),
         "With `times`: z goes to s conj z.",
     ),
-    key("shift", Form::Point, "What is added last: [x, y]."),
+    key(
+        "shift",
+        COMPLEX,
+        "What is added last: [x, y], or the name of a complex parameter.",
+    ),
     key(
         "fixed",
-        Form::Point,
+        COMPLEX,
         "In place of `shift`: the point that stays where it is.",
     ),
 ];
@@ -334,8 +342,8 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
     let map = MapDocument {
         name: None,
         linear: read_linear(reader, fields),
-        shift: reader.optional_point(fields.take("shift")),
-        fixed: reader.optional_point(fields.take("fixed")),
+        shift: reader.optional_complex(fields.take("shift")),
+        fixed: reader.optional_complex(fields.take("fixed")),
         weight: None,
         place: fields.place.clone(),
     };
@@ -351,7 +359,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     let matrix = fields.take("matrix");
     let scale = fields.take("scale").map(|node| pair(reader, node));
     let rotate = fields.take("rotate").map(|node| pair(reader, node));
-    let times = reader.optional_point(fields.take("times"));
+    let times = reader.optional_complex(fields.take("times"));
     let conjugate = reader.flag(fields, "conjugate");
     let ways = [matrix.is_some(), scale.is_some(), times.is_some()];
     let way = ways.iter().position(|there| *there);

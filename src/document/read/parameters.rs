@@ -4,8 +4,11 @@ use crate::document::heading::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
 use crate::document::shape::{Form, Member, Needed, Shape, key};
-use crate::document::{Number, Written};
-use crate::expression::Expression;
+use crate::document::{Number, Point, Written};
+use crate::expression::{Expression, PARTS};
+
+/// Real or complex.
+const NUMBER: Form = Form::Either(&[Form::Number, Form::Point]);
 
 pub(in crate::document) const PARAMETER: Shape = Shape {
     what: "a parameter",
@@ -14,20 +17,13 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
             needed: Needed::Alone,
             ..key(
                 "value",
-                Form::Number,
-                "Its value, where nothing else is set. It may use the parameters above it.",
+                NUMBER,
+                "Its value, where nothing else is set. It may use the parameters above it. A list of two is \
+                 a complex number, as are its limits then: [real part, imaginary part].",
             )
         },
-        key(
-            "min",
-            Form::Number,
-            "The least value that it may be set to.",
-        ),
-        key(
-            "max",
-            Form::Number,
-            "The largest value that it may be set to.",
-        ),
+        key("min", NUMBER, "The least value that it may be set to."),
+        key("max", NUMBER, "The largest value that it may be set to."),
         key("about", Form::Text, "What it means."),
     ]],
     ways: &[],
@@ -37,9 +33,12 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
 /// The parameters of a rule or component.
 pub(in crate::document) const PARAMS: Member = key(
     "params",
-    Form::Names(&Form::Either(&[Form::Number, Form::Mapping(&PARAMETER)]), 0),
+    Form::Names(
+        &Form::Either(&[Form::Number, Form::Point, Form::Mapping(&PARAMETER)]),
+        0,
+    ),
     "Parameters by name: a value, or a value with its limits and meaning. Formulas use them, and \
-     `--set NAME=VALUE` changes them.",
+     `--set NAME=VALUE` changes them. A complex one is [real part, imaginary part].",
 );
 
 pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<ParameterDocument> {
@@ -51,36 +50,84 @@ pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<Param
     };
     entries
         .iter()
-        .map(|(key, node)| read_param(reader, key, node))
+        .flat_map(|(key, node)| read_param(reader, key, node))
         .collect()
 }
 
-fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> ParameterDocument {
+/// A parameter, or the two parts of a complex one.
+fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocument> {
+    let is_complex = |node: &Node| matches!(node.value, Value::Sequence(_));
     let mut parameter = ParameterDocument {
         name: written(key),
+        whole: None,
         value: unknown(key),
         min: None,
         max: None,
         about: None,
     };
+    if is_complex(node) {
+        let value = reader.point(node);
+        return parts(parameter, value, [None, None]);
+    }
     if !matches!(node.value, Value::Mapping(_)) {
         parameter.value = reader.number(node);
-        return parameter;
+        return vec![parameter];
     }
     let Some(fields) = reader.fields(node, &PARAMETER) else {
-        return parameter;
+        return vec![parameter];
     };
-    match fields.take("value") {
-        Some(value) => parameter.value = reader.number(value),
-        None => {
-            let message = format!("parameter '{}' has no value", key.name);
-            reader.error_with_hint(&key.place, message, PARAMETER.hint);
-        }
-    }
-    parameter.min = reader.optional_number(fields.take("min"));
-    parameter.max = reader.optional_number(fields.take("max"));
     parameter.about = fields.take("about").and_then(|node| reader.text(node));
-    parameter
+    let limits = ["min", "max"].map(|name| fields.take(name));
+    let Some(value) = fields.take("value") else {
+        let message = format!("parameter '{}' has no value", key.name);
+        reader.error_with_hint(&key.place, message, PARAMETER.hint);
+        return vec![parameter];
+    };
+    // What is complex has complex limits; the other way round, it is the value that is meant.
+    let complex = |reader: &mut Reader, node: &Node, what: &str| {
+        if let Value::Number(_) | Value::Text(_) = node.value {
+            let message = format!("'{}' is complex, and this {what} of it is real", key.name);
+            let hint = "write [real part, imaginary part]";
+            reader.error_with_hint(&node.place, message, hint);
+            return Point::unknown(&node.place);
+        }
+        reader.point(node)
+    };
+    if is_complex(value) || limits.iter().flatten().any(|node| is_complex(node)) {
+        let value = complex(reader, value, "value");
+        let limits = limits.map(|node| node.map(|node| complex(reader, node, "limit")));
+        return parts(parameter, value, limits);
+    }
+    parameter.value = reader.number(value);
+    [parameter.min, parameter.max] = limits.map(|node| reader.optional_number(node));
+    vec![parameter]
+}
+
+/// The parts of a complex parameter, with its value and limits.
+fn parts(
+    whole: ParameterDocument,
+    value: Point,
+    [min, max]: [Option<Point>; 2],
+) -> Vec<ParameterDocument> {
+    let sides: [fn(Point) -> Number; 2] = [|point| point.x, |point| point.y];
+    let both = PARTS.into_iter().zip(["real", "imaginary"]).zip(sides);
+    both.map(|((suffix, which), side)| {
+        let name = &whole.name.value;
+        let about = whole.about.as_ref();
+        let about = about.map_or_else(String::new, |about| format!(": {}", about.trim()));
+        ParameterDocument {
+            name: Written {
+                value: format!("{name}{suffix}"),
+                place: whole.name.place.clone(),
+            },
+            whole: Some(whole.name.clone()),
+            value: side(value.clone()),
+            min: min.clone().map(side),
+            max: max.clone().map(side),
+            about: Some(format!("the {which} part of {name}{about}")),
+        }
+    })
+    .collect()
 }
 
 /// A key as the name of what it holds.

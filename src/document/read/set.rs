@@ -5,6 +5,7 @@ use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
 use crate::document::{Number, Point, Written};
+use crate::expression::PARTS;
 use crate::model::Kind;
 use crate::resolve::MOST_STEPS;
 
@@ -81,7 +82,7 @@ pub(super) const OF_FRACTAL: [Member; 4] = [
     ),
     key(
         "set",
-        Form::Names(&Form::Number, 0),
+        Form::Names(&Form::Either(&[Form::Number, Form::Point]), 0),
         "Values of the fractal's parameters by name, in place of those of its file.",
     ),
     key(
@@ -295,7 +296,7 @@ fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number
     match &node.value {
         Value::Mapping(values) => values
             .iter()
-            .map(|(key, node)| (written(key), reader.number(node)))
+            .flat_map(|(key, node)| read_value(reader, written(key), node))
             .collect(),
         _ => {
             let hint = "{fractal: pythagoras, set: {angle: 30}}";
@@ -303,6 +304,24 @@ fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number
             Vec::new()
         }
     }
+}
+
+/// The value of a parameter, or the two of the parts of a complex one.
+fn read_value(
+    reader: &mut Reader,
+    name: Written<String>,
+    node: &Node,
+) -> Vec<(Written<String>, Number)> {
+    if !matches!(node.value, Value::Sequence(_)) {
+        return vec![(name, reader.number(node))];
+    }
+    let Point { x, y, .. } = reader.point(node);
+    let part = |(part, number): (&str, Number)| {
+        let value = format!("{}{part}", name.value);
+        let place = name.place.clone();
+        (Written { value, place }, number)
+    };
+    PARTS.into_iter().zip([x, y]).map(part).collect()
 }
 
 fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {

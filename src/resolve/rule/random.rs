@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoints};
-use crate::expression::{Program, Scope, Type, is_reserved};
+use crate::expression::{Program, Scope, Type, is_name, is_reserved};
 
 use super::OfRule;
-use crate::resolve::{Resolver, is_name, whole_number};
+use crate::resolve::{Resolver, whole_number};
 use crate::rule::draw::{Distribution, Variable};
 use crate::rule::{Moment, Move};
 
