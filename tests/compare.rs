@@ -359,3 +359,15 @@ fn what_cannot_be_compared_is_told() {
         assert!(output.stdout.is_empty());
     }
 }
+
+/// Copies of ferns overlap, but so little that squares would take five times the points.
+#[test]
+fn ferns_are_covered_by_copies() {
+    for (name, most) in [("barnsley-fern", 40_000), ("barnsley-fern-four", 25_000)] {
+        let fern = graph(&format!("kind: ifs\nextends: {name}\n"));
+        let subject = Subject::new(&fern, Set::Limit).unwrap();
+        let size = subject.bounds().size().max_element();
+        let points = subject.cover(size / 256.0, most);
+        assert!(points.is_ok(), "{name}: {points:?}");
+    }
+}
