@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::geometry::DVec2;
+use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
@@ -11,14 +11,18 @@ use super::png::{bounding_within, flattened_within};
 /// Outlines of straight sides are made coarser if they have more than this.
 const FEW_SIDES: usize = 8;
 
-/// Tolerances are powers of 1/2 from 1 down, so many of them, in lengths of elements.
+/// Tolerances are powers of 1/2 from 1 down, so many of them, in units.
 const LEVELS: usize = 16;
+
+/// Closed curves are drawn as polygons that are thinned out with a tolerance, or with one that is halved
+/// so often at most.
+const MOST_TRIES: u32 = 8;
 
 /// The corners of outlines, by what may be left out of them.
 pub(super) struct Coarse {
     /// How far, in pixels, an outline may lie beside where it is.
     grain: f64,
-    /// By base element and tolerance.
+    /// By base element and tolerance, in units of the graph.
     outlines: Vec<Option<[OnceLock<Vec<DVec2>>; LEVELS]>>,
 }
 
@@ -33,9 +37,10 @@ impl Coarse {
         any.then_some(Self { grain, outlines })
     }
 
-    /// The corners of a base element, in its unit frame, where its frame stretches lengths to so many
+    /// The corners of a base element, in its unit frame, where its frame stretches units to so many
     /// pixels at most: of a closed one with its inside to the left, of an open one from end to end.
     /// `None` where it is to be drawn as it is.
+    #[inline]
     pub(super) fn corners(
         &self,
         graph: &Graph,
@@ -43,16 +48,23 @@ impl Coarse {
         pixels: f64,
     ) -> Option<&[DVec2]> {
         let levels = self.outlines[base_element].as_ref()?;
-        let halvings = libm::log2(pixels / self.grain).ceil().max(0.0);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative; casts saturate"
-        )]
-        let corners = levels.get(halvings as usize)?;
-        let made = || straightened(&graph.base_elements()[base_element], libm::exp2(-halvings));
+        let level = doublings(graph.unit() * pixels / self.grain);
+        let corners = levels.get(level)?;
+        let made = || {
+            #[expect(clippy::cast_precision_loss, reason = "few levels")]
+            let tolerance = graph.unit() * libm::exp2(-(level as f64));
+            straightened(&graph.base_elements()[base_element], tolerance)
+        };
         Some(corners.get_or_init(made))
     }
+}
+
+/// How often 1 is doubled until it is no less than a number that is not negative.
+#[inline]
+fn doublings(number: f64) -> usize {
+    let (part, exponent) = libm::frexp(number.max(1.0));
+    let doublings = if part > 0.5 { exponent } else { exponent - 1 };
+    usize::try_from(doublings).unwrap_or(0)
 }
 
 /// Whether there may be something to be left out.
@@ -65,20 +77,40 @@ fn is_fine(base_element: &BaseElement) -> bool {
 /// The corners of lines that lie within a tolerance of an outline, or within two of curves that bound
 /// an area.
 fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
-    let is_closed = base_element.is_closed();
-    let mut corners = vec![base_element.start()];
+    let has_curves = |piece: &Piece| matches!(piece, Piece::Cubic(..));
+    let is_curved = base_element.pieces().iter().any(has_curves);
+    let corners = match (is_curved, base_element.is_closed()) {
+        (true, true) => {
+            let fine = flat(base_element, tolerance / 4.0);
+            let area = base_element.signed_area();
+            let finer = |halvings| 1.25 * tolerance / f64::from(1 << halvings);
+            let mut thin = (0..MOST_TRIES).map(|halvings| thinned(&fine, finer(halvings)));
+            let swollen = thin.find_map(|thin| swollen(thin, area, tolerance));
+            // Of few long curves fewer chords may do.
+            let corners = flat(base_element, 2.0 * tolerance);
+            swollen
+                .filter(|thin| thin.len() < corners.len())
+                .unwrap_or(corners)
+        }
+        (true, false) => flat(base_element, tolerance),
+        (false, _) => thinned(&flat(base_element, tolerance), tolerance),
+    };
+    turned(base_element, corners)
+}
+
+/// The corners of lines along an outline, from its start to its end, no farther than a tolerance from its
+/// curves.
+fn flat(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
     let mut at = base_element.start();
-    let mut has_curves = false;
+    let mut corners = vec![at];
     for piece in base_element.pieces() {
         match *piece {
             Piece::Line(end) => corners.push(end),
             Piece::Cubic(a, b, end) => {
-                has_curves = true;
                 let curve = [at, a, b, end].map(|point| point.to_array());
-                if is_closed {
-                    // As far on either side, for the sides bound as much.
-                    let sides = bounding_within(curve, 2.0 * tolerance);
-                    corners.extend(sides.map(DVec2::from));
+                if base_element.is_closed() {
+                    // As much on either side, for the sides bound as much.
+                    corners.extend(bounding_within(curve, tolerance).map(DVec2::from));
                 } else {
                     corners.extend(flattened_within(curve, tolerance).map(DVec2::from));
                 }
@@ -86,17 +118,37 @@ fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
         }
         at = piece.end();
     }
-    if !has_curves {
-        corners = thinned(&corners, tolerance);
-    }
-    if is_closed {
-        // It ends where it starts.
+    corners
+}
+
+/// The corners of an outline with the inside to the left, of a closed one without the last, which is the
+/// first.
+fn turned(base_element: &BaseElement, mut corners: Vec<DVec2>) -> Vec<DVec2> {
+    if base_element.is_closed() {
         corners.pop();
         if base_element.signed_area() < 0.0 {
             corners.reverse();
         }
     }
     corners
+}
+
+/// A polygon as much larger as it takes to have an area, if none of its corners moves by more than a
+/// tolerance. There may be millions of them, so that what is cut off each would be missed.
+fn swollen(mut corners: Vec<DVec2>, area: f64, tolerance: f64) -> Option<Vec<DVec2>> {
+    let sides = corners.iter().zip(&corners[1..]);
+    let own = sides.map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0;
+    let times = (area / own).sqrt();
+    let mut bounds = Bounds::EMPTY;
+    corners.iter().for_each(|&corner| bounds.add(corner));
+    let middle = bounds.min() + bounds.size() / 2.0;
+    let moves = (times - 1.0).abs() * bounds.size().length() / 2.0;
+    (moves <= tolerance).then(|| {
+        for corner in &mut corners {
+            *corner = middle + (*corner - middle) * times;
+        }
+        corners
+    })
 }
 
 /// The corners of a line, from end to end, without those that may be left out: no corner is farther than

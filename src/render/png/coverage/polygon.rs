@@ -123,6 +123,12 @@ pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
     })
 }
 
+/// Whether a box is that of a small polygon.
+#[inline]
+fn is_small([least, most]: &[Position; 2]) -> bool {
+    (0..2).all(|axis| most[axis] - least[axis] <= MOST_PIXELS * FINE)
+}
+
 /// The sides of a polygon, that to the first vertex first.
 #[inline]
 fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
@@ -135,50 +141,47 @@ fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
     sides
 }
 
-/// The box, the sides and the orientation of a polygon.
-type Outline<const MOST: usize> = ([Position; 2], [[i64; 2]; MOST], i64);
-
-/// The outline of a polygon of a number of vertices at most, if it is small and convex.
-#[inline]
-fn outline<const MOST: usize>(vertices: &[Position]) -> Option<Outline<MOST>> {
-    if vertices.is_empty() || vertices.len() > MOST {
-        return None;
-    }
-    let [least, most] = bounds(vertices);
-    if (0..2).any(|axis| most[axis] - least[axis] > MOST_PIXELS * FINE) {
-        return None;
-    }
-    let sides = sides(vertices);
-    let orientation = orientation(&sides[..vertices.len()])?;
-    Some(([least, most], sides, orientation))
-}
-
 impl Plane {
     /// Covers a polygon, under the nonzero rule, if it is small and convex or [has room](has_room);
     /// otherwise nothing.
     #[inline]
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
+        let mut hull = [[0; 2]; SOME_VERTICES];
+        self.convex(vertices)
+            || rounded(vertices, &mut hull).is_some_and(|hull| self.convex(hull))
+            || self.area(vertices)
+    }
+
+    /// Covers a polygon if it is small and convex.
+    #[inline]
+    fn convex(&mut self, vertices: &[Position]) -> bool {
         let count = vertices.len();
-        let is_small = if count <= FEW_VERTICES {
+        if count <= FEW_VERTICES {
             self.polygon_of::<FEW_VERTICES>(vertices)
         } else if count <= SOME_VERTICES {
             self.polygon_of::<SOME_VERTICES>(vertices)
         } else {
             self.polygon_of::<MOST_VERTICES>(vertices)
-        };
-        is_small || self.area(vertices)
+        }
     }
 
     pub(super) fn polygon_of<const MOST: usize>(&mut self, vertices: &[Position]) -> bool {
-        let Some(([least, most], sides, orientation)) = outline::<MOST>(vertices) else {
+        let bounds = bounds(vertices);
+        if !(1..=MOST).contains(&vertices.len()) || !is_small(&bounds) {
             return false;
-        };
-        let Some([columns, rows]) = self.pixels([least, most]).filter(|_| orientation != 0) else {
+        }
+        let Some([columns, rows]) = self.pixels(bounds) else {
             return true;
         };
         if self.is_full(columns, rows) {
             return true;
         }
+        let sides = sides::<MOST>(vertices);
+        let orientation = match orientation(&sides[..vertices.len()]) {
+            None => return false,
+            Some(0) => return true,
+            Some(orientation) => orientation,
+        };
         let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
         let mut edges = [HalfPlane::default(); MOST];
         let mut count = 0;
@@ -247,27 +250,66 @@ impl Plane {
 #[inline]
 fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
     let (mut lefts, mut rights) = (false, false);
+    // How often they turn back right and left, and up and down.
+    let (mut backs, mut signs) = ([0; 2], [0; 2]);
     let mut before = *sides.last()?;
     for &side in sides {
         let turn = before[0] * side[1] - before[1] * side[0];
         lefts |= turn > 0;
         rights |= turn < 0;
         before = side;
+        for axis in 0..2 {
+            let sign = side[axis].signum();
+            backs[axis] += i32::from(sign * signs[axis] < 0);
+            signs[axis] = if sign == 0 { signs[axis] } else { sign };
+        }
     }
-    match (lefts, rights) {
-        // Stars turn one way too, but more than once.
-        (true, true) => None,
-        _ if sides.len() > 4 && !turns_once(sides) => None,
-        _ => Some(i64::from(lefts) - i64::from(rights)),
-    }
+    // Stars turn one way too, but more than once.
+    let turns_once = backs.iter().all(|&backs| backs <= 2);
+    (turns_once && !(lefts && rights)).then_some(i64::from(lefts) - i64::from(rights))
 }
 
-/// Whether sides go right and left and up and down no more than once.
-fn turns_once(sides: &[[i64; 2]]) -> bool {
-    (0..2).all(|axis| {
-        let signs = sides.iter().map(|side| side[axis].signum());
-        let signs = signs.filter(|&sign| sign != 0);
-        let nexts = signs.clone().cycle().skip(1);
-        signs.zip(nexts).filter(|(sign, next)| sign != next).count() <= 2
-    })
+/// The vertices of the hull of a small polygon whose area is less than that of the hull by no more than
+/// rounding makes it, as is that of one that would be convex if its positions were not rounded. Where
+/// sides cross it may be another polygon.
+fn rounded<'h>(
+    vertices: &[Position],
+    hull: &'h mut [Position; SOME_VERTICES],
+) -> Option<&'h [Position]> {
+    let count = vertices.len();
+    if !(1..=SOME_VERTICES).contains(&count) || !is_small(&bounds(vertices)) {
+        return None;
+    }
+    let turn = |a: Position, b: Position, c: Position| {
+        (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+    };
+    // Twice the area, and all ways along and down: half a unit at either end of each changes the area by
+    // a quarter of them at most.
+    let from = vertices[0];
+    let (mut area, mut ways) = (0, 0);
+    let mut before = vertices[count - 1];
+    for &vertex in vertices {
+        area += turn(from, before, vertex);
+        ways += (vertex[0] - before[0]).abs() + (vertex[1] - before[1]).abs();
+        before = vertex;
+    }
+    // From a vertex that the hull has.
+    let (first, _) = (0..).zip(vertices).min_by_key(|(_, vertex)| **vertex)?;
+    let (mut corners, mut lost) = (0, 0);
+    for number in first..=first + count {
+        let vertex = vertices[number % count];
+        while corners > 1 {
+            let turned = turn(hull[corners - 2], hull[corners - 1], vertex) * area.signum();
+            if turned > 0 {
+                break;
+            }
+            lost -= turned;
+            corners -= 1;
+        }
+        if number < first + count {
+            hull[corners] = vertex;
+            corners += 1;
+        }
+    }
+    (2 * lost <= ways).then_some(&hull[..corners])
 }

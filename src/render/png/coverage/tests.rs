@@ -354,6 +354,44 @@ proptest! {
         let off = area(&soon) - area(&exact);
         prop_assert!(off.abs() <= 0.01 * radius / 10.0, "{off}");
     }
+
+    /// Positions are rounded, so that the outlines of small disks turn both ways.
+    #[test]
+    fn rounded_polygons_are_covered_as_convex_ones(
+        corner in [500..5000i64, 500..5000],
+        turn in 0.0..6.3f64,
+        radius in 3.0..60.0f64,
+        count in 5..=12u32,
+    ) {
+        let vertices: Vec<Position> = (0..count).map(|number| {
+            let turn = turn + f64::from(number) * std::f64::consts::TAU / f64::from(count);
+            let place = |part: f64| (radius * part + 0.5).floor() as i64;
+            [corner[0] + place(turn.cos()), corner[1] + place(turn.sin())]
+        }).collect();
+        let soon = samples(|plane| assert!(plane.polygon(&vertices)));
+        let exact = samples(|plane| assert!(plane.area(&vertices)));
+        let off = area(&soon) - area(&exact);
+        prop_assert!(off.abs() <= 0.01 + 0.001 * radius, "{off}");
+        // The other way round, and from another vertex.
+        let backwards: Vec<Position> = vertices.iter().rev().copied().collect();
+        prop_assert!(soon == samples(|plane| assert!(plane.polygon(&backwards))));
+    }
+}
+
+/// What is not convex by more than rounding is covered as it is.
+#[test]
+fn small_stars_keep_their_notches() {
+    for radius in [20, 60, 150] {
+        let star: Vec<Position> = (0..8)
+            .map(|number| {
+                let turn = f64::from(number) * std::f64::consts::FRAC_PI_4;
+                let far = f64::from(if number % 2 == 0 { radius } else { radius / 3 });
+                [turn.cos(), turn.sin()].map(|part| 3000 + (far * part) as i64)
+            })
+            .collect();
+        let covered = samples(|plane| assert!(plane.polygon(&star)));
+        assert!(covered == samples(|plane| assert!(plane.area(&star))));
+    }
 }
 
 #[test]
