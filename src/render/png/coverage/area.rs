@@ -37,7 +37,6 @@ impl Plane {
     ///
     /// Every sample is decided for itself: every side is followed through the rows of samples, of
     /// which each has one of every pixel.
-    #[expect(clippy::cast_precision_loss, reason = "positions in a small box")]
     pub(super) fn area(&mut self, vertices: &[Position]) -> bool {
         if !has_room(vertices) {
             return false;
@@ -51,40 +50,17 @@ impl Plane {
         let [width, height] = [columns, rows].map(|[first, last]| index(last - first + 1));
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.resize(scratch.len().max(width * height), [0; SAMPLES as usize]);
-        let left = columns[0] as f64 - 1.0;
-        let lines = [rows[0], rows[1] + 1].map(|row| row * i64::from(SAMPLES));
-        let mut before = vertices.last().copied().unwrap_or_default();
-        for &vertex in vertices {
-            let is_down = before[1] < vertex[1];
-            let winding = if is_down { 1 } else { -1 };
-            // From its upper end in any case, so that neighbours share the side.
-            let (upper, lower) = if is_down {
-                (before, vertex)
-            } else {
-                (vertex, before)
-            };
-            before = vertex;
-            let first = line_below(upper[1]).max(lines[0]);
-            let end = line_below(lower[1]).min(lines[1]);
-            if first >= end {
-                continue;
-            }
-            let slope = (lower[0] - upper[0]) as f64 / (lower[1] - upper[1]) as f64;
-            let line = FINE as f64 / f64::from(SAMPLES);
-            let down = (first as f64 + 0.5) * line - upper[1] as f64;
-            let start = (upper[0] as f64 + down * slope) / FINE as f64 - left;
-            let step = slope / f64::from(SAMPLES);
-            for (along, number) in (first..end).enumerate() {
-                let number_in_pixel = index(number) % SAMPLES as usize;
-                let crossing = start + along as f64 * step - BESIDE[number_in_pixel];
-                let column = whole(crossing);
+        follow(
+            vertices,
+            columns[0],
+            rows,
+            |row, sample, column, winding| {
                 if column < width {
-                    let row = index(number - lines[0]) / SAMPLES as usize;
-                    let cell = &mut scratch[row * width + column][number_in_pixel];
+                    let cell = &mut scratch[row * width + column][sample];
                     *cell = cell.wrapping_add(winding);
                 }
-            }
-        }
+            },
+        );
         for (row, windings) in (rows[0]..=rows[1]).zip(scratch.chunks_exact_mut(width)) {
             let start = self.cell([columns[0], row]);
             let mut all = [0; SAMPLES as usize];
@@ -98,6 +74,68 @@ impl Plane {
         self.scratch = scratch;
         self.touched.add(columns, rows);
         true
+    }
+
+    /// Covers a convex polygon that is no larger than `TINIEST`, in these columns and rows: the same
+    /// samples.
+    #[inline]
+    pub(super) fn tiny(&mut self, vertices: &[Position], columns: [i64; 2], rows: [i64; 2]) {
+        let mut masks = [[0; 2]; 2];
+        follow(vertices, columns[0], rows, |row, sample, column, _| {
+            // Between two sides.
+            let [first, second] = &mut masks[row];
+            *first ^= u64::from(column == 0) << sample;
+            *second ^= u64::from(column <= 1) << sample;
+        });
+        for (row, masks) in (rows[0]..=rows[1]).zip(masks) {
+            for (column, mask) in (columns[0]..=columns[1]).zip(masks) {
+                cover(&self.cells[self.cell([column, row])], mask);
+            }
+        }
+        self.touched.add(columns, rows);
+    }
+}
+
+/// Follows the sides of a polygon through the rows of samples of some rows of pixels. Tells where: the row
+/// of pixels and that of samples in it, from which column on, counted from the first, samples lie to
+/// the right, and how that winds around them.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "positions in a small box")]
+fn follow(
+    vertices: &[Position],
+    first_column: i64,
+    rows: [i64; 2],
+    mut meet: impl FnMut(usize, usize, usize, i8),
+) {
+    let left = first_column as f64 - 1.0;
+    let lines = [rows[0], rows[1] + 1].map(|row| row * i64::from(SAMPLES));
+    let mut before = vertices.last().copied().unwrap_or_default();
+    for &vertex in vertices {
+        let is_down = before[1] < vertex[1];
+        let winding = if is_down { 1 } else { -1 };
+        // From its upper end in any case, so that neighbours share the side.
+        let (upper, lower) = if is_down {
+            (before, vertex)
+        } else {
+            (vertex, before)
+        };
+        before = vertex;
+        let first = line_below(upper[1]).max(lines[0]);
+        let end = line_below(lower[1]).min(lines[1]);
+        if first >= end {
+            continue;
+        }
+        let slope = (lower[0] - upper[0]) as f64 / (lower[1] - upper[1]) as f64;
+        let line = FINE as f64 / f64::from(SAMPLES);
+        let down = (first as f64 + 0.5) * line - upper[1] as f64;
+        let start = (upper[0] as f64 + down * slope) / FINE as f64 - left;
+        let step = slope / f64::from(SAMPLES);
+        for (along, number) in (first..end).enumerate() {
+            let sample = index(number) % SAMPLES as usize;
+            let crossing = start + along as f64 * step - BESIDE[sample];
+            let row = index(number - lines[0]) / SAMPLES as usize;
+            meet(row, sample, whole(crossing), winding);
+        }
     }
 }
 

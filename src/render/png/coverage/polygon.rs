@@ -15,6 +15,10 @@ const SOME_VERTICES: usize = 12;
 /// The most pixels of its width and height.
 const MOST_PIXELS: i64 = 8;
 
+/// Half planes are off by some hundredths of a pixel: of what is no wider and no higher than this, in
+/// hundredths, the samples are found one by one.
+const TINIEST: i64 = 20;
+
 /// Directions to an octant in which half planes are tabulated,
 const DIRECTIONS: usize = 8;
 
@@ -182,6 +186,10 @@ impl Plane {
             Some(0) => return true,
             Some(orientation) => orientation,
         };
+        if (0..2).all(|axis| bounds[1][axis] - bounds[0][axis] <= TINIEST) {
+            self.tiny(vertices, columns, rows);
+            return true;
+        }
         let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
         let mut edges = [HalfPlane::default(); MOST];
         let mut count = 0;
