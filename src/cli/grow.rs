@@ -1,6 +1,5 @@
 //! `kfrac grow`: from a rule to a picture or a table.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,10 +9,10 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::graph::Graph;
 use crate::grow::Walked;
-use crate::render::{self, Canvas, Empty, Instanced, Nearest, Plotted, RenderError, Size, Unit};
+use crate::render::{self, Canvas, Empty, Instanced, Plotted, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::wording;
-use crate::zoom::{self, Factor};
+use crate::zoom;
 
 use super::chaos::ChaosArguments;
 use super::goal::Goal;
@@ -216,7 +215,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             svg::warn(instanced);
         }
         if let Some(empty) = &wrote.empty {
-            text::say(&nothing(&loaded.name, empty));
+            text::say(&super::zoom::nothing(&loaded.name, empty));
         }
         text::say(&format!(
             "{}: {}, {}, {}, {:.2} s",
@@ -509,32 +508,6 @@ impl Wrote {
         }
         summary
     }
-}
-
-/// What is said of a picture that shows nothing.
-fn nothing(name: &str, empty: &Empty) -> String {
-    let short = |value: f64| {
-        let value = wording::two_digits(value);
-        if (1e-4..1e6).contains(&value) {
-            value.to_string()
-        } else {
-            format!("{value:e}")
-        }
-    };
-    let mut text = format!("note: nothing of {name} lies within the window");
-    if let Some(Nearest { distance, factor }) = empty.nearest {
-        let _ = write!(
-            text,
-            "; the nearest of it is about {} from the middle",
-            short(distance)
-        );
-        // Two digits are not to lead back past the edge.
-        let factor = 0.95 * factor;
-        if factor >= Factor::LEAST {
-            let _ = write!(text, ", and --zoom {} shows that", short(factor));
-        }
-    }
-    text
 }
 
 /// What a plot takes, in words.

@@ -1,6 +1,9 @@
 //! `--zoom` and `--at`: small parts of a rule, drawn large.
 
-use crate::render::Look;
+use std::fmt::Write as _;
+
+use crate::render::{Empty, Look, Nearest};
+use crate::wording;
 use crate::zoom::{Address, Factor, Source};
 
 use super::Failure;
@@ -72,4 +75,30 @@ impl Loaded {
             omitted: &self.omitted,
         }
     }
+}
+
+/// What is said of a picture that shows nothing.
+pub(super) fn nothing(name: &str, empty: &Empty) -> String {
+    let short = |value: f64| {
+        let value = wording::two_digits(value);
+        if (1e-4..1e6).contains(&value) {
+            value.to_string()
+        } else {
+            format!("{value:e}")
+        }
+    };
+    let mut text = format!("note: nothing of {name} lies within the window");
+    if let Some(Nearest { distance, factor }) = empty.nearest {
+        let _ = write!(
+            text,
+            "; the nearest of it is about {} from the middle",
+            short(distance)
+        );
+        // Two digits are not to lead back past the edge.
+        let factor = 0.95 * factor;
+        if factor >= Factor::LEAST {
+            let _ = write!(text, ", and --zoom {} shows that", short(factor));
+        }
+    }
+    text
 }

@@ -336,7 +336,7 @@ impl Blocks {
 }
 
 fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Block, CompileError> {
-    let start = super::descent::Start::initiator(graph, steps, 0);
+    let start = super::start::Start::initiator(graph, steps, 0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
     let mut sticks = Some(Vec::new());

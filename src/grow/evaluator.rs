@@ -2,7 +2,7 @@ use crate::geometry::DVec2;
 use crate::graph::{CompileError, Evaluated, Graph, Production, Replacement};
 use crate::rule;
 
-use super::descent::Standing;
+use super::start::Standing;
 
 /// When an element is replaced.
 #[derive(Clone, Copy, Debug)]

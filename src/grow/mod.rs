@@ -19,6 +19,7 @@ mod progress;
 mod search;
 mod sizes;
 mod spans;
+mod start;
 mod tally;
 mod walk;
 
@@ -32,9 +33,9 @@ pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
 pub(crate) use census::{Census, Kind};
-pub(crate) use descent::Standing;
 pub(crate) use evaluator::{Evaluator, Moment};
 pub(crate) use spans::{Division, Ranks, walk_with};
+pub(crate) use start::Standing;
 
 use std::ops::Range;
 

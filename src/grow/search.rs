@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Production, Replacement};
 
-use super::descent::{Standing, planted};
 use super::evaluator::{Evaluator, Moment};
+use super::start::{Standing, planted};
 use super::{Enter, Growth, Subtree};
 
 /// More replacements than this are left to a walk.

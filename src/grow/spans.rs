@@ -15,8 +15,9 @@ use crate::parallel::{Line, Team, with_team};
 
 use super::block::{Blocks, MOST_LEAVES};
 use super::census::Census;
-use super::descent::{Descent, Found, FoundSubtree, Next, Start, Stop};
+use super::descent::{Descent, Found, FoundSubtree, Next, Stop};
 use super::sizes::Sizes;
+use super::start::Start;
 use super::tally::Tally;
 use super::walk::{Sink, Visiting, send};
 use super::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};

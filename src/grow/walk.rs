@@ -4,7 +4,8 @@ use crate::graph::{CompileError, Graph, Replacement};
 
 use super::block::{Blocks, Run};
 use super::census::Census;
-use super::descent::{Descent, Found, FoundRun, Next, Start, Stop};
+use super::descent::{Descent, Found, FoundRun, Next, Stop};
+use super::start::Start;
 use super::tally::Tally;
 use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
 

@@ -1,0 +1,162 @@
+//! Where elements stand, and the elements that fractals start with.
+
+use std::ops::Range;
+
+use crate::geometry::{DAffine2, Frame};
+use crate::graph::{Chain, Graph, Instance, Root};
+use crate::instancing::Coat;
+use crate::rule::Placement;
+use crate::rule::draw::Path;
+
+/// Where an element stands, and what its descendants need to know of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    pub(crate) frame: Frame,
+    /// Relative to the initiator element's that it descends from.
+    pub(crate) length: f64,
+    /// That initiator element, by position.
+    pub(crate) root: u32,
+    pub(crate) path: Path,
+    /// What it and all that it descends from are tinted with.
+    pub(crate) coat: Coat,
+}
+
+impl Standing {
+    /// Where the initiator stands.
+    pub(crate) fn whole(seed: u64) -> Self {
+        Self {
+            frame: Frame::UNIT,
+            length: 1.0,
+            root: 0,
+            path: Path::of_seed(seed),
+            coat: Coat::NONE,
+        }
+    }
+
+    /// Where an instance in the initiator stands.
+    #[inline]
+    pub(crate) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
+        let child = Self {
+            length: 1.0,
+            root: instance.position,
+            ..self.child(graph, instance)
+        };
+        match graph.roots.elements.get(instance.position as usize) {
+            None => child,
+            Some(&Root {
+                path, length, coat, ..
+            }) => Self {
+                path,
+                length,
+                coat,
+                ..child
+            },
+        }
+    }
+
+    /// Where an instance in what replaces an element stands.
+    #[inline]
+    pub(crate) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
+        Self {
+            frame: self.frame.compose(&instance.frame),
+            length: self.length * instance.length,
+            root: self.root,
+            path: if graph.draws() {
+                self.path.child(instance.position)
+            } else {
+                self.path
+            },
+            coat: if graph.coats() {
+                self.coat.over(graph.coat(instance.object))
+            } else {
+                self.coat
+            },
+        }
+    }
+}
+
+/// The elements that start a fractal, and where.
+#[derive(Clone, Debug)]
+pub(super) struct Start<'g> {
+    pub(super) chain: StartChain<'g>,
+    pub(super) standing: Standing,
+    /// The step in which the fractal is born.
+    pub(super) born: u32,
+    /// What it has seeded before it is walked over: numbers in [`Roots::sown`](crate::graph::Roots).
+    pub(super) sown: Range<usize>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum StartChain<'g> {
+    /// The initiator, or what has been seeded before: its instances are the roots.
+    Initiator(&'g Chain),
+    Fixed(&'g Chain),
+    Evaluated(Chain),
+}
+
+impl<'g> Start<'g> {
+    /// What a number of steps are grown out of.
+    pub(super) fn initiator(graph: &'g Graph, steps: u32, seed: u64) -> Self {
+        Self {
+            chain: StartChain::Initiator(graph.initiator(steps)),
+            standing: Standing::whole(seed),
+            born: 0,
+            sown: graph.roots.sown_by(0),
+        }
+    }
+
+    /// A fractal that has been seeded before.
+    pub(super) fn sown(graph: &'g Graph, number: usize) -> Self {
+        let sown = &graph.roots.sown[number];
+        Self {
+            chain: StartChain::Initiator(&sown.chain),
+            // Roots have paths of their own.
+            standing: Standing::whole(0),
+            born: sown.born,
+            sown: graph.roots.sown_by(number + 1),
+        }
+    }
+
+    /// The steps after a step in which elements begin, or in which the last ones of what the fractal
+    /// has seeded before were replaced.
+    pub(super) fn next_after(&self, graph: &Graph, step: u32) -> Option<u32> {
+        let StartChain::Initiator(chain) = self.chain else {
+            return None;
+        };
+        let roots = chain.instances.iter().filter_map(|it| birth(graph, it));
+        let sown = graph.roots.sown[self.sown.clone()].iter();
+        let all = roots.chain(sown.map(|sown| sown.born - 1));
+        all.filter(|&next| next > step).min()
+    }
+
+    pub(super) fn chain(&self) -> &Chain {
+        match &self.chain {
+            StartChain::Initiator(chain) | StartChain::Fixed(chain) => chain,
+            StartChain::Evaluated(chain) => chain,
+        }
+    }
+}
+
+/// The step in which a root was born, if it is not the beginning.
+pub(super) fn birth(graph: &Graph, instance: &Instance) -> Option<u32> {
+    let root = graph.roots.elements.get(instance.position as usize);
+    root.map(|root| root.level)
+}
+
+/// The standing of a part that an element seeds.
+pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
+    if placement != Placement::SeedsAsInitiator {
+        return *standing;
+    }
+    // Positions in the initiator count from 0 in the order of listing.
+    let root = graph.initiator(0).instances[standing.root as usize].frame;
+    let [origin, _] = standing.frame.ends();
+    Standing {
+        frame: Frame {
+            map: DAffine2::from_mat2_translation(root.map.matrix2, origin),
+            direction: root.direction,
+        },
+        length: 1.0,
+        ..*standing
+    }
+}
