@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DVec2, distance_to_segment};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
@@ -162,7 +162,7 @@ fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut open = vec![(0, last)];
     while let Some((from, to)) = open.pop() {
         let [start, end] = [corners[from], corners[to]];
-        let far = |&corner: &usize| distance(corners[corner], start, end);
+        let far = |&corner: &usize| distance_to_segment(corners[corner], start, end);
         let farthest = (from + 1..to).max_by(|a, b| far(a).total_cmp(&far(b)));
         if let Some(corner) = farthest.filter(|corner| far(corner) > tolerance) {
             stays[corner] = true;
@@ -173,22 +173,10 @@ fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     stay.map(|(&corner, _)| corner).collect()
 }
 
-/// The distance of a point from a side.
-fn distance(point: DVec2, start: DVec2, end: DVec2) -> f64 {
-    let along = end - start;
-    let length = along.length_squared();
-    let part = if length > 0.0 {
-        ((point - start).dot(along) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    point.distance(start + part * along)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{distance, straightened, thinned};
-    use crate::geometry::DVec2;
+    use super::{straightened, thinned};
+    use crate::geometry::{DVec2, distance_to_segment};
     use crate::rule::{BaseElement, Piece};
 
     /// The area that corners encircle.
@@ -241,7 +229,7 @@ mod tests {
             assert_eq!([corners[0], corners[corners.len() - 1]], [start, end]);
             for &point in &finest {
                 let sides = corners.iter().zip(&corners[1..]);
-                let far = sides.map(|(a, b)| distance(point, *a, *b));
+                let far = sides.map(|(a, b)| distance_to_segment(point, *a, *b));
                 assert!(far.fold(f64::INFINITY, f64::min) <= tolerance);
             }
         }
@@ -263,7 +251,9 @@ mod tests {
             let sides: Vec<_> = thin.iter().zip(&thin[1..]).collect();
             assert_eq!([thin[0], thin[thin.len() - 1]], [corners[0], corners[500]]);
             for &corner in &corners {
-                let far = sides.iter().map(|(a, b)| distance(corner, **a, **b));
+                let far = sides
+                    .iter()
+                    .map(|(a, b)| distance_to_segment(corner, **a, **b));
                 assert!(far.fold(f64::INFINITY, f64::min) <= tolerance);
             }
         }

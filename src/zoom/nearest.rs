@@ -7,16 +7,16 @@ use crate::geometry::{DAffine2, DVec2, distance_to_segment, stretch};
 use crate::graph::{Graph, Object, Replacement};
 use crate::rule::{BaseElement, Piece};
 
-/// Copies that are looked into at most.
+/// Images that are looked into at most.
 const MOST: usize = 100_000;
 
 /// The distance is known to this part of it.
 const ENOUGH: f64 = 1e-3;
 
 /// How far a point is from the nearest of a limit set, to a thousandth; what is kept counts with
-/// its outlines. `None` where the graph does not tell, or it takes too many copies.
+/// its outlines. `None` where the graph does not tell, or it takes too many images.
 ///
-/// Copies are looked into in the order of the discs that hold them, the nearest first, until no disc
+/// Images are looked into in the order of the discs that hold them, the nearest first, until no disc
 /// comes nearer than some point is known to be.
 pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
     if !graph.is_plain() || graph.depth().is_some() {
@@ -43,7 +43,7 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
         let away = map.transform_point2(graph.middle()).distance(point);
         let reach = stretch(&map.matrix2) * reaches[object];
         *nearest = nearest.min(away + reach);
-        Some(Copy {
+        Some(Image {
             least: (away - reach).max(0.0),
             object,
             map,
@@ -52,21 +52,21 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
     let initiator = graph.initiator(0).instances.iter();
     open.extend(initiator.filter_map(|it| meet(it.object, it.frame.map, &mut nearest)));
     for _ in 0..MOST {
-        let Some(copy) = open.pop() else {
+        let Some(image) = open.pop() else {
             return nearest.is_finite().then_some(nearest);
         };
-        if nearest - copy.least <= ENOUGH * nearest {
+        if nearest - image.least <= ENOUGH * nearest {
             return Some(nearest);
         }
-        let children = graph.children(copy.object);
-        let children = children.map(|(_, it)| (it.object, copy.map * it.frame.map));
+        let children = graph.children(image.object);
+        let children = children.map(|(_, it)| (it.object, image.map * it.frame.map));
         open.extend(children.filter_map(|(object, map)| meet(object, map, &mut nearest)));
     }
     None
 }
 
-/// A copy of an object's limit set.
-struct Copy {
+/// The image of an object's limit set.
+struct Image {
     /// No point of it is nearer.
     least: f64,
     object: usize,
@@ -74,25 +74,25 @@ struct Copy {
 }
 
 /// The nearest is the greatest.
-impl Ord for Copy {
+impl Ord for Image {
     fn cmp(&self, other: &Self) -> Ordering {
         other.least.total_cmp(&self.least)
     }
 }
 
-impl PartialOrd for Copy {
+impl PartialOrd for Image {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Copy {
+impl PartialEq for Image {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Copy {}
+impl Eq for Image {}
 
 /// How far a point is from the image of an outline, curves being taken as chords.
 fn distance_to_outline(point: DVec2, outline: &BaseElement, map: &DAffine2) -> f64 {
