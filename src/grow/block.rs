@@ -1,6 +1,9 @@
 //! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
-//! place by a single map wherever the object stands.
+//! place by a single map wherever the object stands. Where no element is replaced that is shorter than
+//! a length, its last steps are those that its own length allows: it has a block for every range of
+//! lengths that become the same.
 
+mod cut;
 #[cfg(test)]
 mod tests;
 
@@ -15,7 +18,9 @@ use crate::rule::Piece;
 
 use super::descent::{Descent, Next, Stop};
 use super::sizes::Sizes;
-use super::{Element, Enter};
+use super::{Element, Enter, Subtree};
+
+use self::cut::Cuts;
 
 /// A block has this many elements at most: they stay in the fastest memory.
 pub(super) const MOST_LEAVES: u64 = 1024;
@@ -289,53 +294,116 @@ fn unit(reversed: bool) -> Direction {
 /// Which ones may be made is known before: what a walk yields, to the last bit, does not depend on
 /// the order in which they are reached.
 pub(super) struct Blocks {
-    sizes: Sizes,
-    /// By object, direction and number of steps.
+    known: Known,
+    /// By object, direction and number.
     made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
 }
 
+/// What is known before blocks are made.
+enum Known {
+    /// Where numbers of steps tell what is replaced: how many elements there are.
+    BySteps(Sizes),
+    /// Where lengths do: what there is, and the length below which nothing is replaced.
+    ByLength(Vec<Cuts>, f64),
+}
+
 impl Blocks {
-    /// What there is to know before blocks are made.
-    pub(super) fn of(graph: &Graph, longest: u64) -> Self {
+    /// What there is to know before blocks of no more than `longest` elements are made. Elements that are
+    /// shorter than a length are not replaced, if there is one.
+    pub(super) fn of(graph: &Graph, longest: u64, shortest: Option<f64>) -> Self {
+        let known = |most: u64| match shortest.filter(|&shortest| shortest > 0.0) {
+            None => Known::BySteps(Sizes::fixed(graph, most)),
+            Some(shortest) => Known::ByLength(Cuts::of(graph, most), shortest),
+        };
         let mut most = if graph.counts_index() {
             0
         } else {
             MOST_LEAVES.min(longest)
         };
-        let mut sizes = Sizes::fixed(graph, most);
+        let mut all = known(most);
         // In both directions.
-        while most > 0 && 2 * sizes.sum() > MOST_MEMORY {
+        while most > 0 && 2 * all.sum() > MOST_MEMORY {
             most /= 2;
-            sizes = Sizes::fixed(graph, most);
+            all = known(most);
         }
         let none = |slots: usize| std::iter::repeat_with(OnceLock::new).take(slots).collect();
+        let both = |slots: usize| [none(slots), none(slots)];
         Self {
-            made: sizes
-                .slots()
-                .map(|slots| [none(slots), none(slots)])
-                .collect(),
-            sizes,
+            made: all.slots().into_iter().map(both).collect(),
+            known: all,
         }
     }
 
-    /// What an object becomes in a number of steps, if that makes a block.
+    /// What an element of an object becomes in no more than a number of steps, if that makes a block.
     #[inline]
     pub(super) fn get(
         &self,
         graph: &Graph,
         object: usize,
         steps: u32,
-        reversed: bool,
+        frame: &Frame,
     ) -> Option<&Block> {
-        self.sizes.get(object, steps)?;
-        let slot = &self.made[object][usize::from(reversed)][self.sizes.slot(steps)];
+        let reversed = frame.direction.is_reversed();
+        let (slot, steps, length) = match &self.known {
+            Known::BySteps(sizes) => {
+                sizes.get(object, steps)?;
+                (sizes.slot(steps), steps, f64::INFINITY)
+            }
+            Known::ByLength(cuts, shortest) => {
+                let cuts = cuts.get(object)?;
+                let number = cuts.number(frame.stretch() / shortest)?;
+                let cut = &cuts.all[number];
+                // Where steps run out there is less.
+                if cut.steps > steps {
+                    return None;
+                }
+                (number, cut.steps, cut.length)
+            }
+        };
+        let slot = &self.made[object][usize::from(reversed)][slot];
         // What is not finite is for the walk itself to report.
-        slot.get_or_init(|| made(graph, object, steps, reversed).ok())
+        slot.get_or_init(|| made(graph, object, steps, length, reversed).ok())
             .as_ref()
     }
 }
 
-fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Block, CompileError> {
+impl Known {
+    /// The elements of all blocks together.
+    fn sum(&self) -> u64 {
+        match self {
+            Self::BySteps(sizes) => sizes.sum(),
+            Self::ByLength(cuts, _) => {
+                let cuts = cuts.iter().flat_map(|cuts| &cuts.all);
+                cuts.map(|cut| cut.count).sum()
+            }
+        }
+    }
+
+    /// By object, how many blocks there are at most.
+    fn slots(&self) -> Vec<usize> {
+        match self {
+            Self::BySteps(sizes) => sizes.slots().collect(),
+            Self::ByLength(cuts, _) => cuts.iter().map(|cuts| cuts.all.len()).collect(),
+        }
+    }
+}
+
+/// What an object of a length becomes in a number of steps, where nothing is replaced that is shorter
+/// than 1.
+fn made(
+    graph: &Graph,
+    object: usize,
+    steps: u32,
+    length: f64,
+    reversed: bool,
+) -> Result<Block, CompileError> {
+    let enter = |subtree: &Subtree| {
+        if subtree.frame.stretch() * length < 1.0 {
+            Enter::Keep
+        } else {
+            Enter::Replace
+        }
+    };
     let start = super::start::Start::initiator(graph, steps, 0);
     let mut descent = Descent::below(graph, object, steps, unit(reversed));
     let mut leaves = Vec::new();
@@ -344,7 +412,7 @@ fn made(graph: &Graph, object: usize, steps: u32, reversed: bool) -> Result<Bloc
     let mut fertile = 0;
     let mut length = 0.0;
     loop {
-        let found = match descent.next(&start, |_| Enter::Replace, Stop::Nowhere)? {
+        let found = match descent.next(&start, enter, Stop::Nowhere)? {
             Next::Element(found) => found,
             Next::Pause => {
                 descent.visited = 0;

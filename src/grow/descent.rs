@@ -265,8 +265,7 @@ impl<'g> Descent<'g> {
         meets_end: bool,
         blocks: &'b Blocks,
     ) -> Option<FoundRun<'b>> {
-        let reversed = standing.frame.direction.is_reversed();
-        let block = blocks.get(self.graph, object, self.target - level, reversed)?;
+        let block = blocks.get(self.graph, object, self.target - level, &standing.frame)?;
         let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
         self.visited += block.len();
         let index = self.index + 1;

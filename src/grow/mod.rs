@@ -154,8 +154,8 @@ pub trait Visitor {
     fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
 
     /// Whether elements whose places are fixed come by runs, as many of them do then, without being
-    /// asked for one by one. Their frames may differ in the last bits from those of elements that
-    /// come one by one.
+    /// asked for one by one: only a length, if anything, says what [`Visitor::enter`] keeps. Their frames
+    /// may differ in the last bits from those of elements that come one by one.
     fn takes_runs(&self) -> bool {
         false
     }

@@ -144,7 +144,7 @@ where
         graph,
         steps: growth.steps,
         size,
-        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run()))),
+        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run(), cuts))),
         asked,
         span: Span::default(),
         told: match division.ranks {
@@ -526,6 +526,10 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
 
     fn longest_run(&self) -> u64 {
         self.visitor.longest_run()
+    }
+
+    fn cuts(&self) -> Option<f64> {
+        self.visitor.cuts()
     }
 
     fn begin(&mut self, fractal: Fractal) -> Result<(), V::Error> {

@@ -136,7 +136,7 @@ pub fn walk<V: Visitor>(
 ) -> Result<Walked, WalkError<V::Error>> {
     let blocks = visitor
         .takes_runs()
-        .then(|| Blocks::of(graph, visitor.longest_run()));
+        .then(|| Blocks::of(graph, visitor.longest_run(), visitor.cuts()));
     let stop = blocks.as_ref().map_or(Stop::Nowhere, Stop::AtBlocks);
     let mut sink = Direct {
         visiting: Visiting::new(graph, visitor),

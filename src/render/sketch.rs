@@ -416,7 +416,7 @@ impl Visitor for Sketcher<'_> {
     type Error = io::Error;
 
     fn takes_runs(&self) -> bool {
-        !self.scene.sight.cuts()
+        !self.scene.sight.is_bounded()
     }
 
     fn longest_run(&self) -> u64 {

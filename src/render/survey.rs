@@ -416,7 +416,7 @@ impl Visitor for Survey<'_> {
     type Error = Infallible;
 
     fn takes_runs(&self) -> bool {
-        !self.sight.cuts()
+        !self.sight.is_bounded()
     }
 
     fn longest_run(&self) -> u64 {

@@ -4,7 +4,7 @@ use super::Run;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::document::Document;
 use crate::graph::Graph;
-use crate::grow::{Element, Fractal, Growth, Visitor, walk};
+use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
 
 /// Asks runs for some of their elements.
 #[derive(Default)]
@@ -68,4 +68,118 @@ fn some_elements_of_a_run_are_those_among_all() {
         walk(&graph, &Growth::steps(6), &mut asking).unwrap();
         assert!(asking.asked > 50, "{name}: {}", asking.asked);
     }
+}
+
+/// Keeps elements that are shorter than a length, and sees them one by one or by runs.
+struct Cutting {
+    shortest: f64,
+    takes_runs: bool,
+    runs: u64,
+    elements: Vec<Element>,
+}
+
+impl Visitor for Cutting {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn takes_runs(&self) -> bool {
+        self.takes_runs
+    }
+
+    fn longest_run(&self) -> u64 {
+        100
+    }
+
+    fn cuts(&self) -> Option<f64> {
+        Some(self.shortest)
+    }
+
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        if subtree.frame.stretch() < self.shortest {
+            Enter::Keep
+        } else {
+            Enter::Replace
+        }
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        self.elements.push(*element);
+        Ok(())
+    }
+
+    fn run(&mut self, run: &Run<'_>) -> Result<(), Infallible> {
+        assert!(run.count() <= self.longest_run());
+        self.runs += 1;
+        self.elements.extend(run.elements());
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+#[test]
+fn runs_down_to_a_length_are_the_elements_one_by_one() {
+    let catalogue = Catalogue::embedded();
+    let mut runs = 0;
+    for entry in catalogue.entries() {
+        if !matches!(entry.shelf, Shelf::Rules | Shelf::Ifs) {
+            continue;
+        }
+        let source = catalogue.open(&entry).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let graph = document.resolve(&[]).unwrap().0.compile(20).unwrap();
+        if !graph.shrinks() {
+            continue;
+        }
+        // With a limit of steps as well.
+        for (steps, shortest) in [(20, 0.04), (5, 0.01)] {
+            let grown = |takes_runs| {
+                let mut cutting = Cutting {
+                    shortest,
+                    takes_runs,
+                    runs: 0,
+                    elements: Vec::new(),
+                };
+                walk(&graph, &Growth::steps(steps), &mut cutting).unwrap();
+                cutting
+            };
+            let [one_by_one, by_runs] = [false, true].map(grown);
+            let what = format!("{} at {steps}", entry.name);
+            assert_eq!(one_by_one.runs, 0);
+            assert_eq!(one_by_one.elements.len(), by_runs.elements.len(), "{what}");
+            for (a, b) in one_by_one.elements.iter().zip(&by_runs.elements) {
+                let near = a.frame.map.abs_diff_eq(b.frame.map, 1e-9);
+                assert!(
+                    near && (a.length - b.length).abs() < 1e-9,
+                    "{what}: {a:?} {b:?}"
+                );
+                let rest = |element: &Element| {
+                    let Element {
+                        index,
+                        object,
+                        born,
+                        fertile,
+                        joined,
+                        ..
+                    } = *element;
+                    (
+                        index,
+                        object,
+                        born,
+                        fertile,
+                        joined,
+                        element.frame.direction,
+                    )
+                };
+                assert_eq!(rest(a), rest(b), "{what}");
+            }
+            runs += by_runs.runs;
+        }
+    }
+    assert!(runs > 10_000, "{runs}");
 }
