@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use tiny_skia::{ColorU8, Pixmap};
+use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 use crate::chaos::Histogram;
 use crate::style::{Colour, Named, Palette};
@@ -98,15 +98,24 @@ pub fn write_density(
     let classes: Vec<_> = (0..histogram.classes())
         .map(|class| histogram.counts(class))
         .collect();
-    let hits = |pixel: usize| {
-        classes
-            .iter()
-            .map(|counts| u64::from(counts[pixel]))
-            .sum::<u64>()
-    };
+    match classes.as_slice() {
+        [counts] => paint(&mut pixmap, density, &classes, |place| counts[place].into()),
+        _ => paint(&mut pixmap, density, &classes, |place| {
+            let hits = classes.iter().map(|counts| u64::from(counts[place]));
+            hits.sum()
+        }),
+    }
+    // Into memory first: the encoder would not tell why `out` fails.
+    let mut bytes = Vec::new();
+    write_pixels(&pixmap, labels, &mut bytes)?;
+    Ok(out.write_all(&bytes)?)
+}
+
+/// Paints every pixel, of whose hits, by class and all together, this tells the numbers.
+fn paint(pixmap: &mut Pixmap, density: &Density, classes: &[&[u32]], hits: impl Fn(usize) -> u64) {
     let pixels = pixmap.pixels_mut();
-    let most = (0..pixels.len()).map(hits).max().unwrap_or(0);
-    let scale = Scale::new(density);
+    let most = (0..pixels.len()).map(&hits).max().unwrap_or(0);
+    let colours = colours(density).map(premultiplied);
     let levels: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
         .map(|all| level(density.tone.of(all, most)))
         .collect();
@@ -114,21 +123,20 @@ pub fn write_density(
         let all = hits(place);
         let known = usize::try_from(all).ok().and_then(|all| levels.get(all));
         let level = known.map_or_else(|| level(density.tone.of(all, most)), |&level| level);
-        let colour = match &density.shades {
+        *pixel = match &density.shades {
             Shades::Classes(inks) if all > 0 && !inks.is_empty() => {
                 let shares = classes.iter().map(|counts| u64::from(counts[place]));
                 let ink = mean(shares.zip(inks.iter().cycle()), all);
-                laid_on(density.background, ink, level)
+                premultiplied(laid_on(density.background, ink, level))
             }
-            _ => scale.colours[usize::from(if all > 0 { level } else { 0 })],
+            _ => colours[usize::from(if all > 0 { level } else { 0 })],
         };
-        let [red, green, blue, opacity] = colour.rgba();
-        *pixel = ColorU8::from_rgba(red, green, blue, opacity).premultiply();
     }
-    // Into memory first: the encoder would not tell why `out` fails.
-    let mut bytes = Vec::new();
-    write_pixels(&pixmap, labels, &mut bytes)?;
-    Ok(out.write_all(&bytes)?)
+}
+
+fn premultiplied(colour: Colour) -> PremultipliedColorU8 {
+    let [red, green, blue, opacity] = colour.rgba();
+    ColorU8::from_rgba(red, green, blue, opacity).premultiply()
 }
 
 /// A tone in 255 steps; whatever is hit is seen.
@@ -142,27 +150,18 @@ fn level(tone: f64) -> u8 {
 }
 
 /// The colours of all levels; of 0 where there is nothing.
-struct Scale {
-    colours: Vec<Colour>,
-}
-
-impl Scale {
-    fn new(density: &Density) -> Self {
-        let none = density.background.unwrap_or(Colour::of_rgba([0; 4]));
-        let colours = (0..=u8::MAX).map(|level| match &density.shades {
-            _ if level == 0 => none,
-            Shades::Ink(ink) => laid_on(density.background, *ink, level),
-            Shades::Palette(palette) => laid_on(
-                density.background,
-                palette.at(f64::from(level) / 255.0),
-                255,
-            ),
-            Shades::Classes(_) => laid_on(density.background, Colour::BLACK, level),
-        });
-        Self {
-            colours: colours.collect(),
+fn colours(density: &Density) -> [Colour; 256] {
+    let none = density.background.unwrap_or(Colour::of_rgba([0; 4]));
+    let mut levels = 0..=u8::MAX;
+    std::array::from_fn(|_| match (&density.shades, levels.next().unwrap_or(0)) {
+        (_, 0) => none,
+        (Shades::Ink(ink), level) => laid_on(density.background, *ink, level),
+        (Shades::Palette(palette), level) => {
+            let ink = palette.at(f64::from(level) / 255.0);
+            laid_on(density.background, ink, 255)
         }
-    }
+        (Shades::Classes(_), level) => laid_on(density.background, Colour::BLACK, level),
+    })
 }
 
 /// An ink that is as opaque as a level says, on a background.
