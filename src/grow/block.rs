@@ -295,6 +295,8 @@ fn unit(reversed: bool) -> Direction {
 /// the order in which they are reached.
 pub(super) struct Blocks {
     known: Known,
+    /// Whether lines keep their share of widths, as they do not where they are sheared, and have no coats.
+    are_plain: bool,
     /// By object, direction and number.
     made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
 }
@@ -331,6 +333,7 @@ impl Blocks {
         Self {
             made: all.slots().into_iter().map(both).collect(),
             known: all,
+            are_plain: graph.is_similar() && !graph.coats(),
         }
     }
 
@@ -362,8 +365,94 @@ impl Blocks {
         };
         let slot = &self.made[object][usize::from(reversed)][slot];
         // What is not finite is for the walk itself to report.
-        slot.get_or_init(|| made(graph, object, steps, length, reversed).ok())
+        slot.get_or_init(|| self.made(graph, object, steps, length, reversed).ok())
             .as_ref()
+    }
+
+    /// What an object of a length becomes in a number of steps, where nothing is replaced that is shorter
+    /// than 1.
+    fn made(
+        &self,
+        graph: &Graph,
+        object: usize,
+        steps: u32,
+        length: f64,
+        reversed: bool,
+    ) -> Result<Block, CompileError> {
+        let enter = |subtree: &Subtree| {
+            if subtree.frame.stretch() * length < 1.0 {
+                Enter::Keep
+            } else {
+                Enter::Replace
+            }
+        };
+        let start = super::start::Start::initiator(graph, steps, 0);
+        let mut descent = Descent::below(graph, object, steps, unit(reversed));
+        let mut leaves = Vec::new();
+        let mut sticks = Some(Vec::new());
+        let mut corners = Some(Corners::default());
+        let mut fertile = 0;
+        let mut length = 0.0;
+        loop {
+            let found = match descent.next(&start, enter, Stop::Nowhere)? {
+                Next::Element(found) => found,
+                Next::Pause => {
+                    descent.visited = 0;
+                    continue;
+                }
+                Next::Run(_) | Next::Subtree(_) => unreachable!("blocks are not made of blocks"),
+                Next::End => break,
+            };
+            let frame = found.standing.frame;
+            let object = &graph.objects()[found.object];
+            let base_element = &graph.base_elements()[object.base_element];
+            if object.visible && base_element.is_line() && self.are_plain {
+                sticks.iter_mut().for_each(|sticks| {
+                    sticks.push(Stick {
+                        ends: frame.ends(),
+                        octave: libm::log2(frame.length()),
+                        joined: found.joined,
+                    });
+                });
+            } else {
+                sticks = None;
+            }
+            if object.visible {
+                let (start, pieces) = base_element.outline(frame.direction.is_reversed());
+                corners = corners.and_then(|corners| corners.with(start, pieces, &frame.map));
+            }
+            fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
+            length += frame.length();
+            leaves.push(Leaf {
+                map: frame.map,
+                direction: frame.direction,
+                length: found.standing.length,
+                coat: found.standing.coat,
+                object: found.object,
+                born: found.level,
+                joined: found.joined,
+            });
+        }
+        let sticks = sticks.filter(|sticks| !sticks.is_empty());
+        let line = sticks.as_ref().filter(|sticks| {
+            let mut later = sticks[1..].iter();
+            later.all(|stick| stick.joined)
+        });
+        let births = births(&leaves);
+        let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
+        by_birth.sort_by_key(|&number| leaves[number as usize].born);
+        Ok(Block {
+            number: NEXT.fetch_add(1, Ordering::Relaxed),
+            by_birth,
+            births,
+            line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
+            sticks,
+            leaves,
+            corners,
+            fertile,
+            length,
+            meets_end: descent.ends_joined(),
+        })
     }
 }
 
@@ -386,93 +475,6 @@ impl Known {
             Self::ByLength(cuts, _) => cuts.iter().map(|cuts| cuts.all.len()).collect(),
         }
     }
-}
-
-/// What an object of a length becomes in a number of steps, where nothing is replaced that is shorter
-/// than 1.
-fn made(
-    graph: &Graph,
-    object: usize,
-    steps: u32,
-    length: f64,
-    reversed: bool,
-) -> Result<Block, CompileError> {
-    let enter = |subtree: &Subtree| {
-        if subtree.frame.stretch() * length < 1.0 {
-            Enter::Keep
-        } else {
-            Enter::Replace
-        }
-    };
-    let start = super::start::Start::initiator(graph, steps, 0);
-    let mut descent = Descent::below(graph, object, steps, unit(reversed));
-    let mut leaves = Vec::new();
-    let mut sticks = Some(Vec::new());
-    let mut corners = Some(Corners::default());
-    let mut fertile = 0;
-    let mut length = 0.0;
-    loop {
-        let found = match descent.next(&start, enter, Stop::Nowhere)? {
-            Next::Element(found) => found,
-            Next::Pause => {
-                descent.visited = 0;
-                continue;
-            }
-            Next::Run(_) | Next::Subtree(_) => unreachable!("blocks are not made of blocks"),
-            Next::End => break,
-        };
-        let frame = found.standing.frame;
-        let object = &graph.objects()[found.object];
-        let base_element = &graph.base_elements()[object.base_element];
-        // Of what is sheared the parts do not keep their share of the width, and of coats lines know nothing.
-        let plain = !graph.is_affine() && !graph.coats();
-        if object.visible && base_element.is_line() && plain {
-            sticks.iter_mut().for_each(|sticks| {
-                sticks.push(Stick {
-                    ends: frame.ends(),
-                    octave: libm::log2(frame.length()),
-                    joined: found.joined,
-                });
-            });
-        } else {
-            sticks = None;
-        }
-        if object.visible {
-            let (start, pieces) = base_element.outline(frame.direction.is_reversed());
-            corners = corners.and_then(|corners| corners.with(start, pieces, &frame.map));
-        }
-        fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
-        length += frame.length();
-        leaves.push(Leaf {
-            map: frame.map,
-            direction: frame.direction,
-            length: found.standing.length,
-            coat: found.standing.coat,
-            object: found.object,
-            born: found.level,
-            joined: found.joined,
-        });
-    }
-    let sticks = sticks.filter(|sticks| !sticks.is_empty());
-    let line = sticks.as_ref().filter(|sticks| {
-        let mut later = sticks[1..].iter();
-        later.all(|stick| stick.joined)
-    });
-    let births = births(&leaves);
-    let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
-    by_birth.sort_by_key(|&number| leaves[number as usize].born);
-    Ok(Block {
-        number: NEXT.fetch_add(1, Ordering::Relaxed),
-        by_birth,
-        births,
-        line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
-        sticks,
-        leaves,
-        corners,
-        fertile,
-        length,
-        meets_end: descent.ends_joined(),
-    })
 }
 
 /// How many leaves are born before each step from the object's, up to where all are.

@@ -19,7 +19,7 @@ use super::{Canvas, Classes, Drawing, RenderError, Survey};
 /// An approximant on its canvas.
 pub(crate) struct Scene<'a> {
     pub(super) graph: &'a Graph,
-    growth: &'a Growth<'a>,
+    pub(super) growth: &'a Growth<'a>,
     pub(super) style: &'a Style,
     pub(super) canvas: Canvas,
     pub(super) sight: Sight,

@@ -1,7 +1,7 @@
 //! Stamps: what runs of small elements cover, drawn once for all that lie alike.
 //!
-//! Where the maps of a graph turn elements to a few sides only, runs are equal but for where they
-//! stand. In pictures to a detail they are put on a grid that is some ten times as fine as the detail:
+//! Where the maps of a graph turn elements to a few sides only, or all of a step to the same, runs are
+//! equal but for where they stand. In pictures to a detail they are put on a grid that is some ten times as fine as the detail:
 //! of 1/128 of a pixel if there are enough of them, else of 1/64, and half as fine for lines, whose pens
 //! stand on a grid of 1/16. That moves them by no more than 1/128 of a pixel, lines by 1/64. What a run
 //! covers is worked out on the grid, so it hangs on nothing but the run, whoever draws it first.
@@ -13,7 +13,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
 use crate::grow::{Element, Run};
 use crate::mix::{MixMap, MixSet};
 use crate::rule::Piece;
@@ -234,60 +234,70 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
     let map = &element.frame.map;
     let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
     points.clear();
-    let mut at = fine(base_element.start());
-    points.push(at);
-    for piece in base_element.pieces() {
-        match *piece {
-            Piece::Line(end) => points.push(fine(end)),
-            Piece::Cubic(a, b, end) => {
-                let curve = [at, fine(a), fine(b), fine(end)];
-                Sheet::add_curve(points, curve, is_closed);
+    let coarse = scene.coarse.get().and_then(Option::as_ref);
+    let stretch = element.frame.stretch();
+    let corners =
+        coarse.and_then(|coarse| coarse.corners(scene.graph, object.base_element, stretch));
+    if let Some(corners) = corners {
+        points.extend(corners.iter().map(|corner| fine(*corner)));
+    } else {
+        let mut at = fine(base_element.start());
+        points.push(at);
+        for piece in base_element.pieces() {
+            match *piece {
+                Piece::Line(end) => points.push(fine(end)),
+                Piece::Cubic(a, b, end) => {
+                    let curve = [at, fine(a), fine(b), fine(end)];
+                    Sheet::add_curve(points, curve, is_closed);
+                }
             }
+            at = fine(piece.end());
         }
-        at = fine(piece.end());
+        if is_closed {
+            points.pop();
+        }
     }
     if is_closed {
-        points.pop();
         sheet.polygon(points);
     } else {
         sheet.line(points);
     }
 }
 
-/// How many objects turned to how many sides come of the initiator; `None` if they are too many.
+/// How many objects turned to how many sides there are after the last step; `None` if they are too many.
 fn sides(scene: &Scene<'_>) -> Option<u64> {
     /// Turns are told apart by so many steps.
     const TURNS: f64 = 1e9;
-    let graph = scene.graph;
-    let key = |object: usize, turn: DMat2, is_reversed: bool| {
-        (
-            object,
-            turn.to_cols_array().map(|part| whole(part * TURNS)),
-            is_reversed,
-        )
+    let Scene { graph, growth, .. } = scene;
+    let key = |object: usize, turn: &DMat2, direction: Direction| {
+        let turn = turn.to_cols_array().map(|part| whole(part * TURNS));
+        (object, turn, direction.is_reversed())
     };
     let turned = |map: &DMat2| *map * (1.0 / map.x_axis.length());
-    let mut known = MixSet::default();
-    let mut open = Vec::new();
     let start = graph.initiator(0).instances.iter();
-    for instance in start {
-        let frame = instance.frame;
-        open.push((instance.object, turned(&frame.map.matrix2), frame.direction));
-    }
-    while let Some((object, turn, direction)) = open.pop() {
-        if !known.insert(key(object, turn, direction.is_reversed())) {
-            continue;
-        }
-        if known.len() > MOST_SIDES {
-            return None;
-        }
-        for (_, instance) in graph.children(object) {
+    let start = start.map(|instance| (DMat2::IDENTITY, Direction::Normal, instance));
+    let mut standing = start.collect::<Vec<_>>();
+    let mut sides = Vec::new();
+    for _ in 0..=growth.steps {
+        let mut known = MixSet::default();
+        sides.clear();
+        for (turn, direction, instance) in standing.drain(..) {
             let frame = instance.frame;
             let turn = turned(&(turn * frame.map.matrix2));
-            open.push((instance.object, turn, direction * frame.direction));
+            let direction = direction * frame.direction;
+            if known.insert(key(instance.object, &turn, direction)) {
+                sides.push((instance.object, turn, direction));
+            }
+            if sides.len() > MOST_SIDES {
+                return None;
+            }
         }
+        standing.extend(sides.iter().flat_map(|&(object, turn, direction)| {
+            let children = graph.children(object);
+            children.map(move |(_, instance)| (turn, direction, instance))
+        }));
     }
-    Some(known.len() as u64)
+    Some(sides.len().max(1) as u64)
 }
 
 #[expect(
