@@ -76,7 +76,7 @@ impl Plane {
         true
     }
 
-    /// Covers a convex polygon that is no larger than `TINIEST`, in these columns and rows: the same
+    /// Covers a convex polygon in these columns and rows, of which there are two at most each: the same
     /// samples.
     #[inline]
     pub(super) fn tiny(&mut self, vertices: &[Position], columns: [i64; 2], rows: [i64; 2]) {

@@ -15,8 +15,8 @@ const SOME_VERTICES: usize = 12;
 /// The most pixels of its width and height.
 const MOST_PIXELS: i64 = 8;
 
-/// Half planes are off by some hundredths of a pixel: of what is no wider and no higher than this, in
-/// hundredths, the samples are found one by one.
+/// Half planes are off by some hundredths of a pixel: of what is no wider than this, in hundredths, the
+/// samples are found one by one.
 const TINIEST: i64 = 20;
 
 /// Directions to an octant in which half planes are tabulated,
@@ -186,7 +186,12 @@ impl Plane {
             Some(0) => return true,
             Some(orientation) => orientation,
         };
-        if (0..2).all(|axis| bounds[1][axis] - bounds[0][axis] <= TINIEST) {
+        let extent = [0, 1].map(|axis| bounds[1][axis] - bounds[0][axis]);
+        let longest = extent[0].max(extent[1]);
+        if longest <= TINIEST || is_narrow(vertices, longest) {
+            if columns[0] + 1 < columns[1] || rows[0] + 1 < rows[1] {
+                return self.area(vertices);
+            }
             self.tiny(vertices, columns, rows);
             return true;
         }
@@ -251,6 +256,18 @@ impl Plane {
             }
         }
     }
+}
+
+/// Whether a convex polygon, of which the larger side of its box is known, is no wider than `TINIEST` in
+/// the mean.
+#[inline]
+fn is_narrow(vertices: &[Position], longest: i64) -> bool {
+    let from = vertices[0];
+    let sides = vertices.windows(2).map(|side| {
+        let [a, b] = [0, 1].map(|end| [0, 1].map(|axis| side[end][axis] - from[axis]));
+        a[0] * b[1] - a[1] * b[0]
+    });
+    sides.sum::<i64>().abs() <= 2 * TINIEST * longest
 }
 
 /// Which way round a convex polygon with these sides runs: 1 if its inside is left of them on the

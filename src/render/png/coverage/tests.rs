@@ -379,15 +379,19 @@ proptest! {
 }
 
 #[test]
-fn small_disks_have_their_ink_on_average() {
-    for radius in [3.0, 8.0, 12.0, 20.0, 40.0] {
+fn small_ellipses_have_their_ink_on_average() {
+    let shapes = [3.0, 8.0, 12.0, 20.0, 40.0].map(|radius| [radius; 2]);
+    let slivers = [[20.0, 4.0], [40.0, 3.0], [60.0, 6.0], [150.0, 8.0]];
+    for [along, across] in shapes.into_iter().chain(slivers) {
         let disk = |number: i64| {
             // Places that are spread out evenly.
             let middle = [number * 61 % 100, number * 8747 % 10_000 / 100];
             let turned = |corner: i64| {
-                let turn =
-                    f64::from((number % 97) as i32) + corner as f64 * std::f64::consts::FRAC_PI_4;
-                [turn.cos(), turn.sin()].map(|part| (radius * part + 0.5).floor() as i64)
+                let turn = corner as f64 * std::f64::consts::FRAC_PI_4;
+                let [x, y] = [along * turn.cos(), across * turn.sin()];
+                let (sine, cosine) = f64::from((number % 97) as i32).sin_cos();
+                [x * cosine - y * sine, x * sine + y * cosine]
+                    .map(|part| (part + 0.5).floor() as i64)
             };
             let corner = |corner| {
                 let [x, y] = turned(corner);
