@@ -8,7 +8,7 @@
 //! nothing but the run, whoever draws it first.
 //!
 //! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one
-//! by no more than 32/255, which are eight of the samples that tell its coverage.
+//! by no more than 40/255, which are ten of the samples that tell its coverage.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -399,7 +399,7 @@ mod tests {
             assert!(shows, "{name}: nothing is stamped");
             assert!(stamped == drawn(&scene, 3), "{name} on three threads");
             let (most, mean, of_means) = difference(&stamped, &one_by_one);
-            let is_near = most <= 32 && mean < 1.6 && of_means < 0.5;
+            let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
             assert!(is_near, "{name}: {most}, {mean}, {of_means}");
         }
     }

@@ -259,9 +259,15 @@ impl Plane {
 }
 
 /// Whether a convex polygon, of which the larger side of its box is known, is no wider than `TINIEST` in
-/// the mean.
+/// the mean, and its sides not parallel: what the half planes of two sides of one direction are off by is
+/// nothing in the mean.
 #[inline]
 fn is_narrow(vertices: &[Position], longest: i64) -> bool {
+    if let [a, b, c, d] = vertices
+        && (0..2).all(|axis| (a[axis] + c[axis] - b[axis] - d[axis]).abs() <= 2)
+    {
+        return false;
+    }
     let from = vertices[0];
     let sides = vertices.windows(2).map(|side| {
         let [a, b] = [0, 1].map(|end| [0, 1].map(|axis| side[end][axis] - from[axis]));
