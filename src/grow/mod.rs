@@ -3,8 +3,8 @@
 //! The walk goes depth-first through the graph. It holds one entry a level, so its memory grows
 //! with the number of steps and not with the number of elements. Where new fractals are seeded, a
 //! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
-//! an object becomes in its last steps is worked out once, as a block, for visitors that take
-//! elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
+//! an object becomes in its last steps, or before it is too short to be replaced, is worked out once, as a
+//! block, for visitors that take elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
 //! them comes in order. Who only wants to know the box of it all has no need of a walk where the graph
 //! tells how far things reach: a search replaces only what may reach farther than what it has found.
 
