@@ -11,7 +11,7 @@
 //! by no more than 40/255, which are ten of the samples that tell its coverage.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
 use crate::grow::{Element, Run};
@@ -54,14 +54,16 @@ const MOST_MEMORY: usize = 1 << 26;
 /// Tables that are locked apart.
 const TABLES: u64 = 64;
 
-/// What runs have in common that cover the same.
+/// What runs have in common that cover the same but for where they stand.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     run: u64,
     linear: [i64; 4],
-    phase: [i64; 2],
     painted: Painted,
 }
+
+/// The stamps of runs that are alike, by place in a pixel; none where nothing could be drawn.
+type Places = [OnceLock<Option<Arc<Stamp>>>];
 
 /// What of a run is painted.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -81,7 +83,7 @@ pub(super) struct Stamps {
     pub(super) longest_run: u64,
     worth: u64,
     phases: f64,
-    tables: Vec<RwLock<MixMap<Key, Option<Arc<Stamp>>>>>,
+    tables: Vec<RwLock<MixMap<Key, Arc<Places>>>>,
     bytes: AtomicUsize,
 }
 
@@ -140,7 +142,6 @@ impl Stamps {
         let key = Key {
             run: run.number(),
             linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),
-            phase: place.map(|place| place.rem_euclid(phases)),
             painted: match painted {
                 // From its own on, so that those of other steps are the same.
                 Painted::Steps(first, last) => {
@@ -151,51 +152,61 @@ impl Stamps {
             },
         };
         let pixel = place.map(|place| place.div_euclid(phases));
-        let stamp = self.made(scene, run, painted, reach, key)?;
+        let phase = place.map(|place| place.rem_euclid(phases));
+        let drawn = || {
+            let stamp = self.drawn(scene, run, painted, reach, (&key, phase));
+            stamp.map(Arc::new)
+        };
+        let number = usize::try_from(phase[0] + phases * phase[1]).ok()?;
+        let places = self.places(&key);
+        let known = places.as_deref().map(|places| &places[number]);
+        let stamp = known.and_then(OnceLock::get).cloned().unwrap_or_else(|| {
+            let stamp = drawn();
+            let bytes = stamp.as_ref().map_or(0, |stamp| size_of_val(&*stamp.cells));
+            if let Some(known) = known.filter(|_| self.take(bytes + size_of::<Stamp>())) {
+                let _ = known.set(stamp.clone());
+            }
+            stamp
+        });
+        let stamp = stamp?;
         Some(Stamped { stamp, pixel })
     }
 
-    fn made(
-        &self,
-        scene: &Scene<'_>,
-        run: &Run<'_>,
-        painted: Painted,
-        reach: f64,
-        key: Key,
-    ) -> Option<Arc<Stamp>> {
-        let [x, y] = key.phase;
-        let number = (key.run * 31 + (x * whole(self.phases) + y).unsigned_abs()) % TABLES;
-        let table = &self.tables[usize::try_from(number).unwrap_or(0)];
-        if let Some(known) = table
-            .read()
-            .unwrap_or_else(PoisonError::into_inner)
-            .get(&key)
-        {
-            return known.clone();
+    /// The stamps of a key, if there is memory for them.
+    fn places(&self, key: &Key) -> Option<Arc<Places>> {
+        let table = &self.tables[usize::try_from(key.run % TABLES).unwrap_or(0)];
+        let known = table.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(places) = known.get(key) {
+            return Some(Arc::clone(places));
         }
-        let stamp = self.drawn(scene, run, painted, reach, &key).map(Arc::new);
-        let bytes = stamp.as_ref().map_or(0, |stamp| size_of_val(&*stamp.cells));
-        let bytes = bytes + size_of::<Key>() + size_of::<Stamp>();
-        if self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY {
-            let mut table = table.write().unwrap_or_else(PoisonError::into_inner);
-            table.insert(key, stamp.clone());
+        drop(known);
+        let count = usize::try_from(whole(self.phases * self.phases)).ok()?;
+        if !self.take(count * size_of::<OnceLock<Option<Arc<Stamp>>>>()) {
+            return None;
         }
-        stamp
+        let made = || (0..count).map(|_| OnceLock::new()).collect();
+        let mut table = table.write().unwrap_or_else(PoisonError::into_inner);
+        Some(Arc::clone(table.entry(key.clone()).or_insert_with(made)))
     }
 
-    /// Draws the stamp of a key.
+    /// Takes memory; whether there was any left.
+    fn take(&self, bytes: usize) -> bool {
+        self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
+    }
+
+    /// Draws the stamp of a key for a place in a pixel.
     fn drawn(
         &self,
         scene: &Scene<'_>,
         run: &Run<'_>,
         painted: Painted,
         reach: f64,
-        key: &Key,
+        (key, phase): (&Key, [i64; 2]),
     ) -> Option<Stamp> {
         #[expect(clippy::cast_precision_loss, reason = "places in a small picture")]
         let [linear, phase] = [
             key.linear.map(|part| part as f64 / LINEAR),
-            [key.phase[0], key.phase[1], 0, 0].map(|part| part as f64 / self.phases),
+            [phase[0], phase[1], 0, 0].map(|part| part as f64 / self.phases),
         ];
         let linear = DMat2::from_cols_array(&linear);
         let phase = DVec2::new(phase[0], phase[1]);
