@@ -1,0 +1,211 @@
+//! The blocks of a graph, made as they are reached.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::geometry::Frame;
+use crate::graph::{CompileError, Graph, Replacement};
+
+use super::cut::Cuts;
+use super::{Block, Corners, Leaf, Stick, births, unit};
+use crate::grow::descent::{Descent, Next, Stop};
+use crate::grow::sizes::Sizes;
+use crate::grow::start::Start;
+use crate::grow::{Enter, Subtree};
+
+/// A block has this many elements at most: they stay in the fastest memory.
+pub(in crate::grow) const MOST_LEAVES: u64 = 1024;
+
+/// All blocks that a graph may have together have no more elements than this.
+const MOST_MEMORY: u64 = 1 << 17;
+
+/// The number of the next block that is made.
+static NEXT: AtomicU64 = AtomicU64::new(0);
+
+/// The blocks of a graph, made as they are reached, by whatever thread.
+///
+/// Which ones may be made is known before: what a walk yields, to the last bit, does not depend on
+/// the order in which they are reached.
+pub(in crate::grow) struct Blocks {
+    known: Known,
+    /// Whether lines keep their share of widths, as they do not where they are sheared, and have no coats.
+    are_plain: bool,
+    /// By object, direction and number.
+    made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
+}
+
+/// What is known before blocks are made.
+enum Known {
+    /// Where numbers of steps tell what is replaced: how many elements there are.
+    BySteps(Sizes),
+    /// Where lengths do: what there is, and the length below which nothing is replaced.
+    ByLength(Vec<Cuts>, f64),
+}
+
+impl Blocks {
+    /// What there is to know before blocks of no more than `longest` elements are made. Elements that are
+    /// shorter than a length are not replaced, if there is one.
+    pub(in crate::grow) fn of(graph: &Graph, longest: u64, shortest: Option<f64>) -> Self {
+        let known = |most: u64| match shortest.filter(|&shortest| shortest > 0.0) {
+            None => Known::BySteps(Sizes::fixed(graph, most)),
+            Some(shortest) => Known::ByLength(Cuts::of(graph, most), shortest),
+        };
+        let mut most = if graph.counts_index() {
+            0
+        } else {
+            MOST_LEAVES.min(longest)
+        };
+        let mut all = known(most);
+        // In both directions.
+        while most > 0 && 2 * all.sum() > MOST_MEMORY {
+            most /= 2;
+            all = known(most);
+        }
+        let none = |slots: usize| std::iter::repeat_with(OnceLock::new).take(slots).collect();
+        let both = |slots: usize| [none(slots), none(slots)];
+        Self {
+            made: all.slots().into_iter().map(both).collect(),
+            known: all,
+            are_plain: graph.is_similar() && !graph.coats(),
+        }
+    }
+
+    /// What an element of an object becomes in no more than a number of steps, if that makes a block.
+    #[inline]
+    pub(in crate::grow) fn get(
+        &self,
+        graph: &Graph,
+        object: usize,
+        steps: u32,
+        frame: &Frame,
+    ) -> Option<&Block> {
+        let reversed = frame.direction.is_reversed();
+        let (slot, steps, length) = match &self.known {
+            Known::BySteps(sizes) => {
+                sizes.get(object, steps)?;
+                (sizes.slot(steps), steps, f64::INFINITY)
+            }
+            Known::ByLength(cuts, shortest) => {
+                let cuts = cuts.get(object)?;
+                let number = cuts.number(frame.stretch() / shortest)?;
+                let cut = &cuts.all[number];
+                // Where steps run out there is less.
+                if cut.steps > steps {
+                    return None;
+                }
+                (number, cut.steps, cut.length)
+            }
+        };
+        let slot = &self.made[object][usize::from(reversed)][slot];
+        // What is not finite is for the walk itself to report.
+        slot.get_or_init(|| self.made(graph, object, steps, length, reversed).ok())
+            .as_ref()
+    }
+
+    /// What an object of a length becomes in a number of steps, where nothing is replaced that is shorter
+    /// than 1.
+    fn made(
+        &self,
+        graph: &Graph,
+        object: usize,
+        steps: u32,
+        length: f64,
+        reversed: bool,
+    ) -> Result<Block, CompileError> {
+        let enter = |subtree: &Subtree| {
+            if subtree.frame.stretch() * length < 1.0 {
+                Enter::Keep
+            } else {
+                Enter::Replace
+            }
+        };
+        let start = Start::initiator(graph, steps, 0);
+        let mut descent = Descent::below(graph, object, steps, unit(reversed));
+        let mut leaves = Vec::new();
+        let mut sticks = Some(Vec::new());
+        let mut corners = Some(Corners::default());
+        let mut fertile = 0;
+        let mut all = 0.0;
+        loop {
+            let found = match descent.next(&start, enter, Stop::Nowhere)? {
+                Next::Element(found) => found,
+                Next::Pause => {
+                    descent.visited = 0;
+                    continue;
+                }
+                Next::Run(_) | Next::Subtree(_) => unreachable!("blocks are not made of blocks"),
+                Next::End => break,
+            };
+            let frame = found.standing.frame;
+            let object = &graph.objects()[found.object];
+            let base_element = &graph.base_elements()[object.base_element];
+            if object.visible && base_element.is_line() && self.are_plain {
+                sticks.iter_mut().for_each(|sticks| {
+                    sticks.push(Stick {
+                        ends: frame.ends(),
+                        octave: libm::log2(frame.length()),
+                        joined: found.joined,
+                    });
+                });
+            } else {
+                sticks = None;
+            }
+            if object.visible {
+                let (start, pieces) = base_element.outline(frame.direction.is_reversed());
+                corners = corners.and_then(|corners| corners.with(start, pieces, &frame.map));
+            }
+            fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
+            all += frame.length();
+            leaves.push(Leaf {
+                map: frame.map,
+                direction: frame.direction,
+                length: found.standing.length,
+                coat: found.standing.coat,
+                object: found.object,
+                born: found.level,
+                joined: found.joined,
+            });
+        }
+        let sticks = sticks.filter(|sticks| !sticks.is_empty());
+        let line = sticks.as_ref().filter(|sticks| {
+            let mut later = sticks[1..].iter();
+            later.all(|stick| stick.joined)
+        });
+        let births = births(&leaves);
+        let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
+        by_birth.sort_by_key(|&number| leaves[number as usize].born);
+        Ok(Block {
+            number: NEXT.fetch_add(1, Ordering::Relaxed),
+            by_birth,
+            births,
+            line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
+            sticks,
+            leaves,
+            corners,
+            fertile,
+            length: all,
+            meets_end: descent.ends_joined(),
+        })
+    }
+}
+
+impl Known {
+    /// The elements of all blocks together.
+    fn sum(&self) -> u64 {
+        match self {
+            Self::BySteps(sizes) => sizes.sum(),
+            Self::ByLength(cuts, _) => {
+                let cuts = cuts.iter().flat_map(|cuts| &cuts.all);
+                cuts.map(|cut| cut.count).sum()
+            }
+        }
+    }
+
+    /// By object, how many blocks there are at most.
+    fn slots(&self) -> Vec<usize> {
+        match self {
+            Self::BySteps(sizes) => sizes.slots().collect(),
+            Self::ByLength(cuts, _) => cuts.iter().map(|cuts| cuts.all.len()).collect(),
+        }
+    }
+}
