@@ -15,8 +15,9 @@ const SOME_VERTICES: usize = 12;
 /// The most pixels of its width and height.
 const MOST_PIXELS: i64 = 8;
 
-/// Half planes are off by some hundredths of a pixel: of what is no wider than this, in hundredths, the
-/// samples are found one by one.
+/// Half planes are off by some hundredths of a pixel, which adds up where many meet: of what is no wider
+/// than this, in hundredths, the samples are found one by one; not of triangles and quadrangles that are
+/// longer, which have two long sides at most, and which neighbours share with them.
 const TINIEST: i64 = 20;
 
 /// Directions to an octant in which half planes are tabulated,
@@ -188,7 +189,7 @@ impl Plane {
         };
         let extent = [0, 1].map(|axis| bounds[1][axis] - bounds[0][axis]);
         let longest = extent[0].max(extent[1]);
-        if longest <= TINIEST || is_narrow(vertices, longest) {
+        if longest <= TINIEST || (MOST > FEW_VERTICES && is_narrow(vertices, longest)) {
             if columns[0] + 1 < columns[1] || rows[0] + 1 < rows[1] {
                 return self.area(vertices);
             }
@@ -259,15 +260,9 @@ impl Plane {
 }
 
 /// Whether a convex polygon, of which the larger side of its box is known, is no wider than `TINIEST` in
-/// the mean, and its sides not parallel: what the half planes of two sides of one direction are off by is
-/// nothing in the mean.
+/// the mean.
 #[inline]
 fn is_narrow(vertices: &[Position], longest: i64) -> bool {
-    if let [a, b, c, d] = vertices
-        && (0..2).all(|axis| (a[axis] + c[axis] - b[axis] - d[axis]).abs() <= 2)
-    {
-        return false;
-    }
     let from = vertices[0];
     let sides = vertices.windows(2).map(|side| {
         let [a, b] = [0, 1].map(|end| [0, 1].map(|axis| side[end][axis] - from[axis]));
