@@ -80,6 +80,7 @@ impl Masses {
             let number = grid.number(map.transform_point2(at));
             grid.masses[number] = grid.masses[number].saturating_add(points);
         }
+        grid.size *= points.extent();
         grid
     }
 

@@ -24,8 +24,9 @@ pub enum NoExtent {
 /// Points of the plane that lie at more than one place.
 ///
 /// They are kept on a lattice of 2³⁰ places a side, in the order of Morton, so that the order in which
-/// they came is forgotten. Grids lie on them along their own principal axes: however the points are
-/// moved, turned or scaled, the same boxes hold the same points.
+/// they came is forgotten. Grids lie on them along their own principal axes, and are laid in units of
+/// their extent from the lower left corner of their box: however the points are moved, turned or
+/// scaled, and however far from the origin they lie, the same boxes hold the same points.
 #[derive(Clone, Debug)]
 pub struct Points {
     places: Vec<Place>,
@@ -67,9 +68,14 @@ impl Points {
             0.0 => return Err(NoExtent::One),
             _ => {}
         }
-        let levels = levels(&points, &bounds);
-        let mut keys: Vec<u64> = points.iter().map(|&point| key(&bounds, point)).collect();
-        drop(points);
+        let extent = bounds.size().max_element();
+        let mut parts = points;
+        for point in &mut parts {
+            *point = (*point - bounds.min()) / extent;
+        }
+        let levels = levels(&parts, &Bounds::new(DVec2::ZERO, bounds.size() / extent));
+        let mut keys: Vec<u64> = parts.iter().map(|&part| key(part)).collect();
+        drop(parts);
         keys.sort_unstable();
         let place = |same: &[u64]| Place {
             column: gathered(same[0]),
@@ -92,23 +98,27 @@ impl Points {
         self.bounds
     }
 
+    /// The longer side of that box.
+    pub(super) fn extent(&self) -> f64 {
+        self.bounds.size().max_element()
+    }
+
     /// How many halvings of the extent lead to boxes that are too many for the points.
     pub(super) fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// Where points lie, and how many at each place.
+    /// Where points lie in their box, in parts of its longer side, and how many at each place.
     pub(super) fn places(&self) -> impl Iterator<Item = (DVec2, u32)> {
-        let extent = self.bounds.size().max_element();
         let places = self.places.iter();
-        places.map(move |place| {
+        places.map(|place| {
             let part = DVec2::new(place.column.into(), place.row.into()) / LATTICE;
-            (self.bounds.min() + part * extent, place.points)
+            (part, place.points)
         })
     }
 
     /// A grid that lies on the principal axes as the given one lies on the axes of the plane, and the
-    /// box of the points turned against it.
+    /// box of all [places](Self::places) turned against it.
     pub(super) fn own(&self, grid: &Grid) -> (Grid, Bounds) {
         let own = Grid {
             angle: grid.angle - self.angle,
@@ -124,12 +134,11 @@ impl Points {
     /// there is no such direction.
     fn principal_axis(&self) -> f64 {
         const ROUND: f64 = 1e-9;
-        let extent = self.bounds.size().max_element();
         let mean = |of: &dyn Fn(DVec2) -> f64| {
             let (mut sum, mut all) = (0.0, 0.0);
             for (at, points) in self.places() {
                 let weight = f64::from(points);
-                sum += weight * of((at - self.bounds.min()) / extent);
+                sum += weight * of(at);
                 all += weight;
             }
             sum / all
@@ -155,9 +164,8 @@ impl Points {
 /// Places of the lattice in a row.
 const LATTICE: f64 = (1u64 << MOST_LEVELS) as f64;
 
-/// The key of the place that a point lies at.
-fn key(bounds: &Bounds, point: DVec2) -> u64 {
-    let part = (point - bounds.min()) / bounds.size().max_element();
+/// The key of the place at some parts of the extent.
+fn key(part: DVec2) -> u64 {
     let [column, row] = boxed(
         &DAffine2::from_mat2(DMat2::from_diagonal(DVec2::splat(LATTICE))),
         part,

@@ -65,9 +65,14 @@ impl Points {
             Some(&finest) => self.tallies(grid, finest, sizes[0], base, sizes.len()),
             None => Vec::new(),
         });
-        Sample { sizes, tallies }
+        let sizes = sizes.into_iter().map(|size| size * self.extent());
+        Sample {
+            sizes: sizes.collect(),
+            tallies,
+        }
     }
 
+    /// What boxes hold that are no smaller than a size, in parts of the extent.
     fn tallies(&self, grid: &Grid, size: f64, largest: f64, base: u32, sizes: usize) -> Vec<Tally> {
         let (own, turned) = self.own(grid);
         let (map, _) = own.map(&turned, size, largest);

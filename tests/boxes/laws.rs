@@ -172,6 +172,48 @@ fn a_similarity_changes_no_dimension() {
 }
 
 #[test]
+fn neither_scale_nor_place_changes_what_boxes_hold() {
+    // Whole numbers of 2⁻²⁰, which stay exact wherever they are moved to.
+    let whole = |point: DVec2| (point * 1_048_576.0).round() / 1_048_576.0;
+    let points: Vec<DVec2> = gasket(3_000).into_iter().map(whole).collect();
+    let of = |scale: f64, shift: [f64; 2]| {
+        let shift = DVec2::from_array(shift);
+        of_points(points.iter().map(|&it| (it + shift) * scale).collect(), 2)
+    };
+    let here = of(1.0, [0.0; 2]);
+    let far = 2f64.powi(32);
+    for (scale, shift) in [
+        (1.0, [far, -far]),
+        (2f64.powi(-990), [0.0, far]),
+        (2f64.powi(990), [far, 0.0]),
+    ] {
+        let moved = of(scale, shift);
+        assert!(
+            (moved.value - here.value).abs() < 1e-9,
+            "{moved:?} {here:?}"
+        );
+        assert_eq!(moved.sizes, here.sizes);
+    }
+}
+
+#[test]
+fn points_are_boxed_however_far_away_they_lie() {
+    // Nanoseconds since 1970, which doubles tell apart by 256: no point lies where it was written.
+    for (offset, step) in [
+        (1.7e18, 1.0),
+        (1.7e18, 700.0),
+        (-1e15, 0.3),
+        (3e-290, 1e-302),
+    ] {
+        let at = |number: u32| offset + step * f64::from(number);
+        let row = |number: u32| DVec2::new(at(number * number), step * f64::from(number % 7));
+        let points = Points::new((0..40).map(row).collect()).unwrap();
+        let scales = points.sample(number(2), &grids(), number(1)).scales();
+        assert!(scales.iter().all(|scale| scale.count <= 40), "{scales:?}");
+    }
+}
+
+#[test]
 fn what_a_sample_misses_is_made_up_for() {
     let gasket_has = 3f64.log2();
     let dust_has = 4f64.ln() / 3f64.ln();
