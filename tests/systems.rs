@@ -5,6 +5,8 @@
 
 #[path = "systems/boxes.rs"]
 mod boxes;
+#[path = "systems/cells.rs"]
+mod cells;
 #[path = "systems/fractals.rs"]
 mod fractals;
 #[path = "systems/same.rs"]

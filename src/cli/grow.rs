@@ -449,6 +449,8 @@ struct Wrote {
     pixels: Option<[u32; 2]>,
     plotted: Option<Plotted>,
     instanced: Option<Instanced>,
+    /// Whether the limit set is drawn, and not its elements.
+    is_limit: bool,
     /// Whether elements outside a window may not be among them.
     is_part: bool,
     empty: Option<Empty>,
@@ -464,6 +466,7 @@ impl From<render::Picture> for Wrote {
             pixels: Some(picture.size),
             plotted: picture.plotted,
             instanced: picture.instanced,
+            is_limit: picture.is_limit,
             is_part: picture.is_part,
             empty: picture.empty,
         }
@@ -480,6 +483,7 @@ impl Wrote {
             pixels: None,
             plotted: None,
             instanced: None,
+            is_limit: false,
             is_part: false,
             empty: None,
         }
@@ -488,6 +492,10 @@ impl Wrote {
     fn summary(&self, unit: Unit) -> String {
         let mut summary = match &self.instanced {
             Some(instanced) => svg::described(instanced),
+            None if self.is_limit => {
+                let marks = wording::counted(&self.elements.into(), "mark");
+                format!("its limit by {marks}")
+            }
             None => wording::counted(&self.elements.into(), "element"),
         };
         if self.has_more {

@@ -6,9 +6,11 @@
 //! an object becomes in its last steps, or before it is too short to be replaced, is worked out once, as a
 //! block, for visitors that take elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
 //! them comes in order. Who only wants to know the box of it all has no need of a walk where the graph
-//! tells how far things reach: a search replaces only what may reach farther than what it has found.
+//! tells how far things reach: a search replaces only what may reach farther than what it has found. A
+//! limit set whose copies overlap is found without elements, by cells of the plane.
 
 mod block;
+mod cells;
 mod census;
 mod count;
 mod descent;
@@ -32,6 +34,7 @@ pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
+pub(crate) use cells::{Field, Found, Layer, LimitCells, Search, Stopped};
 pub(crate) use census::{Census, Kind};
 pub(crate) use evaluator::{Evaluator, Moment};
 pub(crate) use spans::{Division, Ranks, walk_with};

@@ -77,6 +77,7 @@ pub(super) fn write(
     let instanced = drawing.write(&canvas, &painted, out)?;
     out.write_all(b"</svg>\n")?;
     Ok(Picture {
+        is_limit: false,
         size: canvas.size(),
         steps,
         elements: survey.elements,

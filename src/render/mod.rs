@@ -9,6 +9,9 @@
 //! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
 //! bands. An SVG of nested instances takes neither walk nor survey: it is told by the graph.
 //!
+//! Limit sets to a detail whose elements would be more than pixels can tell, or have no area, are drawn
+//! without a walk: see `cells`.
+//!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
 //! what lies where all is covered in its colour already; and where colours tell steps, maps or
 //! generators, what nothing comes of in those that are painted. All that changes no pixel. In PNGs to a
@@ -18,6 +21,7 @@
 mod aim;
 mod bands;
 mod canvas;
+mod cells;
 mod census;
 mod classes;
 mod coarse;
@@ -71,6 +75,7 @@ use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 use crate::zoom::ZoomError;
 
+use self::cells::Way;
 use self::layout::Layout;
 use self::pdf::Pdf;
 use self::plot::Plot;
@@ -208,8 +213,12 @@ pub struct Picture {
     /// The number of steps: what growth says, or what it took to come to a detail; no fewer than that
     /// where there are more elements than have been counted.
     pub steps: u32,
-    /// The number of elements, without those outside a window that have not been visited.
+    /// The number of elements, without those outside a window that have not been visited; of a limit set,
+    /// that of the lines and dots that it is drawn with.
     pub elements: u64,
+    /// Whether the limit set itself is drawn, by what it meets of a grid within pixels, for its elements
+    /// are too many or become flat.
+    pub is_limit: bool,
     /// Whether there are more: to a PNG's detail they need not be counted, for what lies where all is
     /// covered is not grown.
     pub has_more: bool,
@@ -322,7 +331,13 @@ pub fn write(
         survey,
         canvas,
         growth,
-    } = Layout::find(graph, growth, options)?;
+    } = match Way::find(graph, growth, options)? {
+        Way::Elements(layout) => *layout,
+        Way::Cells(cells) => {
+            write_in(&cells, options, growth.cancel, out)?;
+            return Ok(cells.picture());
+        }
+    };
     let in_bands = options.format == Format::Png && !options.draws_in_one_piece(canvas.size());
     if in_bands && !options.plot {
         bands::write_survey(&survey, &growth, canvas, options, out)?;
@@ -345,6 +360,7 @@ fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plot
         empty: survey.shows_nothing().then(Empty::default),
         plotted,
         instanced: None,
+        is_limit: false,
     }
 }
 

@@ -1,0 +1,289 @@
+//! Cells of the plane that hold points of a limit set, however much its copies overlap.
+//!
+//! A limit set is made of images of itself, or of sets that are made so with it, and of outlines. From
+//! one point of each set on, and from points of the outlines, every map is applied to one point of each
+//! cell that has not been met before, until no new cell is met: minimal plotting (Monro & Dudbridge,
+//! "Rendering algorithms for deterministic fractals", 1995), for all objects of a graph at once. Work
+//! and memory are those of the cells, whatever number of elements an approximant would have.
+//!
+//! Every cell that is met holds a point of the set, or lies between such. A point of the set lies no farther than d / (1 − c)
+//! from one that is met, with d the diagonal of a cell and c the factor by which maps contract, and
+//! rarely farther than d.
+//!
+//! Cells are found by waves, of which threads look at parts; what they find is put together in the order
+//! of one thread.
+
+mod field;
+mod net;
+mod outline;
+
+pub(crate) use field::Field;
+pub(crate) use net::Layer;
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread;
+
+use crate::geometry::{Bounds, DVec2};
+use crate::graph::Graph;
+
+use self::field::TooFar;
+use self::net::Net;
+
+/// Points whose images are looked for together.
+const BLOCK: usize = 1 << 15;
+
+/// Images that are worth another thread.
+const WORTH_A_THREAD: usize = 1 << 14;
+
+/// How often cells between others are filled.
+const ROUNDS: usize = 2;
+
+/// Why cells are not found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stopped {
+    /// It would take more work than was allowed.
+    TooMany,
+    /// Somebody wants it to end.
+    Cancelled,
+}
+
+impl From<TooFar> for Stopped {
+    fn from(_: TooFar) -> Self {
+        Self::TooMany
+    }
+}
+
+/// The limit set of a graph that contracts, by the layers of a picture.
+pub(crate) struct LimitCells<'g> {
+    graph: &'g Graph,
+    net: Net,
+    layers: usize,
+}
+
+/// What bounds a search for cells.
+#[derive(Clone, Copy)]
+pub(crate) struct Search<'a> {
+    /// Cells to a unit of length of the plane.
+    pub(crate) scale: f64,
+    /// The most images of points that are worked out.
+    pub(crate) most_images: u64,
+    pub(crate) threads: NonZero<usize>,
+    pub(crate) cancel: Option<&'a AtomicBool>,
+}
+
+/// Cells that have been found.
+pub(crate) struct Found {
+    /// Those of every layer that hold points of it.
+    pub(crate) fields: Vec<Field>,
+    /// The images of points that were worked out.
+    pub(crate) images: u64,
+    /// The most maps that were applied to one point.
+    pub(crate) steps: u32,
+}
+
+impl<'g> LimitCells<'g> {
+    /// The limit set of a plain graph that contracts, of which each layer of a picture holds parts.
+    pub(crate) fn new(graph: &'g Graph, layers: &[Layer]) -> Self {
+        Self {
+            graph,
+            net: Net::of(graph, layers),
+            layers: layers.len(),
+        }
+    }
+
+    /// A box that holds most of what is in the layers, by a sequence of points.
+    fn rough_bounds(&self) -> Bounds {
+        const POINTS: usize = 1 << 16;
+        let nodes = &self.net.nodes;
+        let first_layer = nodes.len() - self.layers;
+        let mut bounds = Bounds::EMPTY;
+        for (number, node) in nodes.iter().enumerate() {
+            let Some(point) = node.point.filter(|_| node.stretch > 0.0) else {
+                continue;
+            };
+            let (mut at, mut point, mut turn) = (number, point, 0_u32);
+            for _ in 0..POINTS {
+                let (shown, inner): (Vec<_>, Vec<_>) = nodes[at]
+                    .images
+                    .iter()
+                    .partition(|(_, whole)| *whole >= first_layer);
+                for (map, _) in shown {
+                    bounds.add(map.transform_point2(point));
+                }
+                // As linear congruential generators go (Knuth), by the upper bits.
+                turn = turn.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let choice = (u64::from(turn) * inner.len() as u64) >> 32;
+                let Some((map, whole)) = inner.get(choice as usize) else {
+                    break;
+                };
+                (at, point) = (*whole, map.transform_point2(point));
+            }
+        }
+        bounds
+    }
+
+    /// The box of the layers, to about a pixel of a picture of so many.
+    ///
+    /// # Errors
+    ///
+    /// As [`LimitCells::find`].
+    pub(crate) fn bounds(&self, search: &Search<'_>, pixels: f64) -> Result<Bounds, Stopped> {
+        let mut bounds = self.rough_bounds();
+        for pixels in [pixels / 4.0, pixels] {
+            let scale = pixels / bounds.size().max_element();
+            if !scale.is_finite() {
+                break;
+            }
+            let found = self.find(&Search { scale, ..*search })?;
+            for field in &found.fields {
+                bounds.add_all(&field.bounds());
+            }
+        }
+        Ok(bounds)
+    }
+
+    /// Finds the cells of every layer that hold points of it.
+    ///
+    /// # Errors
+    ///
+    /// If that takes more work than is allowed, or if it is cancelled.
+    pub(crate) fn find(&self, search: &Search<'_>) -> Result<Found, Stopped> {
+        let nodes = &self.net.nodes;
+        let fields = nodes
+            .iter()
+            .map(|node| Field::new(search.scale * node.stretch));
+        let mut orbit = Orbit {
+            net: &self.net,
+            search,
+            fields: fields.collect(),
+            wave: vec![Vec::new(); nodes.len()],
+            left: search.most_images,
+        };
+        orbit.begin(self.graph)?;
+        let mut steps = 0;
+        while orbit.go_on()? {
+            steps += 1;
+        }
+        let mut fields = orbit.fields.split_off(nodes.len() - self.layers);
+        for _ in 0..ROUNDS {
+            fields.iter_mut().for_each(Field::fill_pits);
+        }
+        Ok(Found {
+            images: search.most_images - orbit.left,
+            steps,
+            fields,
+        })
+    }
+}
+
+/// Points of all sets, one a cell.
+struct Orbit<'a> {
+    net: &'a Net,
+    search: &'a Search<'a>,
+    fields: Vec<Field>,
+    /// By set, the points that are new.
+    wave: Vec<Vec<DVec2>>,
+    /// Images that may still be worked out.
+    left: u64,
+}
+
+impl Orbit<'_> {
+    fn add(&mut self, node: usize, point: DVec2) -> Result<(), TooFar> {
+        if self.fields[node].add(point)? && !self.net.nodes[node].images.is_empty() {
+            self.wave[node].push(point);
+        }
+        Ok(())
+    }
+
+    /// Takes some work.
+    fn take(&mut self, images: usize) -> Result<(), Stopped> {
+        self.left = { self.left.checked_sub(images as u64) }.ok_or(Stopped::TooMany)?;
+        let is_cancelled = |cancel: &AtomicBool| cancel.load(Relaxed);
+        if self.search.cancel.is_some_and(is_cancelled) {
+            return Err(Stopped::Cancelled);
+        }
+        Ok(())
+    }
+
+    /// Points of the sets themselves.
+    fn begin(&mut self, graph: &Graph) -> Result<(), Stopped> {
+        let net = self.net;
+        for (number, node) in net.nodes.iter().enumerate() {
+            if node.stretch == 0.0 {
+                continue;
+            }
+            let scale = self.fields[number].scale();
+            for (map, base_element) in &node.outlines {
+                let mut points = Vec::new();
+                let base_element = &graph.base_elements()[*base_element];
+                let room = self.left;
+                let are_all = outline::visit(base_element, map, scale, &mut |point| {
+                    points.push(point);
+                    points.len() as u64 <= room
+                });
+                if !are_all {
+                    return Err(Stopped::TooMany);
+                }
+                self.take(points.len())?;
+                for point in points {
+                    self.add(number, point)?;
+                }
+            }
+            if let Some(point) = node.point {
+                self.add(number, point)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Applies all maps to the points that are new; whether there were any.
+    fn go_on(&mut self) -> Result<bool, Stopped> {
+        let net = self.net;
+        let empty = vec![Vec::new(); net.nodes.len()];
+        let wave = std::mem::replace(&mut self.wave, empty);
+        for (node, points) in net.nodes.iter().zip(&wave) {
+            let maps = &node.images;
+            for block in points.chunks(BLOCK) {
+                let images = block.len() * maps.len();
+                self.take(images)?;
+                let threads = self.search.threads.get().min(images / WORTH_A_THREAD);
+                if threads < 2 {
+                    for point in block {
+                        for (map, whole) in maps {
+                            self.add(*whole, map.transform_point2(*point))?;
+                        }
+                    }
+                    continue;
+                }
+                let fields = &self.fields;
+                let look = |points: &[DVec2]| -> Vec<(usize, DVec2)> {
+                    let images = points.iter().flat_map(|point| {
+                        maps.iter()
+                            .map(|(map, whole)| (*whole, map.transform_point2(*point)))
+                    });
+                    images
+                        .filter(|(whole, image)| !fields[*whole].holds(*image))
+                        .collect()
+                };
+                let parts = block.chunks(block.len().div_ceil(threads));
+                let found: Vec<Vec<(usize, DVec2)>> = thread::scope(|scope| {
+                    let others: Vec<_> = { parts.clone().skip(1) }
+                        .map(|part| scope.spawn(move || look(part)))
+                        .collect();
+                    let first = parts.clone().next().map(look);
+                    let others = others.into_iter().map(|other| {
+                        other
+                            .join()
+                            .unwrap_or_else(|cause| std::panic::resume_unwind(cause))
+                    });
+                    first.into_iter().chain(others).collect()
+                });
+                for (whole, image) in found.into_iter().flatten() {
+                    self.add(whole, image)?;
+                }
+            }
+        }
+        Ok(wave.iter().any(|points| !points.is_empty()))
+    }
+}

@@ -1,0 +1,171 @@
+//! The limit set of a graph as sets that are made of each other's images.
+
+use crate::geometry::{DAffine2, DVec2, stretch};
+use crate::graph::{Graph, Instance, Object, Replacement};
+
+/// Addresses of points are followed no deeper.
+const MOST_LEVELS: usize = 1 << 20;
+
+/// A map that makes everything smaller than this leaves a point.
+const NEGLIGIBLE: f64 = 1e-18;
+
+/// A set of the limit, in a unit frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Node {
+    /// The maps by which it is part of other sets, and these, by number.
+    pub(super) images: Vec<(DAffine2, usize)>,
+    /// The maps by which outlines are parts of it, and base elements by number.
+    pub(super) outlines: Vec<(DAffine2, usize)>,
+    /// A point of it, where it is more than outlines and images of those.
+    pub(super) point: Option<DVec2>,
+    /// The most that it is stretched in the picture.
+    pub(super) stretch: f64,
+}
+
+/// Sets: what becomes of each behaviour, then what is in each layer of a picture.
+#[derive(Clone, Debug)]
+pub(super) struct Net {
+    pub(super) nodes: Vec<Node>,
+}
+
+/// A part of a picture: what becomes of objects where they stand.
+pub(crate) type Layer = Vec<(DAffine2, usize)>;
+
+impl Net {
+    /// The sets of layers, as far as something is drawn in them.
+    pub(super) fn of(graph: &Graph, layers: &[Layer]) -> Self {
+        let builder = Builder {
+            graph,
+            drawn: graph.alive(true),
+        };
+        builder.run(layers)
+    }
+}
+
+struct Builder<'g> {
+    graph: &'g Graph,
+    /// Objects of which something is drawn in the limit.
+    drawn: Vec<bool>,
+}
+
+impl Builder<'_> {
+    fn is_replaced(&self, object: usize) -> bool {
+        matches!(
+            self.graph.objects()[object].replacement,
+            Replacement::Fixed(_)
+        )
+    }
+
+    /// The behaviour of an object of which something is drawn.
+    fn node(&self, object: usize) -> Option<usize> {
+        let is_drawn = self.drawn[object] && self.is_replaced(object);
+        is_drawn.then(|| self.graph.objects()[object].behaviour)
+    }
+
+    fn children(&self, object: usize) -> impl Iterator<Item = &Instance> {
+        let children = self.graph.children(object).map(|(_, instance)| instance);
+        children.filter(|instance| self.drawn[instance.object])
+    }
+
+    fn run(&self, layers: &[Layer]) -> Net {
+        let behaviours = self.graph.behaviours().count();
+        let mut nodes = vec![Node::default(); behaviours + layers.len()];
+        let mut add = |whole: usize, map: &DAffine2, object: usize| {
+            if let Some(part) = self.node(object) {
+                let image = (*map, whole);
+                if !nodes[part].images.contains(&image) {
+                    nodes[part].images.push(image);
+                }
+            } else if self.drawn[object] {
+                let outline = (*map, self.graph.objects()[object].base_element);
+                if !nodes[whole].outlines.contains(&outline) {
+                    nodes[whole].outlines.push(outline);
+                }
+            }
+        };
+        for (number, object) in self.graph.behaviours_by_number() {
+            for instance in self.children(number) {
+                add(object.behaviour, &instance.frame.map, instance.object);
+            }
+        }
+        for (layer, parts) in layers.iter().enumerate() {
+            for (map, object) in parts {
+                add(behaviours + layer, map, *object);
+            }
+        }
+        let mut net = Net { nodes };
+        net.measure(behaviours);
+        self.find_points(&mut net);
+        net
+    }
+
+    /// Points of what is replaced for ever: those that a fixed address leads to.
+    fn find_points(&self, net: &mut Net) {
+        let parts = |(number, _): (usize, &Object)| -> Vec<(DAffine2, usize)> {
+            let children = self.children(number);
+            let parts = children.map(|it| Some((it.frame.map, self.node(it.object)?)));
+            parts.flatten().collect()
+        };
+        let mut parts: Vec<Vec<_>> = self.graph.behaviours_by_number().map(parts).collect();
+        loop {
+            let ends: Vec<bool> = parts.iter().map(Vec::is_empty).collect();
+            let mut changes = false;
+            for parts in &mut parts {
+                let before = parts.len();
+                parts.retain(|(_, part)| !ends[*part]);
+                changes |= parts.len() < before;
+            }
+            if !changes {
+                break;
+            }
+        }
+        for behaviour in 0..parts.len() {
+            let is_needed = net.nodes[behaviour].stretch > 0.0;
+            if !is_needed || parts[behaviour].is_empty() {
+                continue;
+            }
+            let (mut map, mut at) = (DAffine2::IDENTITY, behaviour);
+            let mut turn: u32 = 0;
+            for _ in 0..MOST_LEVELS {
+                if stretch(&map.matrix2) <= NEGLIGIBLE {
+                    break;
+                }
+                // The golden section never repeats itself.
+                turn = turn.wrapping_add(0x9e37_79b9);
+                let choice = (u64::from(turn) * parts[at].len() as u64) >> 32;
+                let (next, part) = parts[at][choice as usize];
+                (map, at) = (map * next, part);
+            }
+            net.nodes[behaviour].point = Some(map.translation);
+        }
+    }
+}
+
+impl Net {
+    /// How much sets are stretched at most on ways that come to no set again.
+    fn measure(&mut self, behaviours: usize) {
+        for layer in &mut self.nodes[behaviours..] {
+            layer.stretch = 1.0;
+        }
+        for _ in 0..=behaviours {
+            let mut changes = false;
+            for part in (0..behaviours).rev() {
+                let images = self.nodes[part].images.iter();
+                let longest = images.map(|(map, whole)| {
+                    let own = if *whole == part {
+                        0.0
+                    } else {
+                        stretch(&map.matrix2)
+                    };
+                    own * self.nodes[*whole].stretch
+                });
+                let longest = longest.fold(self.nodes[part].stretch, f64::max);
+                changes |= longest > self.nodes[part].stretch;
+                self.nodes[part].stretch = longest;
+            }
+            if !changes {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Points of outlines, no two neighbours farther apart than a cell.
+
+use crate::geometry::{DAffine2, DVec2};
+use crate::rule::{BaseElement, Piece};
+
+/// Lines that stand for a curve.
+const LINES: u32 = 64;
+
+/// Visits points of an outline in the image of a map, and of the area of a closed one, until no more
+/// are wanted; whether all were.
+///
+/// On a grid of so many cells to a unit, no point of the image lies farther than a cell from those
+/// that are visited, which are on it. Areas are those of the nonzero rule.
+pub(super) fn visit(
+    base_element: &BaseElement,
+    map: &DAffine2,
+    scale: f64,
+    visit: &mut impl FnMut(DVec2) -> bool,
+) -> bool {
+    let corners = flattened(base_element, map);
+    let mut lines = corners.windows(2);
+    lines.all(|ends| line(ends[0], ends[1], scale, visit))
+        && (!base_element.is_closed() || fill(&corners, scale, visit))
+}
+
+/// The ends of lines along an outline.
+fn flattened(base_element: &BaseElement, map: &DAffine2) -> Vec<DVec2> {
+    let mut at = map.transform_point2(base_element.start());
+    let mut corners = vec![at];
+    for piece in base_element.pieces() {
+        let piece = piece.transformed(map);
+        if let Piece::Cubic(a, b, end) = piece {
+            let points = (1..LINES).map(|line| {
+                let t = f64::from(line) / f64::from(LINES);
+                let (first, second) = (at.lerp(a, t), a.lerp(b, t));
+                let (one, other) = (first.lerp(second, t), second.lerp(b.lerp(end, t), t));
+                one.lerp(other, t)
+            });
+            corners.extend(points);
+        }
+        at = piece.end();
+        corners.push(at);
+    }
+    corners
+}
+
+/// Points of a line, both ends included.
+fn line(from: DVec2, to: DVec2, scale: f64, visit: &mut impl FnMut(DVec2) -> bool) -> bool {
+    let steps = ((to - from).abs().max_element() * scale).ceil().max(1.0);
+    let mut step = 0.0;
+    while step <= steps {
+        if !visit(from.lerp(to, step / steps)) {
+            return false;
+        }
+        step += 1.0;
+    }
+    true
+}
+
+/// A point of every cell whose middle is encircled.
+fn fill(corners: &[DVec2], scale: f64, visit: &mut impl FnMut(DVec2) -> bool) -> bool {
+    let rows = corners.iter().map(|corner| corner.y * scale);
+    let low = rows.clone().fold(f64::INFINITY, f64::min).floor();
+    let high = rows.fold(f64::NEG_INFINITY, f64::max).ceil();
+    let mut crossings: Vec<(f64, i32)> = Vec::new();
+    let mut row = low;
+    while row < high {
+        let y = (row + 0.5) / scale;
+        crossings.clear();
+        for ends in corners.windows(2) {
+            let turn = i32::from(ends[1].y > y) - i32::from(ends[0].y > y);
+            if turn != 0 {
+                let along = (y - ends[0].y) / (ends[1].y - ends[0].y);
+                crossings.push((ends[0].lerp(ends[1], along).x, turn));
+            }
+        }
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut winding = 0;
+        for pair in crossings.windows(2) {
+            winding += pair[0].1;
+            if winding != 0 {
+                let mut column = (pair[0].0 * scale - 0.5).ceil();
+                while column + 0.5 <= pair[1].0 * scale {
+                    if !visit(DVec2::new((column + 0.5) / scale, y)) {
+                        return false;
+                    }
+                    column += 1.0;
+                }
+            }
+        }
+        row += 1.0;
+    }
+    true
+}

@@ -1,0 +1,207 @@
+//! Limit sets that are drawn by cells, held against random points and against the copies that come near a
+//! pixel.
+
+use std::num::NonZero;
+
+use super::{library, system};
+use kfrac::geometry::{DAffine2, DMat2, DVec2};
+use kfrac::graph::Graph;
+use kfrac::grow::Growth;
+use kfrac::ifs::System;
+use kfrac::render::{self, Canvas, Detail, Format, Options, Size};
+
+const SIZE: u32 = 96;
+
+/// Numbers without end (splitmix64; Steele et al. 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// From 0 to 1.
+    fn part(&mut self) -> f64 {
+        (self.next() >> 40) as f64 / f64::from(1 << 24)
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        usize::try_from(self.next() >> 33).unwrap() % count
+    }
+}
+
+/// The file of a system of two to eight maps: turns, reflections, singular values in [0, 1), and shifts of
+/// up to 1 along each axis.
+fn random_system(seed: u64) -> String {
+    let mut random = Random(seed);
+    let mut text = "maps:\n".to_owned();
+    for _ in 0..2 + random.below(7) {
+        let turn = |random: &mut Random| DMat2::from_angle(std::f64::consts::TAU * random.part());
+        let (last, first) = (turn(&mut random), turn(&mut random));
+        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let values = DVec2::new(random.part(), sign * random.part());
+        let [x, y] = [2.0 * random.part() - 1.0, 2.0 * random.part() - 1.0];
+        let [[a, b], [c, d]] = (last * DMat2::from_diagonal(values) * first).to_cols_array_2d();
+        text += &format!("  - {{matrix: [[{a}, {c}], [{b}, {d}]], shift: [{x}, {y}]}}\n");
+    }
+    text
+}
+
+fn graph(system: &System) -> Graph {
+    Graph::of_system(system)
+}
+
+fn options(size: u32, threads: usize) -> Options {
+    Options {
+        format: Format::Png,
+        size: Size::Long(size),
+        detail: Some(Detail {
+            pixels: 1.0,
+            decides_steps: true,
+        }),
+        threads: NonZero::new(threads).unwrap(),
+        ..Options::default()
+    }
+}
+
+fn drawn(graph: &Graph, options: &Options) -> (Vec<u8>, render::Picture) {
+    let mut bytes = Vec::new();
+    let growth = Growth::steps(1_000_000);
+    let picture = render::write(graph, &growth, options, &mut bytes).unwrap();
+    (bytes, picture)
+}
+
+/// How opaque the pixels are, by rows.
+fn opacities(bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let samples = info.color_type.samples();
+    let rows = pixels.chunks(samples * info.width as usize);
+    rows.map(|row| row.chunks(samples).map(|it| it[samples - 1]).collect())
+        .collect()
+}
+
+/// Whether a pixel or one beside it has ink that can be seen.
+fn is_near_ink(opacities: &[Vec<u8>], at: DVec2) -> bool {
+    let around = |at: f64, most: usize| {
+        (0..most).filter(move |&pixel| (pixel as f64 + 0.5 - at).abs() <= 1.5)
+    };
+    let mut rows = around(at.y, opacities.len());
+    rows.any(|row| {
+        let mut columns = around(at.x, opacities[0].len());
+        columns.any(|column| opacities[row][column] >= 64)
+    })
+}
+
+/// Whether a copy of the set that is smaller than a quarter of a pixel comes near a point.
+fn is_near_set(maps: &[DAffine2], ball: (DVec2, f64), at: DVec2, near: f64, pixel: f64) -> bool {
+    let mut open = vec![DAffine2::IDENTITY];
+    let mut work = 0;
+    while let Some(map) = open.pop() {
+        let matrix = map.matrix2;
+        let radius =
+            ball.1 * (matrix.x_axis.length_squared() + matrix.y_axis.length_squared()).sqrt();
+        let away = map.transform_point2(ball.0).distance(at);
+        if away > near + radius {
+            continue;
+        }
+        work += 1;
+        if radius < pixel / 4.0 || work > 4_000 {
+            return true;
+        }
+        open.extend(maps.iter().map(|next| map * *next));
+    }
+    false
+}
+
+/// Draws a system by cells, and holds the picture against points that come by random iteration, and ink
+/// against copies of the set.
+fn hold(name: &str, system: &System, points: usize) {
+    let graph = graph(system);
+    let (bytes, picture) = drawn(&graph, &options(SIZE, 1));
+    assert!(picture.is_limit, "{name}");
+    let opacities = opacities(&bytes);
+    let bounds = graph.limit_bounds().unwrap();
+    let canvas = Canvas::fit(&bounds, Size::Long(SIZE), 0.5).unwrap();
+    let maps: Vec<DAffine2> = system.ifs().maps().iter().map(|map| map.affine).collect();
+    let mut random = Random(1);
+    let mut at = bounds.min();
+    for point in 0..points {
+        at = maps[random.below(maps.len())].transform_point2(at);
+        if point < 2_000 {
+            continue;
+        }
+        let pixel = canvas.pixel(at);
+        assert!(is_near_ink(&opacities, pixel), "{name}: nothing at {pixel}");
+    }
+    let to_plane = canvas.to_pixels().inverse();
+    let middle = bounds.min().midpoint(bounds.max());
+    let ball = (middle, middle.distance(bounds.min()));
+    let pixel = 1.0 / canvas.scale();
+    // Not every pixel: this is slow.
+    for number in (0..SIZE * SIZE).step_by(41) {
+        let [x, y] = [number % SIZE, number / SIZE].map(|place| place as usize);
+        let opacity = opacities.get(y).and_then(|row| row.get(x));
+        let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let at = to_plane.transform_point2(at);
+        assert!(
+            opacity.is_none_or(|opacity| *opacity < 16)
+                || is_near_set(&maps, ball, at, 1.75 * pixel, pixel),
+            "{name}: ink at {x}, {y}"
+        );
+    }
+}
+
+#[test]
+fn random_systems_are_drawn_where_they_are() {
+    for seed in 0..12 {
+        let system = system(&random_system(seed));
+        hold(&format!("system {seed}"), &system, 30_000);
+    }
+}
+
+/// Maps that leave a line or a point of everything: nothing of these has an area.
+#[test]
+fn flat_copies_are_drawn() {
+    let trunk = "maps:\n  - {matrix: [[0, 0], [0, 0.5]]}\n  - {times: [0.42, 0.42], shift: [0, 0.2]}\n  \
+                 - {times: [0.42, -0.42], shift: [0, 0.2]}\n";
+    hold("a trunk", &system(trunk), 100_000);
+    let point = "maps:\n  - {matrix: [[0, 0], [0, 0]], shift: [3, 1]}\n  \
+                 - {matrix: [[0.5, 0], [0, 0]]}\n  - {scale: 1/3, shift: [0, 2]}\n";
+    hold("a point", &system(point), 30_000);
+}
+
+/// What becomes flat in the library.
+#[test]
+fn the_librarys_systems_are_drawn_where_they_are() {
+    let mut drawn = 0;
+    for (name, system) in library() {
+        let has_sets = !system.ifs().condensation().is_empty();
+        let graph = graph(&system);
+        if has_sets || graph.is_similar() {
+            continue;
+        }
+        drawn += 1;
+        hold(&name, &system, 50_000);
+    }
+    assert!(drawn >= 3, "{drawn}");
+}
+
+#[test]
+fn threads_do_not_show_in_cells() {
+    for seed in [1, 4] {
+        let system = system(&random_system(seed));
+        let graph = graph(&system);
+        let (expected, _) = drawn(&graph, &options(300, 1));
+        for threads in [2, 3, 8] {
+            let (bytes, _) = drawn(&graph, &options(300, threads));
+            assert!(bytes == expected, "{seed} on {threads} threads");
+        }
+    }
+}
