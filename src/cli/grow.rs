@@ -20,6 +20,7 @@ use super::growth::{self, GrowthArguments};
 use super::labels::labels;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
+use super::plot::{self, PlotArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::svg::{self, SvgArguments};
 use super::zoom::ZoomArguments;
@@ -65,13 +66,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
     #[arg(help_heading = "Picture")]
     size: Paper,
-    /// Draws single strokes, for a plotter or a cutter; a DXF always is
-    ///
-    /// Nothing is drawn twice, strokes whose ends meet become one, and the pen is carried over short
-    /// ways. Outlines of what is filled are strokes, and each colour is a layer. This takes memory:
-    /// up to some 200 bytes an element, so that --max-elements bounds it.
-    #[arg(long, help_heading = "Picture")]
-    plot: bool,
+    #[command(flatten)]
+    plot: PlotArguments,
     #[command(flatten)]
     svg: SvgArguments,
     #[command(flatten)]
@@ -214,6 +210,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         if let Some(instanced) = &wrote.instanced {
             svg::warn(instanced);
         }
+        if let Some(plotted) = &wrote.plotted {
+            arguments.plot.tell_of_pens(plotted);
+        }
         if let Some(empty) = &wrote.empty {
             text::say(&super::zoom::nothing(&loaded.name, empty));
         }
@@ -232,8 +231,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 impl Arguments {
     /// Refuses what a format has nothing for.
     fn refuse_paper(&self, format: Format) -> Result<(), Failure> {
+        self.plot.refuse(match format {
+            Format::Picture(picture) => Some(picture),
+            Format::Table(_) => None,
+        })?;
         let message = match format {
-            Format::Table(_) if self.plot => "--plot is of pictures, and a table is none",
             Format::Picture(picture) if self.size.unit != Unit::Pixel && !picture.has_lengths() => {
                 "a PNG has pixels and no millimetres: --size 2000 is 2000 pixels; an SVG, a PDF and a \
                  DXF have both"
@@ -268,7 +270,7 @@ impl Arguments {
         }
         let message = if format != Format::Picture(render::Format::Svg) {
             "--svg instanced is of SVG: write a .svg"
-        } else if self.plot {
+        } else if self.plot.is_asked() {
             "--plot draws every line, and --svg instanced none by itself: give one of them"
         } else if self.detail.is_some() {
             "--detail leaves out what is small, and --svg instanced draws all of a step, in a file that \
@@ -317,7 +319,7 @@ impl Arguments {
             Size::Long(side) => u64::from(side).pow(2),
             Size::Exactly(width, height) => u64::from(width) * u64::from(height),
         };
-        if self.growth.quiet || self.plot || most <= options.in_one_piece {
+        if self.growth.quiet || self.plot.is_asked() || most <= options.in_one_piece {
             return;
         }
         let view = &options.view;
@@ -349,7 +351,7 @@ impl Arguments {
         if format != render::Format::Svg {
             options.push(("format", format.name().into()));
         }
-        options.extend(self.plot.then(|| ("plot", String::new())));
+        options.extend(self.plot.options());
         options.extend(self.svg.options());
         options.push(("size", self.size.to_string()));
         options.extend(self.zoom.options());
@@ -362,7 +364,8 @@ impl Arguments {
             view: self.picture.view_in(heading, unit),
             size,
             unit,
-            plot: self.plot,
+            plot: self.plot.is_asked(),
+            pens: self.plot.pens(&self.picture),
             instanced: self.svg.is_instanced(),
             threads: self.growth.threads(),
             detail: goal.detail(unit),
@@ -403,7 +406,7 @@ impl Arguments {
                 picture.name().to_uppercase()
             )));
         }
-        if self.plot {
+        if self.plot.is_asked() {
             let message = "--plot is of lines, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
@@ -512,25 +515,8 @@ impl Wrote {
             summary.push_str(&format!(", {}", length::described(size, unit)));
         }
         if let Some(plotted) = &self.plotted {
-            summary.push_str(&format!(", {}", strokes(plotted)));
+            summary.push_str(&format!(", {}", plot::described(plotted)));
         }
         summary
     }
-}
-
-/// What a plot takes, in words.
-fn strokes(plotted: &Plotted) -> String {
-    let layers = match plotted.layers {
-        1 => String::new(),
-        layers => format!(" in {}", wording::counted(&layers.into(), "layer")),
-    };
-    format!(
-        "{}{layers} of {:.0} mm, {:.0} mm from stroke to stroke (as drawn: {:.0} mm), {} left out as \
-         drawn before",
-        wording::counted(&plotted.strokes.into(), "stroke"),
-        plotted.drawn,
-        plotted.carried,
-        plotted.carried_as_drawn,
-        wording::counted(&plotted.repeated.into(), "edge"),
-    )
 }

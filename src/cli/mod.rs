@@ -22,6 +22,7 @@ mod list;
 mod man;
 mod output;
 mod picture;
+mod plot;
 mod progress;
 mod rule;
 mod schema;

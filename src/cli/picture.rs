@@ -100,6 +100,11 @@ impl PictureArguments {
         self.color_by
     }
 
+    /// Whether colours that tell elements apart are asked for.
+    pub(super) fn asks_for_colours(&self) -> bool {
+        self.color_by.is_some() || self.palette.is_some()
+    }
+
     /// Refuses colours that only random iteration has.
     pub(super) fn refuse_hits(&self) -> Result<(), Failure> {
         match self.color_by {

@@ -1,5 +1,4 @@
-//! DXF of release 12, which cutters and plotters read: polylines in millimetres, y up, a layer a
-//! colour.
+//! DXF of release 12, which cutters and plotters read: polylines in millimetres, y up, a layer a pen.
 
 use std::io::{self, Write};
 
@@ -32,7 +31,7 @@ pub(super) fn write(
     out.write_all(b"0\nENDSEC\n0\nSECTION\n2\nTABLES\n")?;
     out.write_all(b"0\nTABLE\n2\nLTYPE\n70\n1\n0\nLTYPE\n2\nCONTINUOUS\n70\n0\n3\nSolid\n")?;
     out.write_all(b"72\n65\n73\n0\n40\n0.0\n0\nENDTAB\n")?;
-    let names: Vec<_> = plot.colours().map(layer).collect();
+    let names: Vec<_> = (1..).zip(plot.colours()).map(layer).collect();
     write!(out, "0\nTABLE\n2\nLAYER\n70\n{}\n", names.len())?;
     for (name, colour) in names.iter().zip(plot.colours()) {
         let index = nearest_index(colour);
@@ -65,10 +64,11 @@ pub(super) fn write(
     out.write_all(b"0\nENDSEC\n0\nEOF\n")
 }
 
-/// The layer of a colour, of the letters that names may have.
-fn layer(colour: Colour) -> String {
+/// The layer of a pen by its number and its colour, of the letters that names may have. The number comes
+/// first, as plotters want it.
+fn layer((number, colour): (u32, Colour)) -> String {
     let [red, green, blue, _] = colour.rgba();
-    format!("PEN_{red:02X}{green:02X}{blue:02X}")
+    format!("{number}_{red:02X}{green:02X}{blue:02X}")
 }
 
 /// The nearest of the 255 colours that there are: seven by name, where 7 is what stands out from

@@ -53,7 +53,7 @@ pub use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
 pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
-pub use plot::Plotted;
+pub use plot::{Pens, Plotted};
 pub use png::TooManyPixels;
 pub use survey::Survey;
 pub use unit::Unit;
@@ -148,6 +148,8 @@ pub struct Options {
     /// for plotters and cutters. Nothing is filled, not even the background. This is done in memory,
     /// of some hundred bytes an edge.
     pub plot: bool,
+    /// How many pens a plot takes; one for every colour where there are few, unless said otherwise.
+    pub pens: Pens,
     /// Whether an SVG is made of nested instances, so that it grows with the graph and the number of
     /// steps and not with the elements. Other formats do not look at this; detail and plots are not
     /// for it.
@@ -178,6 +180,7 @@ impl Default for Options {
             size: Size::Long(1024),
             unit: Unit::Pixel,
             plot: false,
+            pens: Pens::default(),
             instanced: false,
             in_one_piece: 1 << 24,
             band: 1 << 21,
@@ -380,19 +383,18 @@ fn write_in(
     cancel: Option<&AtomicBool>,
     out: &mut impl Write,
 ) -> Result<Option<Plotted>, RenderError> {
-    let Options { unit, threads, .. } = *options;
     let format = match options.format {
         Format::Svg => PathFormat::Svg,
         Format::Png => PathFormat::Png,
         Format::Pdf => PathFormat::Pdf,
         Format::Dxf => {
-            let plot = Plot::of(drawing, unit, threads, cancel)?;
-            dxf::write(&plot, unit, &options.labels, out)?;
+            let plot = Plot::of(drawing, options, cancel)?;
+            dxf::write(&plot, options.unit, &options.labels, out)?;
             return Ok(Some(plot.plotted));
         }
     };
     if options.plot {
-        let plot = Plot::of(drawing, unit, threads, cancel)?;
+        let plot = Plot::of(drawing, options, cancel)?;
         write_paths(&plot, format, options, cancel, out)?;
         return Ok(Some(plot.plotted));
     }

@@ -24,8 +24,9 @@ pub(super) struct Svg<'t, 'w, W> {
     pen: Pen,
     /// The colour of strokes in the group that is open.
     group: Option<Colour>,
-    /// Whether groups are layers, as Inkscape has them.
-    has_layers: bool,
+    /// The number of layers so far, where groups are layers as Inkscape has them: at the top of the
+    /// document, which is where programs for plotters look for them.
+    layers: Option<u32>,
     label: Option<String>,
 }
 
@@ -36,13 +37,9 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
         let Page {
             pen, has_layers, ..
         } = *page;
-        // What all paths share.
-        writeln!(
-            out,
-            r#"<g fill="none" stroke-width="{}"{}>"#,
-            pen.width * FINE,
-            ends_and_corners(pen)
-        )?;
+        if !has_layers {
+            writeln!(out, "<g{}>", shared(pen))?;
+        }
         Ok(Self {
             out,
             chunk: Chunk::default(),
@@ -50,7 +47,7 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
             at: [[0, 0]; 2],
             pen,
             group: None,
-            has_layers,
+            layers: has_layers.then_some(0),
             label: None,
         })
     }
@@ -58,7 +55,10 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
     /// Ends the document.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.close_group();
-        self.chunk.write(b"</g>\n</svg>\n");
+        if self.layers.is_none() {
+            self.text("</g>\n");
+        }
+        self.text("</svg>\n");
         self.next_chunk(None)?;
         let out = &mut self.out;
         self.line.finish(&mut |chunk| out.write_all(&chunk.text))
@@ -80,10 +80,14 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
             self.group = Some(colour);
             let opacity = opacity("stroke", colour);
             self.text("<g");
-            if self.has_layers {
-                self.text(&format!(
-                    r#" inkscape:groupmode="layer" inkscape:label="{colour}""#
-                ));
+            if let Some(layers) = &mut self.layers {
+                *layers += 1;
+                // Plotters take the number at the start of the name as that of the pen.
+                let layer = format!(
+                    r#" id="layer{layers}" inkscape:groupmode="layer" inkscape:label="{layers} {colour}"{}"#,
+                    shared(self.pen)
+                );
+                self.text(&layer);
             }
             self.text(&format!(" stroke=\"{colour}\"{opacity}>\n"));
         }
@@ -237,6 +241,12 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
         )?;
     }
     Ok(())
+}
+
+/// The attributes that all paths share.
+fn shared(pen: Pen) -> String {
+    let (width, ends) = (pen.width * FINE, ends_and_corners(pen));
+    format!(r#" fill="none" stroke-width="{width}"{ends}"#)
 }
 
 /// The shapes of a pen's ends and corners, where they are not those that SVG has for itself.

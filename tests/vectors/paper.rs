@@ -138,7 +138,7 @@ fn the_command_line_has_millimetres() {
     assert!(svg.contains(
         "# kfrac grow koch.yaml --steps=3 --seed=0 --plot --size=200mm --stroke-width=0.3mm --margin=10mm\n"
     ));
-    let refused: [(&[&str], &str); 5] = [
+    let refused: [(&[&str], &str); 7] = [
         (
             &["--size", "200mm", "-o", "a.png"],
             "a PNG has pixels and no millimetres",
@@ -147,11 +147,31 @@ fn the_command_line_has_millimetres() {
         (&["--size", "1.23mm"], "one decimal at most"),
         (&["--stroke-width", "3mm%"], "a percentage"),
         (&["--plot", "-o", "a.csv"], "--plot is of pictures"),
+        (&["--pens", "3", "-o", "a.svg"], "--pens is of plots"),
+        (&["--pens", "0", "--plot"], "a plot has one pen or more"),
     ];
     for (options, message) in refused {
         let (code, said) = run(&[&["grow", "koch"], options].concat());
         assert_eq!(code, Some(2), "{said}");
         assert!(said.contains(message), "{said}");
+    }
+    // Colours that nobody asked for have one pen, where they are not few.
+    let levy = ["grow", "levy", "--steps", "8", "-o", "levy.dxf"];
+    for (options, told, note) in [
+        (&[][..], " strokes of", true),
+        (&["--color-by", "index"], " in 64 layers of", false),
+        (&["--pens", "5"], " in 5 layers of", false),
+        (
+            &["--color-by", "index", "--pens", "5"],
+            " in 5 layers of",
+            false,
+        ),
+    ] {
+        let (code, said) = run(&[&levy[..], options].concat());
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains(told), "{said}");
+        let noted = said.starts_with("note: one pen for all 64 colours: --pens 8 gives as many");
+        assert_eq!(noted, note, "{said}");
     }
     let chaos = ["grow", "barnsley-fern", "--method", "chaos", "-o"];
     let (code, said) = run(&[&chaos[..], &["a.pdf"]].concat());

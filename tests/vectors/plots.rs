@@ -5,7 +5,7 @@ use std::num::NonZero;
 
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::render::{Format, Options, Size};
+use kfrac::render::{Format, Options, Pens, Size};
 use kfrac::style::{ColorBy, Colour};
 
 use crate::readers::read;
@@ -144,22 +144,80 @@ fn colours_are_layers() {
     let layers = usize::try_from(picture.plotted.unwrap().layers).unwrap();
     assert!(layers > 1);
     let text = String::from_utf8(bytes).unwrap();
-    let document = roxmltree::Document::parse(&text).unwrap();
-    let inkscape = "http://www.inkscape.org/namespaces/inkscape";
-    let is_layer =
-        |node: &roxmltree::Node<'_, '_>| node.attribute((inkscape, "groupmode")) == Some("layer");
-    let labels: BTreeSet<_> = document
-        .descendants()
-        .filter(is_layer)
-        .map(|node| node.attribute((inkscape, "label")).unwrap().to_owned())
-        .collect();
-    assert_eq!(labels.len(), layers);
+    assert_eq!(top_level_layers(&text).len(), layers);
     for format in [Format::Svg, Format::Pdf, Format::Dxf] {
         let (_, bytes) = draw(format);
         let mut inks: Vec<_> = read(format, &bytes).into_iter().map(|it| it.ink).collect();
         inks.dedup();
         // One after another, and none again.
         assert_eq!(inks.len(), layers, "{format:?}");
+    }
+}
+
+/// The labels of the layers of a plot, held against what programs for plotters go by: layers lie at the
+/// top of the document, nothing else is drawn, and names begin with the number of the pen.
+fn top_level_layers(svg: &str) -> Vec<String> {
+    let inkscape = "http://www.inkscape.org/namespaces/inkscape";
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let groups: Vec<_> = document
+        .descendants()
+        .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "g")))
+        .collect();
+    let mut labels = Vec::new();
+    for (number, group) in (1..).zip(&groups) {
+        assert_eq!(group.parent(), Some(document.root_element()));
+        assert_eq!(group.attribute((inkscape, "groupmode")), Some("layer"));
+        assert_eq!(group.attribute("id"), Some(&*format!("layer{number}")));
+        let label = group.attribute((inkscape, "label")).unwrap();
+        assert!(label.starts_with(&format!("{number} #")), "{label}");
+        labels.push(label.to_owned());
+    }
+    let is_path = |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == "path";
+    let mut paths = document.descendants().filter(is_path);
+    assert!(paths.all(|path| groups.contains(&path.parent().unwrap())));
+    labels
+}
+
+#[test]
+fn pens_share_colours() {
+    let levy = library("levy");
+    let draw = |format, pens| {
+        draw(&levy, 9, |options| {
+            options.format = format;
+            options.plot = true;
+            options.style.color_by = ColorBy::Index;
+            options.pens = pens;
+        })
+    };
+    let at_most = |pens| Pens::AtMost(NonZero::new(pens).unwrap());
+    let (whole, _) = draw(Format::Dxf, Pens::Each);
+    let whole = whole.plotted.unwrap();
+    assert_eq!((whole.layers, whole.colours), (64, 64));
+    for (pens, layers) in [(Pens::Few, 1), (at_most(1), 1), (at_most(10), 10)] {
+        for format in FORMATS {
+            let (picture, bytes) = draw(format, pens);
+            let plotted = picture.plotted.unwrap();
+            assert_eq!((plotted.layers, plotted.colours), (layers, 64));
+            // All is drawn, with less to carry.
+            assert!((plotted.drawn - whole.drawn).abs() < 1e-6 * whole.drawn);
+            assert!(plotted.carried < whole.carried / 2.0);
+            let strokes = read(format, &bytes);
+            let mut inks: Vec<_> = strokes.iter().map(|it| it.ink.clone()).collect();
+            inks.dedup();
+            assert_eq!(inks.len() as u64, layers, "{format:?}");
+            match format {
+                Format::Svg => {
+                    let labels = top_level_layers(std::str::from_utf8(&bytes).unwrap());
+                    assert_eq!(labels.len() as u64, layers);
+                }
+                Format::Dxf => {
+                    let starts =
+                        |(number, ink): (u64, &String)| ink.starts_with(&format!("{number}_"));
+                    assert!((1..).zip(&inks).all(starts), "{inks:?}");
+                }
+                _ => {}
+            }
+        }
     }
 }
 

@@ -2,21 +2,21 @@
 //!
 //! A picture's paths are taken as strokes, outlines of what is filled too, and put in order: what
 //! lies on what has been drawn is left out, strokes whose ends meet become one, and the pen is carried
-//! over short ways. Every colour is a layer, a pen of its own; where two colours draw the same edge,
-//! the layer that is begun later has it, as on the picture it lies on top.
+//! over short ways. Every pen is a layer, of one colour or of several that are alike; where two pens
+//! draw the same edge, the layer that is begun later has it, as on the picture it lies on top.
 //!
 //! All of it is in memory: some hundred bytes an edge.
 
 mod clip;
 mod merge;
 mod order;
+mod pens;
 mod points;
 mod strokes;
 mod tree;
 mod unique;
 
 use std::io;
-use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::grow::WalkError;
@@ -24,21 +24,26 @@ use crate::parallel::{Team, with_team};
 use crate::style::Colour;
 
 use super::surface::{Paint, Pen, Position, Stroke, Surface};
-use super::{Drawing, RenderError, Unit};
+use super::{Drawing, Options, RenderError};
 use clip::{Window, flattened};
 use merge::merged;
 use order::{Order, Way};
+use pens::shared;
 use points::{Point, Points, vector};
 use strokes::{Strokes, is_closed};
 use unique::Unique;
+
+pub use pens::Pens;
 
 /// What a plot takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plotted {
     /// The number of strokes, one after each lift of the pen.
     pub strokes: u64,
-    /// The number of layers, one a colour.
+    /// The number of layers, one a pen.
     pub layers: u64,
+    /// The number of colours that share these pens.
+    pub colours: u64,
     /// How far the pen draws, in millimetres.
     pub drawn: f64,
     /// How far it is carried, in millimetres: in every layer from the upper left corner to the first
@@ -180,6 +185,27 @@ pub(super) struct Plot {
     pub(super) plotted: Plotted,
 }
 
+/// What pens draw of what colours draw.
+fn by_pen(layers: Vec<(Colour, Strokes)>, pens: Pens) -> Vec<(Colour, Strokes)> {
+    let colours: Vec<_> = layers
+        .iter()
+        .map(|(colour, strokes)| (*colour, strokes.mark() as u64))
+        .collect();
+    let mut layers: Vec<_> = layers.into_iter().map(|(_, strokes)| strokes).collect();
+    let shared = shared(&colours, pens).into_iter();
+    shared
+        .map(|(colour, members)| {
+            let mut members = members.into_iter();
+            let first = members.next().unwrap_or(0);
+            let mut all = std::mem::take(&mut layers[first]);
+            for member in members {
+                all.append(std::mem::take(&mut layers[member]));
+            }
+            (colour, all)
+        })
+        .collect()
+}
+
 /// What is drawn with one pen.
 struct Layer {
     colour: Colour,
@@ -191,10 +217,15 @@ impl Plot {
     /// A drawing as strokes.
     pub(super) fn of(
         drawing: &impl Drawing,
-        unit: Unit,
-        threads: NonZero<usize>,
+        options: &Options,
         cancel: Option<&AtomicBool>,
     ) -> Result<Self, RenderError> {
+        let Options {
+            unit,
+            threads,
+            pens,
+            ..
+        } = *options;
         let size = drawing.size();
         let Plotter { points, layers, .. } =
             with_team(threads, |team| -> Result<_, RenderError> {
@@ -215,6 +246,8 @@ impl Plot {
             layers: Vec::new(),
             plotted: Plotted::default(),
         };
+        plot.plotted.colours = layers.len() as u64;
+        let layers = by_pen(layers, pens);
         let places = plot.places.as_slice();
         let mut unique = Unique::new(places);
         // From the top down.

@@ -42,6 +42,13 @@ impl Strokes {
         self.points.truncate(mark);
     }
 
+    /// Adds what comes after these.
+    pub(super) fn append(&mut self, other: Self) {
+        let before = self.points.len();
+        self.points.extend(other.points);
+        self.ends.extend(other.ends.iter().map(|end| before + end));
+    }
+
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }
