@@ -14,7 +14,7 @@ use std::path::Path;
 use jsonschema::Validator;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::{Diagnostics, Source};
-use kfrac::document::{Document, schema};
+use kfrac::document::{Document, schema, schema_of_all};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -76,6 +76,48 @@ fn the_library_is_valid_and_leads_to_its_schema() {
         let (_, path) = modeline.split_once("$schema=").unwrap();
         let folder = Path::new("library").join(entry.shelf.folder());
         assert!(folder.join(path).is_file());
+    }
+}
+
+fn validator_of_all() -> Validator {
+    let schema = serde_json::from_str(&schema_of_all()).unwrap();
+    assert!(jsonschema::draft7::meta::is_valid(&schema));
+    jsonschema::draft7::new(&schema).unwrap()
+}
+
+/// Editors may be told to take one schema for every file of a folder.
+#[test]
+fn one_schema_holds_for_every_file() {
+    let all = validator_of_all();
+    let catalogue = Catalogue::embedded();
+    for entry in catalogue.entries() {
+        let source = catalogue.open(&entry).unwrap();
+        assert_valid(&all, source.name(), source.text());
+        // A key that is not known is underlined, and so is a value of another kind than a key holds.
+        let value = yaml(source.text()).unwrap();
+        let mut misspelt = value.clone();
+        misspelt["titel"] = json!("Koch curve");
+        let mut mistyped = value;
+        mistyped["tags"] = json!(7);
+        for wrong in [misspelt, mistyped] {
+            assert!(!all.is_valid(&wrong), "{wrong}");
+            assert!(!validator(entry.shelf).is_valid(&wrong), "{wrong}");
+        }
+    }
+    for right in ["[[0, 0], [1/2, 1/2], [1, 0]]", "extends: koch"] {
+        assert_valid(&all, right, right);
+    }
+    for wrong in [
+        "kind: lsytem",
+        "kind: [ifs]",
+        "kind: ifs",
+        "title: of nothing",
+        "elements: [[0, 0], [1, 0]]\nstpes: 3",
+        "elements: [[0, 0], [1, 0]]\ninitiator: segment",
+        "7",
+        "",
+    ] {
+        assert!(!all.is_valid(&yaml(wrong).unwrap()), "{wrong}");
     }
 }
 
@@ -242,8 +284,13 @@ fn the_schemas_and_the_reader_agree() {
         let source = Catalogue::embedded().component(shelf, name).unwrap();
         samples.push((shelf, yaml(source.text()).unwrap()));
     }
+    let all = validator_of_all();
     for (shelf, sample) in samples {
         let validator = validator(shelf);
+        let is_of_shelf = |value: &Value| match value.get("kind") {
+            Some(kind) => kind == shelf.kind(),
+            None => shelf == Shelf::Rules && value.get("initiator").is_some(),
+        };
         let said = read(shelf, &sample, library.path());
         assert!(
             validator.is_valid(&sample) && said.is_empty(),
@@ -251,6 +298,13 @@ fn the_schemas_and_the_reader_agree() {
         );
         for changed in changes(&sample, &keys) {
             let said = read(shelf, &changed, library.path());
+            if is_of_shelf(&changed) {
+                assert_eq!(
+                    all.is_valid(&changed),
+                    validator.is_valid(&changed),
+                    "{changed}"
+                );
+            }
             if validator.is_valid(&changed) {
                 assert!(!is_of_structure(&said.to_string()), "{said}{changed}");
             } else {

@@ -1,26 +1,29 @@
-//! `kfrac schema`: what editors want to know of rule files.
+//! `kfrac schema`: what editors want to know of files.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::catalogue::Shelf;
-use crate::document::schema;
+use crate::document::{schema, schema_of_all};
 
 use super::{Failure, help, output};
 
-/// Prints the JSON Schema of rule files, for editors
+/// Prints the JSON Schema of files, for editors
+///
+/// Without a kind it is one for all files that kfrac reads: what a file may say depends on its `kind`, and
+/// components are known by their keys.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// The kind of file
-    #[arg(value_name = "KIND", default_value = "rule", value_parser = kind())]
-    kind: Shelf,
+    /// The kind of file [default: all]
+    #[arg(value_name = "KIND", value_parser = kind())]
+    kind: Option<Shelf>,
 }
 
 const MORE: &str = "\
 Examples:
   kfrac schema > kfrac.schema.json
-      Writes the schema that an editor checks rule files with and completes them by; a first line \
-# yaml-language-server: $schema=kfrac.schema.json in a rule file names it
+      Writes the schema that an editor checks files with and completes them by; a first line \
+# yaml-language-server: $schema=kfrac.schema.json in a file names it
   kfrac schema generator > generator.schema.json
       Writes that of a generator in a file of its own
 ";
@@ -39,5 +42,9 @@ fn kind() -> impl TypedValueParser<Value = Shelf> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    Ok(output::print(&schema(arguments.kind))?)
+    let schema = match arguments.kind {
+        Some(kind) => schema(kind),
+        None => schema_of_all(),
+    };
+    Ok(output::print(&schema)?)
 }

@@ -38,7 +38,7 @@ pub use rule::{
     PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
 };
 
-pub use schema::schema;
+pub use schema::{schema, schema_of_all};
 
 use std::sync::Arc;
 

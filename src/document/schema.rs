@@ -6,6 +6,7 @@
 //! reason nothing has a title.
 
 mod json;
+mod switch;
 
 use crate::catalogue::{Catalogue, Shelf};
 
@@ -41,7 +42,32 @@ const BASE_ELEMENT_FILE: Shape = Shape {
 /// left to reading. The names of the embedded library are there to be offered.
 #[must_use]
 pub fn schema(shelf: Shelf) -> String {
+    let schema = Object::default().with("$schema", DRAFT);
+    schema.and(body(shelf, "#")).to_text()
+}
+
+/// The JSON Schema (draft 7) of files of every kind, as text: that of a file's `kind` holds, and that of a
+/// component where a file has no `kind` and the keys of one.
+#[must_use]
+pub fn schema_of_all() -> String {
+    let schema = Object::default()
+        .with("$schema", DRAFT)
+        .with(
+            "description",
+            "A file of kfrac: a rule, a system, a structure, an L-system, or a component of rules.",
+        )
+        .and(switch::by_kind());
+    let bodies = Shelf::ALL.map(|shelf| {
+        let at = format!("#{}", switch::place(shelf));
+        (shelf.kind().to_owned(), body(shelf, &at).into())
+    });
+    schema.with("definitions", Object(bodies.into())).to_text()
+}
+
+/// What the schema of a kind of file says, at a place of a document.
+fn body(shelf: Shelf, at: &str) -> Object {
     let mut definitions = Definitions {
+        at: at.into(),
         alone: !Shelf::grown().contains(&shelf),
         named: Vec::new(),
     };
@@ -75,16 +101,16 @@ pub fn schema(shelf: Shelf) -> String {
             definitions.mapping(&BASE_ELEMENT_FILE),
         ),
     };
-    let schema = Object::default()
-        .with("$schema", DRAFT)
+    Object::default()
         .with("description", about)
         .and(body)
-        .with("definitions", Object(definitions.named));
-    schema.to_text()
+        .with("definitions", Object(definitions.named))
 }
 
 /// What a schema refers to by name, in the order of first use.
 struct Definitions {
+    /// Where in the document the schema stands.
+    at: String,
     named: Vec<(String, Json)>,
     /// Whether the file extends no other, so that nothing can be left to that.
     alone: bool,
@@ -193,7 +219,7 @@ impl Definitions {
             let definition = make(self);
             self.named.push((name.into(), definition.into()));
         }
-        Object::default().with("$ref", format!("#/definitions/{name}"))
+        Object::default().with("$ref", format!("{}/definitions/{name}", self.at))
     }
 }
 
