@@ -52,6 +52,9 @@ impl Shelf {
         Kind::ALL.map(Self::of)
     }
 
+    /// The shelves of components, in the order in which names are looked up.
+    pub const COMPONENTS: [Self; 3] = [Self::Initiators, Self::Generators, Self::BaseElements];
+
     /// All shelves, in the order in which they are listed.
     pub const ALL: [Self; 7] = [
         Self::Rules,
@@ -124,6 +127,21 @@ pub struct Entry {
     pub path: Option<PathBuf>,
 }
 
+impl Entry {
+    /// Why a component is not what a rule is.
+    fn refusal(&self) -> Diagnostic {
+        let Self { name, shelf, .. } = self;
+        let (noun, kind, folder) = (shelf.noun(), shelf.kind(), shelf.folder());
+        let article = if noun.starts_with('i') { "an" } else { "a" };
+        let message =
+            format!("'{name}' is {article} {noun}: a component of rules, and none itself");
+        Diagnostic::error(message).hint(format!(
+            "a rule uses it as `{kind}: {name}`; `kfrac show {folder}/{name}` draws it, `kfrac cat \
+             {folder}/{name}` prints it"
+        ))
+    }
+}
+
 /// The places in which rules and components are looked for, the first one first.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
@@ -160,11 +178,34 @@ impl Catalogue {
             }
             _ => {}
         }
+        if let Some(component) = self.component_named(path) {
+            return Err(component.refusal());
+        }
+        if let Some((shelf, name)) = on_shelf(&Shelf::grown(), &name) {
+            return self.named(&[shelf], name);
+        }
         let looks_like_path = name.contains(['/', '\\']);
         if looks_like_path {
             return Err(Diagnostic::error(format!("there is no file '{name}'")));
         }
         self.named(&Shelf::grown(), &name)
+    }
+
+    /// The component of a name that no file and nothing has that can be grown, or of one that names
+    /// its folder too: `generators/koch` is the generator, where `koch` is the rule.
+    #[must_use]
+    pub fn component_named(&self, argument: impl AsRef<Path>) -> Option<Entry> {
+        let path = argument.as_ref();
+        let name = path.to_string_lossy();
+        if fs::metadata(path).is_ok_and(|metadata| !metadata.is_dir()) {
+            return None;
+        }
+        let candidates = match on_shelf(&Shelf::COMPONENTS, &name) {
+            Some((shelf, name)) => self.candidates(&[shelf], name),
+            None if !self.candidates(&Shelf::grown(), &name).is_empty() => return None,
+            None => self.candidates(&Shelf::COMPONENTS, &name),
+        };
+        candidates.into_iter().next()
     }
 
     /// The rule that the last one of a chain extends: a file beside it or by path, or a rule by name.
@@ -320,6 +361,13 @@ impl Catalogue {
         }
         entries.into_values().collect()
     }
+}
+
+/// The shelf, of some, and the name in `FOLDER/NAME`.
+fn on_shelf<'n>(shelves: &[Shelf], name: &'n str) -> Option<(Shelf, &'n str)> {
+    let (folder, name) = name.split_once('/')?;
+    let shelf = shelves.iter().find(|shelf| shelf.folder() == folder)?;
+    Some((*shelf, name))
 }
 
 /// The embedded files of a shelf.

@@ -372,6 +372,92 @@ fn the_library_is_listed_with_rules_and_components() {
     assert!(dragons.contains("terdragon") && !dragons.contains("koch"));
 }
 
+/// What is listed can be looked at, and what cannot be grown says what it is.
+#[test]
+fn components_are_shown_and_printed() {
+    const COMPONENTS: [&str; 3] = ["initiator", "generator", "base_element"];
+    let folder = tempfile::tempdir().unwrap();
+    let listed = stdout(&run(folder.path(), &["list", "--json"]).success());
+    let listed: Vec<serde_json::Value> = serde_json::from_str(&listed).unwrap();
+    let mut components = 0;
+    for entry in &listed {
+        let [name, kind] = ["name", "kind"].map(|key| entry[key].as_str().unwrap());
+        let shelf = match kind {
+            "initiator" => "initiators",
+            "generator" => "generators",
+            "base_element" => "base_elements",
+            _ => continue,
+        };
+        components += 1;
+        let file = fs::read_to_string(format!("library/{shelf}/{name}.yaml")).unwrap();
+        let (_, file) = file.split_once('\n').unwrap();
+        let has_rule = listed.iter().any(|other| {
+            other["name"] == *name && !COMPONENTS.contains(&other["kind"].as_str().unwrap())
+        });
+        let long = format!("{shelf}/{name}");
+        assert_eq!(stdout(&run(folder.path(), &["cat", &long]).success()), file);
+        // The first of a name is meant, where no rule has it.
+        let short = stdout(&run(folder.path(), &["cat", name]).success());
+        let same = COMPONENTS.iter().find(|kind| {
+            listed
+                .iter()
+                .any(|other| other["name"] == *name && other["kind"] == **kind)
+        });
+        if !has_rule && same == Some(&kind) {
+            assert_eq!(short, file, "{name}");
+        }
+        // Refused, with what it is for.
+        let grown = run(folder.path(), &["grow", &long]).code(1);
+        let said = String::from_utf8(grown.get_output().stderr.clone()).unwrap();
+        let noun = kind.replace('_', " ");
+        assert!(said.contains(&format!("'{name}' is a")), "{said}");
+        assert!(
+            said.contains(&format!("{noun}: a component of rules")),
+            "{said}"
+        );
+        assert!(said.contains(&format!("`{kind}: {name}`")), "{said}");
+    }
+    assert_eq!(components, 42);
+    run(
+        folder.path(),
+        &["check", "swaying-roof", "leaf", "generators/koch"],
+    )
+    .success();
+    for (component, file, texts) in [
+        (
+            "generators/koch",
+            "koch-generator.svg",
+            ["generator", "fertile"],
+        ),
+        (
+            "six-ways",
+            "six-ways-initiator.svg",
+            ["initiator", "fertile"],
+        ),
+        (
+            "leaf",
+            "leaf-base-element.svg",
+            ["base element", "the element that is drawn so"],
+        ),
+    ] {
+        run(folder.path(), &["show", component]).success();
+        let svg = fs::read_to_string(folder.path().join(file)).unwrap();
+        for heading in COMPONENTS.map(|kind| kind.replace('_', " ")) {
+            let label = format!("aria-label=\"{heading}\"");
+            assert_eq!(
+                svg.contains(&label),
+                heading == texts[0],
+                "{component}: {heading}"
+            );
+        }
+        assert!(svg.contains(texts[1]), "{component}");
+    }
+    let set = ["show", "swaying-roof", "--set", "sway=40", "-o", "roof.png"];
+    run(folder.path(), &set).success();
+    // Parameters of no component are refused as those of no rule are.
+    run(folder.path(), &["show", "swaying-roof", "--set", "sawy=40"]).code(2);
+}
+
 #[test]
 fn schemas_are_printed() {
     let folder = tempfile::tempdir().unwrap();

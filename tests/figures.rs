@@ -36,7 +36,9 @@ fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, 
     };
     let mut bytes = Vec::new();
     let size = match &model {
-        Model::Rule(rule) => rule::write(rule, document.rule().unwrap(), &options, &mut bytes),
+        Model::Rule(rule) => {
+            rule::write(rule, document.rule().unwrap(), None, &options, &mut bytes)
+        }
         Model::Ifs(system) => rule::write_system(system, &options, &mut bytes),
         Model::Instancing(structure) => rule::write_structure(structure, &options, &mut bytes),
         Model::LSystem(_) => panic!("there are no figures of L-systems"),

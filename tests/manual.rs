@@ -150,7 +150,8 @@ fn shells_learn_commands_options_and_rules() {
         );
     }
     let zsh = printed(&["completions", "zsh"]);
-    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 11);
+    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 8);
+    assert_eq!(zsh.matches(":_kfrac_components' \\").count(), 3);
 }
 
 #[cfg(target_os = "linux")]
@@ -164,7 +165,13 @@ fn bash_completes() {
         ("kfrac grow pythagoras-3", "pythagoras-30 pythagoras-345"),
         ("kfrac grow koch --palette vi", "viridis"),
         ("kfrac grow koch --cap ''", "round butt square"),
-        ("kfrac check hilbert-", "hilbert-lsystem"),
+        ("kfrac check hilbert-", "hilbert-lsystem hilbert-cup"),
+        ("kfrac cat swaying-", "swaying-roof"),
+        (
+            "kfrac show generators/ko",
+            "generators/koch generators/koch-quadratic",
+        ),
+        ("kfrac grow swaying-", ""),
         ("kfrac man compl", "completions"),
         ("kfrac grow no-such-rule", ""),
     ] {

@@ -8,6 +8,7 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::Document;
 
+use super::component::Component;
 use super::{Failure, help, output, rule, text};
 
 /// Says everything that is wrong with rule files
@@ -16,7 +17,7 @@ use super::{Failure, help, output, rule, text};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Rule files, names of rules in the library, or - for standard input
+    /// Rule files, names of rules and components in the library, or - for standard input
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// As JSON
@@ -80,7 +81,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
-    let source = rule::open(file, catalogue)?;
+    let source = match Component::find(file, catalogue)? {
+        Some(component) => component.in_a_rule(),
+        None => rule::open(file, catalogue)?,
+    };
     let document = Document::read(&source, catalogue)?;
     let (model, mut diagnostics) = document.resolve(&[])?;
     let steps = model.heading().steps.unwrap_or(1).min(16);

@@ -6,14 +6,14 @@ use clap::Command;
 use clap::builder::PossibleValuesParser;
 use clap_complete::{Shell, generate};
 
-use crate::catalogue::{Catalogue, Shelf};
+use crate::catalogue::{Catalogue, Entry, Shelf};
 
 use super::{Failure, help, output};
 
 /// Prints a script that completes command lines of kfrac
 ///
-/// The script knows commands, options, their values, and the rules that the library has when it is
-/// made (bash, fish, zsh).
+/// The script knows commands, options, their values, and the rules and components that the library has
+/// when it is made (bash, fish, zsh).
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -49,41 +49,72 @@ const OF_RULES: [(&str, &str); 11] = [
     ("compare", "b"),
 ];
 
+/// Those of them that take a component as well.
+const OF_COMPONENTS: [&str; 3] = ["show", "cat", "check"];
+
+/// The names that a library has.
+#[derive(Default)]
+struct Names {
+    rules: Vec<String>,
+    /// Those of components that no rule has, and those with their folders that a rule has.
+    components: Vec<String>,
+}
+
+impl Names {
+    fn of(catalogue: &Catalogue) -> Self {
+        // A script is no place for names that a shell would take apart.
+        let is_word = |name: &str| {
+            name.chars()
+                .all(|c| c.is_alphanumeric() || "-_.".contains(c))
+        };
+        let mut names = Self::default();
+        for Entry { name, shelf, .. } in catalogue.entries() {
+            if !is_word(&name) {
+                continue;
+            }
+            if Shelf::grown().contains(&shelf) {
+                names.rules.push(name);
+                continue;
+            }
+            let found = catalogue.component_named(&name);
+            names.components.push(match found {
+                Some(found) if found.shelf == shelf => name,
+                _ => format!("{}/{name}", shelf.folder()),
+            });
+        }
+        names
+    }
+
+    fn for_command(&self, command: &str) -> Vec<String> {
+        let components = OF_COMPONENTS.contains(&command).then_some(&self.components);
+        let all = self.rules.iter().chain(components.into_iter().flatten());
+        all.cloned().collect()
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
-    let entries = catalogue.entries();
-    let rules = entries
-        .iter()
-        .filter(|entry| Shelf::grown().contains(&entry.shelf));
-    // A script is no place for names that a shell would take apart.
-    let is_word = |name: &str| {
-        name.chars()
-            .all(|c| c.is_alphanumeric() || "-_.".contains(c))
-    };
-    let rules: Vec<_> = rules
-        .map(|entry| entry.name.clone())
-        .filter(|name| is_word(name))
-        .collect();
+    let names = Names::of(catalogue);
     let script = match arguments.shell {
         // Where no rule matches, bash goes on to files.
-        Shell::Bash => script(Shell::Bash, &rules),
-        Shell::Fish => with_rules_for_fish(script(Shell::Fish, &[]), &rules.join(" ")),
-        Shell::Zsh => with_rules_for_zsh(&script(Shell::Zsh, &[]), &rules.join(" ")),
-        other => script(other, &[]),
+        Shell::Bash => script(Shell::Bash, Some(&names)),
+        Shell::Fish => with_rules_for_fish(script(Shell::Fish, None), &names),
+        Shell::Zsh => with_rules_for_zsh(&script(Shell::Zsh, None), &names),
+        other => script(other, None),
     };
     Ok(output::print(&script)?)
 }
 
 /// The script for a shell that completes these rules and nothing else where a rule is wanted, or,
 /// where there are none, files.
-fn script(shell: Shell, rules: &[String]) -> String {
+fn script(shell: Shell, names: Option<&Names>) -> String {
     let command = super::command();
-    let names = command
+    let commands = command
         .get_subcommands()
         .map(|sub| sub.get_name().to_owned());
-    let mut command = with_values(command.clone(), "man", "command", names.collect());
-    if !rules.is_empty() {
+    let mut command = with_values(command.clone(), "man", "command", commands.collect());
+    if let Some(names) = names {
         for (name, argument) in OF_RULES {
-            command = with_values(command, name, argument, rules.to_vec());
+            command = with_values(command, name, argument, names.for_command(name));
         }
     }
     let mut script = Vec::new();
@@ -99,10 +130,11 @@ fn with_values(command: Command, name: &str, argument: &str, values: Vec<String>
 }
 
 /// With rules beside files.
-fn with_rules_for_fish(mut script: String, rules: &str) -> String {
+fn with_rules_for_fish(mut script: String, names: &Names) -> String {
     let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
     commands.dedup();
     for command in commands {
+        let rules = names.for_command(command).join(" ");
         // Writing to a string does not fail.
         let _ = writeln!(
             script,
@@ -112,21 +144,34 @@ fn with_rules_for_fish(mut script: String, rules: &str) -> String {
     script
 }
 
-/// With rules beside files: by a function, before the lines that start the completion.
-fn with_rules_for_zsh(script: &str, rules: &str) -> String {
+/// With rules beside files: by functions, before the lines that start the completion.
+fn with_rules_for_zsh(script: &str, names: &Names) -> String {
     let mut with_rules = String::new();
+    // The command whose arguments are listed.
+    let mut command = "";
     for line in script.lines() {
         if line.starts_with("if [ \"$funcstack[1]\"") {
-            let _ = write!(
-                with_rules,
-                "(( $+functions[_kfrac_rules] )) ||\n_kfrac_rules() {{\n    \
-                 _alternative 'rules:rule:({rules})' 'files:file:_files'\n}}\n\n"
-            );
+            for (function, command) in [(RULES, "grow"), (COMPONENTS, "cat")] {
+                let rules = names.for_command(command).join(" ");
+                let _ = write!(
+                    with_rules,
+                    "(( $+functions[{function}] )) ||\n{function}() {{\n    \
+                     _alternative 'rules:rule:({rules})' 'files:file:_files'\n}}\n\n"
+                );
+            }
+        }
+        let is_case = line.starts_with('(') && line.ends_with(')');
+        if is_case {
+            command = line.trim_matches(['(', ')']);
         }
         let rules = OF_RULES.map(|(_, argument)| format!(":{argument} -- "));
         let wants_rule = rules.iter().any(|rule| line.contains(rule));
+        let function = match OF_COMPONENTS.contains(&command) {
+            true => COMPONENTS,
+            false => RULES,
+        };
         let line = match line.strip_suffix(r":_files' \") {
-            Some(start) if wants_rule => format!(r"{start}:_kfrac_rules' \"),
+            Some(start) if wants_rule => format!(r"{start}:{function}' \"),
             _ => line.to_owned(),
         };
         with_rules.push_str(&line);
@@ -134,3 +179,7 @@ fn with_rules_for_zsh(script: &str, rules: &str) -> String {
     }
     with_rules
 }
+
+/// The functions of zsh that complete rules, and rules and components.
+const RULES: &str = "_kfrac_rules";
+const COMPONENTS: &str = "_kfrac_components";

@@ -5,6 +5,7 @@ mod chaos;
 mod check;
 mod compare;
 mod completions;
+mod component;
 mod convert;
 mod count;
 mod dim;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueHint;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, Shelf};
 use crate::document::KindDocument;
 use crate::figure::rule;
 use crate::model::Model;
@@ -12,6 +12,7 @@ use crate::render::{self, RenderError, Size};
 use crate::style::{Colour, Named};
 use crate::wording;
 
+use super::component::Component;
 use super::labels::labels;
 use super::picture;
 use super::rule::{Loaded, RuleArguments};
@@ -19,7 +20,7 @@ use super::{Failure, format, help, length, output, text};
 
 /// Draws a production rule as a figure: initiator, generators, base element
 ///
-/// Fertile sides have an asterisk, directions their number; selection and random functions are put
+/// A component of the library is drawn alone. Fertile sides have an asterisk, directions their number; selection and random functions are put
 /// into words (in the manner of Kaandorp 1987, figures 1 to 13).
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
@@ -49,11 +50,23 @@ Examples:
       Draws the rule of the dragon sweep, into dragon-rule.svg
   kfrac show pythagoras --set angle=30 --background white -o rule.png
       Draws a rule with a parameter of one's own, as pixels on white
+  kfrac show generators/dragon
+      Draws the generator alone, into dragon-generator.svg
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
-    let loaded = arguments.rule.load(catalogue, arguments.quiet)?;
+    let component = Component::find(&arguments.rule.rule, catalogue)?;
+    let loaded = match &component {
+        Some(component) => {
+            let rule = component.in_a_rule();
+            arguments
+                .rule
+                .load_from(&rule, catalogue, arguments.quiet)?
+        }
+        None => arguments.rule.load(catalogue, arguments.quiet)?,
+    };
+    let alone = component.as_ref().map(Component::shelf);
     if let Model::LSystem(_) = loaded.model {
         let name = &loaded.name;
         let message = format!(
@@ -62,13 +75,16 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         );
         return Err(anyhow::anyhow!(message).into());
     }
-    let default = arguments.rule.file("-rule", format.name());
+    let suffix = alone.map_or("-rule".into(), |shelf| {
+        format!("-{}", shelf.kind().replace('_', "-"))
+    });
+    let default = arguments.rule.file(&suffix, format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let options = arguments.options(&loaded, format);
+    let options = arguments.options(&loaded, alone, format);
     let ([width, height], bytes) = output::write(path, arguments.quiet, |out, _| {
         let written = match (&loaded.model, loaded.document.kind()) {
             (Model::Rule(rule), KindDocument::Rule(document)) => {
-                rule::write(rule, document, &options, out)
+                rule::write(rule, document, alone, &options, out)
             }
             (Model::Ifs(system), _) => rule::write_system(system, &options, out),
             (Model::Instancing(structure), _) => rule::write_structure(structure, &options, out),
@@ -85,7 +101,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         text::say(&format!(
             "{}: the {} of {}, {width} x {height} pixels, {}",
             output::called(path),
-            noun(&loaded.model),
+            alone.map_or_else(|| noun(&loaded.model), Shelf::noun),
             loaded.name,
             wording::bytes(bytes),
         ));
@@ -94,7 +110,16 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
-    fn options(&self, loaded: &Loaded, format: render::Format) -> rule::Options {
+    fn options(
+        &self,
+        loaded: &Loaded,
+        alone: Option<Shelf>,
+        format: render::Format,
+    ) -> rule::Options {
+        let shown = match alone {
+            Some(shelf) => format!("The {}", shelf.noun()),
+            None => shown(&loaded.model).into(),
+        };
         let mut options = Vec::new();
         if format != render::Format::Svg {
             options.push(("format", format.name().into()));
@@ -106,7 +131,7 @@ impl Arguments {
             format,
             size: self.size,
             background: self.background,
-            labels: labels(loaded, shown(&loaded.model), "show", options),
+            labels: labels(loaded, &shown, "show", options),
         }
     }
 }

@@ -20,6 +20,7 @@ mod words;
 use std::io::Write;
 use std::num::NonZero;
 
+use crate::catalogue::Shelf;
 use crate::document::RuleDocument;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::parallel::Team;
@@ -62,7 +63,8 @@ impl Default for Options {
 
 /// Draws a rule and writes the figure; tells its width and height in pixels.
 ///
-/// `document` is what `rule` was resolved from: expressions are shown as they are written.
+/// `document` is what `rule` was resolved from: expressions are shown as they are written. All of the rule
+/// is shown, or the components of one shelf alone.
 ///
 /// # Errors
 ///
@@ -70,10 +72,11 @@ impl Default for Options {
 pub fn write(
     rule: &Rule,
     document: &RuleDocument,
+    alone: Option<Shelf>,
     options: &Options,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
-    let page = page::page(rule, document, &options.labels.title);
+    let page = page::page(rule, document, alone, &options.labels.title);
     Figure::write(page, options, out)
 }
 

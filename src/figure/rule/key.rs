@@ -1,5 +1,6 @@
 //! What is drawn, explained: samples of the lines, and notes.
 
+use crate::catalogue::Shelf;
 use crate::geometry::{DVec2, Direction};
 use crate::rule::Rule;
 
@@ -10,14 +11,17 @@ use super::page::SMALL;
 use super::panel::MOST_MARKS;
 use super::{marks, words};
 
-/// Samples of the lines that occur, each with what it means.
-pub(super) fn key(rule: &Rule, font: &Font, width: f64) -> Block {
+/// Samples of the lines that occur, each with what it means; of all components, or of one shelf's alone.
+pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) -> Block {
     let (from, to) = (DVec2::new(1.0, 8.0), DVec2::new(31.0, 8.0));
     let line = || vec![Outline::line(from, to)];
     let mut entries: Vec<(Vec<Item>, &str)> = Vec::new();
+    let is_shown = |shelf| alone.is_none_or(|alone| alone == shelf);
     let lists = || {
-        let generators = rule.generators().iter().flat_map(|it| it.parts());
-        generators.chain([rule.initiator()])
+        let shown = is_shown(Shelf::Generators);
+        let generators = rule.generators().iter().filter(move |_| shown);
+        let initiator = is_shown(Shelf::Initiators).then(|| rule.initiator());
+        generators.flat_map(|it| it.parts()).chain(initiator)
     };
     let has = |kind: Kind| {
         lists().any(|part| {
@@ -49,7 +53,11 @@ pub(super) fn key(rule: &Rule, font: &Font, width: f64) -> Block {
     let side = Item::Path(line(), ink::side(), None);
     let rings = [from, to].map(|end| Outline::circle(end, 3.0));
     let ends = Item::Path(rings.into(), ink::side_end(), None);
-    entries.push((vec![side, ends], "the side that is replaced"));
+    if is_shown(Shelf::Generators) {
+        entries.push((vec![side, ends], "the side that is replaced"));
+    } else if is_shown(Shelf::BaseElements) {
+        entries.push((vec![side, ends], "the element that is drawn so"));
+    }
     let blocks = entries.into_iter().map(|(items, meaning)| {
         let sample = Block {
             size: DVec2::new(34.0, 16.0),

@@ -1,5 +1,6 @@
 //! The page: title, three components side by side, and a key to what is drawn.
 
+use crate::catalogue::Shelf;
 use crate::document::RuleDocument;
 use crate::geometry::DVec2;
 use crate::rule::Rule;
@@ -24,8 +25,13 @@ const LEAST_COLUMN: f64 = 96.0;
 /// Texts longer than this are cut.
 const MOST_CHARACTERS: usize = 600;
 
-/// Lays a rule out, under a title.
-pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
+/// Lays a rule out, or the components of one shelf alone, under a title.
+pub(super) fn page(
+    rule: &Rule,
+    document: &RuleDocument,
+    alone: Option<Shelf>,
+    title: &str,
+) -> Block {
     let lists = rule.generators().iter().map(|generator| generator.parts());
     let mut lists = lists.chain([std::slice::from_ref(rule.initiator())]);
     let common = Common {
@@ -36,19 +42,21 @@ pub(super) fn page(rule: &Rule, document: &RuleDocument, title: &str) -> Block {
     };
     let font = &common.font;
     let (generators, bases) = (rule.generators().len(), rule.base_elements().len());
-    let columns = vec![
-        ("initiator", components::initiator(rule, &common)),
-        (
-            plural(generators, "generator", "generators"),
-            components::generators(rule, document, &common),
-        ),
-        (
-            plural(bases, "base element", "base elements"),
-            components::base_elements(&common),
-        ),
-    ];
+    let is_shown = |shelf| alone.is_none_or(|alone| alone == shelf);
+    let mut columns = Vec::new();
+    if is_shown(Shelf::Initiators) {
+        columns.push(("initiator", components::initiator(rule, &common)));
+    }
+    if is_shown(Shelf::Generators) {
+        let heading = plural(generators, "generator", "generators");
+        columns.push((heading, components::generators(rule, document, &common)));
+    }
+    if is_shown(Shelf::BaseElements) {
+        let heading = plural(bases, "base element", "base elements");
+        columns.push((heading, components::base_elements(&common)));
+    }
     let source = rule.description().source.as_deref().unwrap_or_default();
-    let key = |width| key::key(rule, font, width);
+    let key = |width| key::key(rule, alone, font, width);
     lay_out(font, columns, [title, source], key, &key::notes(rule))
 }
 
