@@ -91,6 +91,10 @@ pub enum ActionDocument {
     Glide(Option<Number>),
     /// Turns by so many degrees.
     Turn(Number),
+    /// The same, also where it is mirrored.
+    Rotate(Number),
+    /// Exchanges its heading with the second one.
+    Swap,
     /// Saves its state.
     Push,
     /// Takes it back.

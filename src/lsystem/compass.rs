@@ -122,7 +122,7 @@ impl Compass {
 fn angles(system: &LSystem) -> impl Iterator<Item = Option<f64>> {
     let turns = |symbol: &'_ Symbol| {
         let turns = symbol.meaning.iter().filter_map(|action| match action {
-            Action::Turn(program) => Some(program.clone()),
+            Action::Turn(program) | Action::Rotate(program) => Some(program.clone()),
             _ => None,
         });
         turns.collect::<Vec<_>>()

@@ -16,7 +16,8 @@
 //! Its state is a place, an exact [heading](Compass), whether it is mirrored, the scale of its
 //! steps, a factor of widths and an index of colours. It starts at the origin in the start heading with
 //! scale 1, width 1 and colour 0. y points up; positive angles are counter-clockwise, or clockwise where it
-//! is mirrored. The state is what brackets save and restore.
+//! is mirrored. The state is what brackets save and restore. A second heading, which starts as the first one does,
+//! is part of it; nothing goes by it until both are exchanged.
 //!
 //! # What is guaranteed
 //!
@@ -81,6 +82,10 @@ pub enum Action {
     Glide(Program),
     /// Turns by so many degrees.
     Turn(Program),
+    /// Turns by so many degrees counter-clockwise, also where it is mirrored.
+    Rotate(Program),
+    /// Exchanges its heading with the second one.
+    Swap,
     /// Saves its state: an opening bracket.
     Push,
     /// Takes back the state that was saved last: a closing bracket.
@@ -224,6 +229,13 @@ impl LSystem {
     pub fn is_parametric(&self) -> bool {
         let mut symbols = self.symbols.iter();
         symbols.any(|symbol| symbol.arity > 0 && !symbol.productions.is_empty())
+    }
+
+    /// Whether what a word draws depends on more of the turtle than where it stands: on a second heading,
+    /// or on whether it is mirrored where turns are not.
+    pub(crate) fn depends_on_the_way(&self) -> bool {
+        let mut actions = self.symbols.iter().flat_map(|symbol| &symbol.meaning);
+        actions.any(|action| matches!(action, Action::Swap | Action::Rotate(_)))
     }
 
     /// Whether the turtle's colour ever changes.

@@ -93,17 +93,38 @@ impl LSystem {
         Ok(word)
     }
 
-    /// The deepest step, up to a number, whose word has no more than so many elements; 0 if none has.
+    /// The deepest step, up to a number, whose word has no more than so many elements, of those that draw
+    /// something; if none of them does, the first one that draws, as far as that can be told without rewriting;
+    /// 0 if there is none.
     #[must_use]
     pub fn deepest(&self, steps: u32, most_elements: u64) -> u32 {
-        match self.word(steps, 0, most_elements) {
-            Ok(_) => steps,
-            Err(
-                RewriteError::TooLong { step, .. }
-                | RewriteError::TooMuchWork { step }
-                | RewriteError::NotFinite { step, .. },
-            ) => step.saturating_sub(1),
+        let word = |steps| self.word(steps, 0, most_elements);
+        let (mut deepest, mut last) = (steps, word(steps));
+        if let Err(
+            RewriteError::TooLong { step, .. }
+            | RewriteError::TooMuchWork { step }
+            | RewriteError::NotFinite { step, .. },
+        ) = &last
+        {
+            deepest = step.saturating_sub(1);
+            last = word(deepest);
         }
+        for step in (0..=deepest).rev() {
+            if step < deepest {
+                last = word(step);
+            }
+            if last.as_ref().is_ok_and(|word| word.draws(self)) {
+                return step;
+            }
+        }
+        let first = self.lengths().and_then(|mut lengths| {
+            (0..=steps).find(|_| {
+                let draws = lengths.count().1 > 0;
+                lengths.advance();
+                draws
+            })
+        });
+        first.unwrap_or(deepest)
     }
 
     /// The first of the steps whose word is too long, as far as that can be told without rewriting.

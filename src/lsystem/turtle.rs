@@ -40,6 +40,8 @@ pub struct Drawing {
 struct State {
     place: DVec2,
     heading: u64,
+    /// The second heading.
+    other: u64,
     mirrored: bool,
     /// The length of a step.
     step: f64,
@@ -112,12 +114,14 @@ impl LSystem {
 impl<'s> Turtle<'s> {
     pub(crate) fn new(system: &'s LSystem) -> Self {
         let compass = Compass::of(system);
+        let heading = compass.of_degrees(system.start);
         Self {
             system,
             compass,
             state: State {
                 place: DVec2::ZERO,
-                heading: compass.of_degrees(system.start),
+                heading,
+                other: heading,
                 mirrored: false,
                 step: system.length,
                 width: 1.0,
@@ -171,6 +175,11 @@ impl<'s> Turtle<'s> {
                 };
                 state.heading = self.compass.sum(state.heading, turn);
             }
+            Action::Rotate(angle) => {
+                let turn = self.compass.of_degrees(angle.eval(arguments));
+                state.heading = self.compass.sum(state.heading, turn);
+            }
+            Action::Swap => std::mem::swap(&mut state.heading, &mut state.other),
             Action::Push => self.saved.push(*state),
             Action::Pop => {
                 // Words are balanced.
@@ -266,7 +275,8 @@ impl<'s> Turtle<'s> {
         let number = self.drawing.polygons.len();
         let mut made = number;
         // Where brackets end that it did not begin with, more than its own modules decides.
-        if self.open.is_empty() && open.least_depth == open.depth {
+        let is_told = open.least_depth == open.depth && !self.system.depends_on_the_way();
+        if self.open.is_empty() && is_told {
             self.remember(symbol, arguments);
             made = *self.known.entry(self.inside.clone()).or_insert(number);
         }

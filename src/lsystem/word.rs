@@ -54,6 +54,12 @@ impl Word {
         })
     }
 
+    /// Whether the turtle may draw something of it.
+    pub(super) fn draws(&self, system: &LSystem) -> bool {
+        let mut modules = self.modules(system);
+        modules.any(|(symbol, _)| system.symbols[symbol].draws() > 0)
+    }
+
     /// The word as text: `F[+A(1, 0.5)]`.
     #[must_use]
     pub fn to_text(&self, system: &LSystem) -> String {

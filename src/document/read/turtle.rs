@@ -8,8 +8,8 @@ use crate::document::shape::{Form, Shape, key};
 use super::word::{Text, Words};
 
 /// An action by its name alone.
-const WORDS: [&str; 10] = [
-    "draw", "move", "glide", "push", "pop", "reflect", "open", "close", "vertex", "nothing",
+const WORDS: [&str; 11] = [
+    "draw", "move", "glide", "push", "pop", "reflect", "swap", "open", "close", "vertex", "nothing",
 ];
 
 /// An action, or several.
@@ -35,6 +35,11 @@ const ACTION: Shape = Shape {
             "turn",
             Form::Number,
             "Turns by so many degrees, counter-clockwise.",
+        ),
+        key(
+            "rotate",
+            Form::Number,
+            "Turns by so many degrees, counter-clockwise also where turns are reflected.",
         ),
         key(
             "scale",
@@ -103,6 +108,7 @@ fn read_action(words: &mut Words<'_>, node: &Node, actions: &mut Vec<ActionDocum
                 "move" => ActionDocument::Move(Some(number)),
                 "glide" => ActionDocument::Glide(Some(number)),
                 "turn" => ActionDocument::Turn(number),
+                "rotate" => ActionDocument::Rotate(number),
                 "scale" => ActionDocument::Scale(number),
                 "width" => ActionDocument::Width(number),
                 "set_width" => ActionDocument::SetWidth(number),
@@ -119,6 +125,7 @@ fn read_action(words: &mut Words<'_>, node: &Node, actions: &mut Vec<ActionDocum
         "push" => ActionDocument::Push,
         "pop" => ActionDocument::Pop,
         "reflect" => ActionDocument::Reflect,
+        "swap" => ActionDocument::Swap,
         "open" => ActionDocument::Open,
         "close" => ActionDocument::Close,
         "vertex" => ActionDocument::Vertex,

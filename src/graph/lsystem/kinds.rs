@@ -51,7 +51,7 @@ struct Finder<'s> {
 
 impl Kinds {
     pub(super) fn of(system: &LSystem, steps: u32, most: usize) -> Result<Self, NotCompiled> {
-        if !system.is_context_free() {
+        if !system.is_context_free() || system.depends_on_the_way() {
             return Err(NotCompiled);
         }
         let mut finder = Finder {

@@ -260,6 +260,8 @@ impl<'e> Reader<'e> {
                 self.down = false;
             }
             Action::Turn(angle) => pose.turn(compass, compass.of_degrees(angle.eval(arguments))),
+            // Such systems have no kinds.
+            Action::Rotate(_) | Action::Swap => return Err(NotCompiled),
             Action::Push => self.saved.push(self.state),
             Action::Pop => {
                 self.state = self.saved.pop().ok_or(NotCompiled)?;

@@ -112,6 +112,8 @@ impl Resolver<OfLSystem> {
             ActionDocument::Move(number) => Action::Move(steps(number)),
             ActionDocument::Glide(number) => Action::Glide(steps(number)),
             ActionDocument::Turn(number) => Action::Turn(self.program(number, scope)),
+            ActionDocument::Rotate(number) => Action::Rotate(self.program(number, scope)),
+            ActionDocument::Swap => Action::Swap,
             ActionDocument::Push => Action::Push,
             ActionDocument::Pop => Action::Pop,
             ActionDocument::Reflect => Action::Reflect,
