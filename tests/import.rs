@@ -25,7 +25,7 @@ Koch1 { ; Adrian Mariano
   Axiom F--F--F
   F=F+F--F+F
 }
-Two headings { Angle 4 Axiom FD F=FF }
+Two headings { Angle 4 Axiom F]D F=FF }
 Big.H { Angle 4 Axiom [F]--F F=|[+F@iq2F] }
 ";
 
@@ -39,7 +39,7 @@ fn every_entry_becomes_a_file_that_grows() {
         .unwrap();
     let (_, errors) = said(&output);
     assert_eq!(output.status.code(), Some(1), "{errors}");
-    assert!(errors.contains("curves.l:7:1"), "{errors}");
+    assert!(errors.contains("curves.l:7:31"), "{errors}");
     assert!(
         errors.ends_with("curves.l: 2 of 3 written to out\nnot written: Two headings\n"),
         "{errors}"

@@ -1,16 +1,22 @@
 //! L-systems: an angle, an axiom and rules, each in a line of its own or behind each other.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::build::written::Entries;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::build::written::{Entries, sequence};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 use crate::document::node::Value;
+use crate::style::Colour;
 
 use super::commands::{self, Command, Heading};
 use super::entries::{Entry, Word};
+use super::palette;
 
-/// Symbols that have no rules.
-const RESERVED: &str = "+-/\\@|!C<>[]";
+/// Commands with numbers, which have no rules.
+const RESERVED: &str = "/\\@C<>";
+
+/// Other commands that are no letters: to have a rule, each needs an equals sign.
+const COMMANDS: &str = "+-|![]";
 
 /// What an entry says.
 #[derive(Default)]
@@ -33,24 +39,30 @@ pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
         found.push(missing("angle").hint("Angle 6 stands for turns of a sixth of the circle"));
     }
     let (angle, axiom) = (system.angle?, system.axiom?);
-    let axiom = commands::of(axiom, found);
-    let rules = system.rules.iter().map(|(symbol, words)| {
-        let commands = words.iter().flat_map(|word| commands::of(word, found));
-        (*symbol, commands.collect::<Vec<_>>())
-    });
-    let rules: Vec<_> = rules.collect();
-    let all = || {
-        axiom
-            .iter()
-            .chain(rules.iter().flat_map(|(_, commands)| commands))
-    };
-    let writer = Writer::new(entry, angle, all(), found)?;
+    let axiom = balanced(commands::of(axiom, found), found);
+    let mut rules = Rules::new();
+    for (symbol, words) in &system.rules {
+        let all = words.iter().flat_map(|word| commands::of(word, found));
+        let all = all.collect();
+        rules.push((*symbol, balanced(all, found)));
+    }
+    if found.has_errors() {
+        return None;
+    }
+    // A rule that is never used says nothing.
+    let used = used(&axiom, &rules);
+    rules.retain(|(symbol, _)| used.contains(symbol));
+    if rules.is_empty() {
+        // Without rules every string is the axiom.
+        let kept = axiom.iter().find(|command| symbol(**command).is_some());
+        rules.extend(kept.and_then(|kept| Some((symbol(*kept)?, vec![*kept]))));
+    }
+    let writer = Writer::new(angle, &axiom, &rules);
     let productions = rules
         .iter()
         .fold(Entries::default(), |entries, (symbol, commands)| {
-            entries.add(*symbol, Value::Text(writer.string(commands)))
+            entries.add(own(*symbol), Value::Text(writer.string(commands)))
         });
-    let symbols = writer.symbols(all());
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     Some(
         Entries::default()
@@ -58,8 +70,79 @@ pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
             .set("angle", Value::Text(format!("360/{angle}")))
             .set("axiom", Value::Text(writer.string(&axiom)))
             .set_some("productions", some(productions))
-            .set_some("symbols", some(symbols)),
+            .set_some("symbols", some(writer.symbols()))
+            .set_some("style", writer.style()),
     )
+}
+
+/// Every rule's symbol, and what replaces it.
+type Rules = Vec<(char, Vec<Command>)>;
+
+/// The commands of a string, whose brackets must be balanced.
+fn balanced(commands: Vec<(Command, Place)>, found: &mut Diagnostics) -> Vec<Command> {
+    let mut open = Vec::new();
+    let mut plain = Vec::new();
+    for (command, place) in commands {
+        match command {
+            Command::Push => open.push(place),
+            Command::Pop if open.pop().is_none() => {
+                let wrong = Diagnostic::error("no bracket is open here").at(&place);
+                found.push(wrong.hint("what a string closes, it has opened"));
+            }
+            _ => {}
+        }
+        plain.push(command);
+    }
+    for place in open {
+        let wrong = Diagnostic::error("this bracket is not closed").at(&place);
+        found.push(wrong.hint("it ends with ] in the same string"));
+    }
+    plain
+}
+
+/// The symbols that ever occur.
+fn used(axiom: &[Command], rules: &Rules) -> BTreeSet<char> {
+    let mut used = BTreeSet::new();
+    let mut next = vec![axiom];
+    while let Some(string) = next.pop() {
+        for symbol in string.iter().filter_map(|command| symbol(*command)) {
+            if used.insert(symbol) {
+                let all = rules.iter().filter(|(of, _)| *of == symbol);
+                next.extend(all.map(|(_, string)| string.as_slice()));
+            }
+        }
+    }
+    used
+}
+
+/// The character of a command without a number: what rules replace.
+fn symbol(command: Command) -> Option<char> {
+    Some(match command {
+        Command::Step { heading, drawn } => letter(heading, drawn),
+        Command::Turn(1) => '+',
+        Command::Turn(_) => '-',
+        Command::Back => '|',
+        Command::Reverse => '!',
+        Command::Push => '[',
+        Command::Pop => ']',
+        Command::Other(other) => other,
+        Command::Degrees(_) | Command::Scale(_) | Command::Colour(_) | Command::Shift(_) => {
+            return None;
+        }
+    })
+}
+
+/// What a symbol is called here. Those that our words take apart are small letters, which Fractint does
+/// not tell from large ones.
+fn own(symbol: char) -> char {
+    match symbol {
+        '(' => 'a',
+        ')' => 'b',
+        ',' => 'c',
+        '\'' => 'd',
+        ':' => 'e',
+        other => other,
+    }
 }
 
 impl<'e> System<'e> {
@@ -95,7 +178,8 @@ impl<'e> System<'e> {
                     found.push(Diagnostic::error(message).at(&word.place));
                 }
                 (_, Some(symbol), _)
-                    if !RESERVED.contains(symbol) && (equals > 0 || value.is_some()) =>
+                    if !RESERVED.contains(symbol)
+                        && (equals > 0 || (value.is_some() && !COMMANDS.contains(symbol))) =>
                 {
                     system.add_rule(symbol, value);
                 }
@@ -136,111 +220,175 @@ impl<'e> System<'e> {
 }
 
 /// Writes commands as a file of ours has them.
-struct Writer {
+struct Writer<'c> {
     angle: u32,
-    /// The heading that steps go by; turns of the other one change nothing.
-    heading: Heading,
+    /// All commands there are.
+    all: Vec<&'c Command>,
+    /// The symbols that have rules.
+    replaced: BTreeSet<char>,
+    /// Which headings steps go by: turns of the other one change nothing.
+    headings: [bool; 2],
+    colours: Option<Colours>,
 }
 
-impl Writer {
-    fn new<'c>(
-        entry: &Entry,
-        angle: u32,
-        all: impl Iterator<Item = &'c Command> + Clone,
-        found: &mut Diagnostics,
-    ) -> Option<Self> {
-        let steps = |wanted: Heading| {
-            all.clone().any(
+/// Which colours a palette has, by their numbers in Fractint's: the one first with which it begins.
+enum Colours {
+    /// These.
+    Some(Vec<i64>),
+    /// All: numbers are added to them.
+    All,
+}
+
+impl<'c> Writer<'c> {
+    fn new(angle: u32, axiom: &'c [Command], rules: &'c Rules) -> Self {
+        let strings = rules.iter().flat_map(|(_, string)| string);
+        let all: Vec<_> = axiom.iter().chain(strings).collect();
+        let goes_by = |wanted: Heading| {
+            all.iter().any(
                 |command| matches!(command, Command::Step { heading, .. } if *heading == wanted),
             )
         };
-        let error = |message: &str| Diagnostic::error(message).at(&entry.place);
-        let heading = match (steps(Heading::Units), steps(Heading::Degrees)) {
-            (true, true) => {
-                let two = error("F or G and D or M have headings of their own");
-                found.push(two.hint("here there is only one: write it with F, G, + and - alone"));
-                return None;
+        let headings = [Heading::Units, Heading::Degrees].map(goes_by);
+        let shifts = |command: &&Command| matches!(command, Command::Shift(by) if *by != 0);
+        let mut set = BTreeSet::new();
+        for command in &all {
+            if let Command::Colour(colour) = command {
+                set.insert(colour.rem_euclid(palette::COLOURS));
             }
-            (false, true) => Heading::Degrees,
-            _ => Heading::Units,
+        }
+        let colours = if all.iter().any(shifts) {
+            Some(Colours::All)
+        } else if set.is_empty() {
+            None
+        } else {
+            set.remove(&palette::FIRST);
+            Some(Colours::Some(
+                [palette::FIRST].into_iter().chain(set).collect(),
+            ))
         };
-        let writer = Self { angle, heading };
-        let any = |wanted: fn(&Command) -> bool| all.clone().any(wanted);
-        let turns_back = angle % 2 == 1 && any(|command| *command == Command::Back);
-        if turns_back && any(|command| *command == Command::Reverse) && heading == Heading::Units {
-            let message = "| of an odd angle always turns the same way, also after !";
-            found.push(error(message).hint("here ! reverses it too"));
-            return None;
+        Self {
+            angle,
+            all,
+            replaced: rules.iter().map(|(symbol, _)| *symbol).collect(),
+            headings,
+            colours,
         }
-        for command in all.clone() {
-            if matches!(command, Command::Other('(' | ')' | ',' | '\'')) {
-                found.push(error("parentheses, commas and quotes cannot be symbols"));
-                return None;
-            }
-        }
-        let colours = any(|command| matches!(command, Command::Colour(_) | Command::Shift(_)));
-        if colours && any(|command| *command == Command::Push) {
-            let message = "colours are taken back at ], as headings are";
-            found.push(Diagnostic::warning(message).at(&entry.place));
-        }
-        if any(|command| matches!(command, Command::Degrees(_))) && heading == Heading::Units {
-            let message = "\\ and / do not turn F and G: they are left out";
-            found.push(Diagnostic::warning(message).at(&entry.place));
-        }
-        Some(writer)
+    }
+
+    /// Whether steps go by both headings, so that the second one is our second one.
+    fn has_both(&self) -> bool {
+        self.headings == [true; 2]
+    }
+
+    /// Whether turns by degrees have a symbol of their own: where `+` and `-` have other meanings.
+    fn has_slashes(&self) -> bool {
+        let is_replaced = ['+', '-'].iter().any(|sign| self.replaced.contains(sign));
+        self.has_both() || is_replaced
     }
 
     fn string(&self, commands: &[Command]) -> String {
         let mut string = String::new();
+        let [units, degrees] = self.headings;
         for command in commands {
-            let written = match (*command, self.heading) {
-                (Command::Step { heading, drawn }, _) => {
-                    string.push(letter(heading, drawn));
-                    Ok(())
-                }
-                (Command::Turn(1), Heading::Units) => string.write_str("+"),
-                (Command::Turn(_), Heading::Units) => string.write_str("-"),
-                (Command::Back, Heading::Units) => string.write_str("|"),
-                (Command::Degrees(degrees), Heading::Degrees) if degrees < 0.0 => {
-                    write!(string, "-({})", -degrees)
-                }
-                (Command::Degrees(degrees), Heading::Degrees) => write!(string, "+({degrees})"),
+            let written = match *command {
                 // These turn what nothing goes by.
-                (Command::Turn(_) | Command::Back | Command::Degrees(_), _) => Ok(()),
-                (Command::Reverse, _) => string.write_str("!"),
-                (Command::Scale(factor), _) => write!(string, "@({})", factor.formula()),
-                (Command::Push, _) => string.write_str("["),
-                (Command::Pop, _) => string.write_str("]"),
-                (Command::Colour(colour), _) => write!(string, "'({colour})"),
-                (Command::Shift(shift), _) => write!(string, ";({shift})"),
-                (Command::Other(other), _) => string.write_char(other),
+                Command::Degrees(_) if !degrees => Ok(()),
+                Command::Turn(_) | Command::Back if !units && !self.is_replaced(*command) => Ok(()),
+                Command::Degrees(turn) => {
+                    let formula = turn.formula();
+                    match formula.strip_prefix('-') {
+                        _ if self.has_slashes() => write!(string, "/({formula})"),
+                        Some(clockwise) => write!(string, "-({clockwise})"),
+                        None => write!(string, "+({formula})"),
+                    }
+                }
+                Command::Scale(factor) => write!(string, "@({})", factor.formula()),
+                Command::Colour(colour) => write!(string, "'({})", self.colour(colour)),
+                Command::Shift(0) => Ok(()),
+                Command::Shift(shift) => write!(string, ";({shift})"),
+                other => symbol(other).map_or(Ok(()), |symbol| string.write_char(own(symbol))),
             };
             debug_assert!(written.is_ok(), "a string takes everything");
         }
         string
     }
 
+    fn is_replaced(&self, command: Command) -> bool {
+        symbol(command).is_some_and(|symbol| self.replaced.contains(&symbol))
+    }
+
+    /// The number of a colour in our palette.
+    fn colour(&self, colour: i64) -> usize {
+        let number = colour.rem_euclid(palette::COLOURS);
+        let place = match &self.colours {
+            Some(Colours::Some(all)) => all.iter().position(|known| *known == number),
+            _ => usize::try_from((number - palette::FIRST).rem_euclid(palette::COLOURS)).ok(),
+        };
+        place.unwrap_or(0)
+    }
+
     /// What symbols mean, where it is not what they always do.
-    fn symbols<'c>(&self, all: impl Iterator<Item = &'c Command>) -> Entries {
+    fn symbols(&self) -> Entries {
         let text = |text: &str| Value::Text(text.into());
         let action = |name: &str, value: &str| Entries::default().set(name, text(value)).value();
-        all.fold(Entries::default(), |symbols, command| match *command {
-            Command::Step { heading, drawn } if (heading, drawn) != (Heading::Units, true) => {
-                let meaning = if drawn { "draw" } else { "move" };
-                symbols.set(&letter(heading, drawn).to_string(), text(meaning))
-            }
-            Command::Back if self.angle % 2 == 1 && self.heading == Heading::Units => {
-                let turn = format!("-180 + 180/{}", self.angle);
-                symbols.set("|", action("turn", &turn))
-            }
-            Command::Reverse => symbols.set("!", text("reflect")),
-            Command::Scale(_) => symbols.set("@(s)", action("scale", "s")),
-            Command::Shift(_) => symbols.set(";(n)", action("shift_colour", "n")),
-            Command::Other(other @ ('{' | '}' | '.' | '&' | '^')) => {
-                symbols.set(&other.to_string(), text("nothing"))
-            }
-            _ => symbols,
-        })
+        let swapped = |value: Value| sequence([text("swap"), value, text("swap")]);
+        let turns_back = self.angle % 2 == 1 && self.headings[0];
+        let reverses = self.all.contains(&&Command::Reverse);
+        let mut symbols = Entries::default();
+        for &&command in &self.all {
+            let meaning = match command {
+                Command::Step { heading, drawn } => {
+                    let meaning = text(if drawn { "draw" } else { "move" });
+                    match heading {
+                        Heading::Units if drawn => continue,
+                        Heading::Degrees if self.has_both() => swapped(meaning),
+                        _ => meaning,
+                    }
+                }
+                Command::Turn(_) | Command::Back if !self.headings[0] => {
+                    if !self.is_replaced(command) {
+                        continue;
+                    }
+                    text("nothing")
+                }
+                // The largest turn below a half one, always the same way.
+                Command::Back if turns_back => {
+                    let turn = format!("-180 + 180/{}", self.angle);
+                    action(if reverses { "rotate" } else { "turn" }, &turn)
+                }
+                Command::Degrees(_) if self.has_both() => swapped(action("turn", "a")),
+                Command::Degrees(_) if self.headings[1] && self.has_slashes() => {
+                    action("turn", "a")
+                }
+                Command::Reverse => text("reflect"),
+                Command::Scale(_) => action("scale", "s"),
+                Command::Shift(by) if by != 0 => action("shift_colour", "n"),
+                Command::Other('{' | '}' | '.' | '&' | '^') => text("nothing"),
+                _ => continue,
+            };
+            let name = match command {
+                Command::Degrees(_) => "/(a)".into(),
+                Command::Scale(_) => "@(s)".into(),
+                Command::Shift(_) => ";(n)".into(),
+                other => symbol(other).map(own).into_iter().collect::<String>(),
+            };
+            symbols = symbols.set(&name, meaning);
+        }
+        symbols
+    }
+
+    /// The colours, on black as Fractint draws.
+    fn style(&self) -> Option<Value> {
+        let numbers: Vec<i64> = match self.colours.as_ref()? {
+            Colours::Some(all) => all.clone(),
+            Colours::All => (0..palette::COLOURS)
+                .map(|place| palette::FIRST + place)
+                .collect(),
+        };
+        let text = |colour: Colour| Value::Text(colour.to_string());
+        let colours = numbers.into_iter().map(|number| text(palette::vga(number)));
+        let style = Entries::default().set("background", text(Colour::BLACK));
+        Some(style.set("palette", sequence(colours)).value())
     }
 }
 

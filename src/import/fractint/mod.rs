@@ -8,6 +8,7 @@ mod commands;
 mod entries;
 mod lsystem;
 mod maps;
+mod palette;
 
 use std::sync::Arc;
 

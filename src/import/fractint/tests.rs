@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostics, Place, Source};
+use crate::graph::Graph;
 use crate::model::Model;
 
 use super::commands::{self, Command, Heading};
@@ -80,26 +81,35 @@ fn what_belongs_to_no_entry_is_told() {
 
 #[test]
 fn commands_have_numbers() {
-    let (entries, _) = entries_of("x { F\\36.5@iq2>10<3c1/7|!gdm[+-]x@.5 }");
+    let (entries, _) = entries_of("x { F\\36.5@iq2>10<3c1/i7|!gdm[+-]x@.5\\+/c<'1.5.2 }");
     let mut found = Diagnostics::default();
-    let mut commands = commands::of(&entries[0].words[0], &mut found);
+    let commands = commands::of(&entries[0].words[0], &mut found);
     assert!(found.is_empty(), "{found}");
+    let written: Vec<_> = commands
+        .iter()
+        .map(|(_, place)| &place.source().text()[place.range()])
+        .collect();
+    assert_eq!(
+        written,
+        [
+            "F", "\\36.5", "@iq2", ">10", "<3", "c1", "/i7", "|", "!", "g", "d", "m", "[", "+",
+            "-", "]", "x", "@.5", "\\", "+", "/", "c", "<", "'", "1", ".", "5", ".", "2"
+        ]
+    );
     let formulas: Vec<_> = commands
-        .extract_if(.., |command| matches!(command, Command::Scale(_)))
-        .filter_map(|command| match command {
-            Command::Scale(factor) => Some(factor.formula()),
+        .iter()
+        .filter_map(|(command, _)| match command {
+            Command::Scale(factor) | Command::Degrees(factor) => Some(factor.formula()),
             _ => None,
         })
         .collect();
-    assert_eq!(formulas, ["1/sqrt(2)", "0.5"]);
+    assert_eq!(formulas, ["36.5", "1/sqrt(2)", "-1/7", "0.5", "0", "0"]);
     let step = |heading, drawn| Command::Step { heading, drawn };
     let expected = [
         step(Heading::Units, true),
-        Command::Degrees(36.5),
-        Command::Shift(-10.0),
-        Command::Shift(3.0),
-        Command::Colour(1.0),
-        Command::Degrees(-7.0),
+        Command::Shift(-10),
+        Command::Shift(3),
+        Command::Colour(1),
         Command::Back,
         Command::Reverse,
         step(Heading::Units, false),
@@ -110,20 +120,26 @@ fn commands_have_numbers() {
         Command::Turn(-1),
         Command::Pop,
         Command::Other('X'),
+        Command::Turn(1),
+        Command::Colour(0),
+        Command::Shift(0),
+        Command::Other('\''),
     ];
-    assert_eq!(commands, expected);
+    let plain = commands.into_iter().map(|(command, _)| command);
+    let plain = plain.filter(|it| !matches!(it, Command::Scale(_) | Command::Degrees(_)));
+    assert_eq!(plain.take(expected.len()).collect::<Vec<_>>(), expected);
 }
 
 #[test]
-fn commands_without_their_numbers_are_told() {
-    let (entries, _) = entries_of("x { F@xc\\I3@0F }");
+fn scales_without_their_numbers_are_told() {
+    let (entries, _) = entries_of("x { F@xc@0F@I0F/I0 }");
     let mut found = Diagnostics::default();
     commands::of(&entries[0].words[0], &mut found);
     let expected = [
-        ("@ takes a number", "@"),
-        ("C takes a number", "c"),
-        ("\\ takes a number", "\\I3"),
-        ("@ takes a number", "@0"),
+        ("@ takes a number above 0", "@"),
+        ("@ takes a number above 0", "@0"),
+        ("@ takes a number above 0", "@I0"),
+        ("this angle is not finite", "/I0"),
     ];
     assert_eq!(said(&found), expected);
 }
@@ -252,8 +268,8 @@ fn lsystems_are_read_line_by_line_or_word_by_word() {
 #[test]
 fn commands_become_symbols_with_meanings() {
     assert_eq!(
-        lsystem("a { angle 6 axiom F[@IQ2!GF]|F F=F@2F X={.F }"),
-        "angle: 360/6\naxiom: F[@(1/sqrt(2))!GF]|F\nproductions: {F: F@(2)F, X: \"{.F\"}\nsymbols:\n  \
+        lsystem("a { angle 6 axiom F[@IQ2!GF]|FX F=F@2F X={.F Y=F }"),
+        "angle: 360/6\naxiom: F[@(1/sqrt(2))!GF]|FX\nproductions: {F: F@(2)F, X: \"{.F\"}\nsymbols:\n  \
          \"@(s)\": {scale: s}\n  \"!\": reflect\n  G: move\n  \"{\": nothing\n  .: nothing\n"
     );
     // Half a turn is not whole in parts of an odd number: it is the largest turn below.
@@ -261,23 +277,108 @@ fn commands_become_symbols_with_meanings() {
         lsystem("a { angle 5 axiom F|F F=FF }"),
         "angle: 360/5\naxiom: F|F\nproductions: {F: FF}\nsymbols:\n  \"|\": {turn: -180 + 180/5}\n"
     );
+    // It is not reversed, but other turns are.
+    assert_eq!(
+        lsystem("a { angle 5 axiom F|!F F=FF }"),
+        "angle: 360/5\naxiom: F|!F\nproductions: {F: FF}\nsymbols:\n  \"|\": {rotate: -180 + 180/5}\n  \
+         \"!\": reflect\n"
+    );
     // The other heading is in degrees.
     assert_eq!(
-        lsystem("a { angle 5 axiom D\\36.5M/12D D=DD }"),
+        lsystem("a { angle 5 axiom D\\36.5M/12D+ D=DD }"),
         "angle: 360/5\naxiom: D+(36.5)M-(12)D\nproductions: {D: DD}\nsymbols: {D: draw, M: move}\n"
     );
     assert_eq!(
-        lsystem("a { angle 4 axiom c7F<2F>3F F=FF }"),
-        "angle: 360/4\naxiom: \"'(7)F;(2)F;(-3)F\"\nproductions: {F: FF}\nsymbols:\n  ;(n): {shift_colour: n}\n"
+        lsystem("a { angle 5 axiom D\\36.5+ D=DD +=D }"),
+        "angle: 360/5\naxiom: D/(36.5)+\nproductions: {D: DD, +: D}\nsymbols:\n  D: draw\n  \
+         /(a): {turn: a}\n  +: nothing\n"
+    );
+    assert_eq!(
+        lsystem("a { angle 4 axiom F+D/30M D=DD }"),
+        "angle: 360/4\naxiom: F+D/(-30)M\nproductions: {D: DD}\nsymbols:\n  D: [swap, draw, swap]\n  \
+         /(a):\n    - swap\n    - {turn: a}\n    - swap\n  M: [swap, move, swap]\n"
+    );
+    // What has no meaning may have rules.
+    assert_eq!(
+        lsystem("a { angle 4 axiom F(F),'F: F=FF (=F) '=F+F :=F }"),
+        "angle: 360/4\naxiom: FaFbcdFe\nproductions: {F: FF, a: Fb, d: F+F, e: F}\n"
     );
 }
 
 #[test]
+fn colours_are_those_of_the_palette() {
+    assert_eq!(
+        lsystem("a { angle 4 axiom FC1FC12F F=Fc267F }"),
+        "angle: 360/4\naxiom: F'(1)F'(3)F\nproductions: {F: F'(2)F}\nstyle:\n  \
+         background: \"#000000\"\n  palette: [\"#ffffff\", \"#0000aa\", \"#55ffff\", \"#ff5555\"]\n"
+    );
+    // Where numbers are added to them, any may come.
+    let shifted = lsystem("a { angle 4 axiom c7F<2F>3F<0F F=FF }");
+    assert!(shifted.contains("'(248)F;(2)F;(-3)FF"), "{shifted}");
+    assert!(shifted.contains(";(n): {shift_colour: n}"), "{shifted}");
+    let colours = shifted
+        .match_indices('#')
+        .map(|(at, _)| &shifted[at..at + 7]);
+    let colours: Vec<_> = colours.collect();
+    assert_eq!(colours.len(), 1 + 256);
+    assert_eq!(colours[..4], ["#000000", "#ffffff", "#000000", "#141414"]);
+}
+
+#[test]
+fn the_step_that_is_taken_draws_something() {
+    for (entry, most, step) in [
+        ("F F=", 20_000, 0),
+        ("F F=X X=F", 20_000, 12),
+        ("X F=X X=F", 20_000, 11),
+        ("X X=Y Y=FFFFFF", 5, 2),
+        ("X X=Y Y=FFFFFF", 6, 12),
+        ("X F=FF X=+", 20_000, 12),
+    ] {
+        let text = format!("a {{ angle 4 axiom {entry} }}");
+        let (imported, _) = read(&Source::new("test.l", text), Fractint::LSystems);
+        let document = imported[0].document.as_ref().expect("it is right");
+        let (Model::LSystem(system), _) = document.resolve(&[]).expect("it is right") else {
+            panic!("it is an L-system");
+        };
+        assert_eq!(system.deepest(12, most), step, "{entry}");
+    }
+}
+
+/// Two headings that know nothing of each other: both are saved, and both are reversed.
+#[test]
+fn the_turtle_has_two_headings() {
+    let (imported, _) = read(
+        &Source::new("test.l", "a { angle 4 axiom F+\\45D[+F\\45D]FD!+\\45FD|F }"),
+        Fractint::LSystems,
+    );
+    assert!(imported[0].found.is_empty(), "{}", imported[0].found);
+    let document = imported[0].document.as_ref().expect("it is right");
+    let (Model::LSystem(system), _) = document.resolve(&[]).expect("it is right") else {
+        panic!("it is an L-system");
+    };
+    let word = system.word(0, 0, 1000).expect("it is short");
+    let drawn = system.draw(&word).elements;
+    let degrees = drawn.iter().map(|line| {
+        let [from, to] = line.frame.ends();
+        let along = to - from;
+        libm::round(along.y.atan2(along.x).to_degrees()) + 0.0
+    });
+    let expected = [0.0, 45.0, 180.0, 90.0, 90.0, 45.0, 0.0, 0.0, 180.0];
+    assert_eq!(degrees.collect::<Vec<_>>(), expected);
+    // What is grown is what the turtle draws.
+    let graph = Graph::of_lsystem(&system, 0, 0, 1000).expect("it is short");
+    assert_eq!(graph.initiators.len(), 1);
+    let grown = graph.initiators[0].instances.iter().map(|it| it.frame);
+    assert!(grown.eq(drawn.iter().map(|line| line.frame)));
+}
+
+#[test]
 fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
-    let text = "two { angle 4 axiom FD }\nnothing { }\nunangled { axiom F }\nsharp { angle 2 axiom F }\n\
-                reserved { angle 4 axiom F +=F }\nextra { angle 4 axiom F F F=F + F }\n\
-                back { angle 5 axiom F|!F }\nbracket { angle 4 axiom F] F=FF }\nquote { angle 4 axiom F'F }\n\
-                good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }";
+    let text = "nothing { }\nunangled { axiom F }\nsharp { angle 2 axiom F }\n\
+                reserved { angle 4 axiom F @=F }\nextra { angle 4 axiom F F F=F + F }\n\
+                bracket { angle 4 axiom F]F F=F[[F }\n\
+                good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }\n\
+                quote { angle 4 axiom F'F }\ntwo { angle 4 axiom FD }\nback { angle 5 axiom F|!F }";
     let (imported, _) = read(&Source::new("test.l", text), Fractint::LSystems);
     let told = imported.iter().map(|entry| {
         (
@@ -287,11 +388,6 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
         )
     });
     let expected = [
-        (
-            "two",
-            false,
-            vec![("F or G and D or M have headings of their own", "two")],
-        ),
         ("nothing", false, vec![("nothing has no axiom", "nothing")]),
         (
             "unangled",
@@ -306,7 +402,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
         (
             "reserved",
             false,
-            vec![("+ is a command and has no rule", "+")],
+            vec![("@ is a command and has no rule", "@")],
         ),
         (
             "extra",
@@ -318,34 +414,26 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
             ],
         ),
         (
-            "back",
-            false,
-            vec![(
-                "| of an odd angle always turns the same way, also after !",
-                "back",
-            )],
-        ),
-        (
             "bracket",
             false,
-            vec![("no bracket is open here", "bracket")],
-        ),
-        (
-            "quote",
-            false,
-            vec![("parentheses, commas and quotes cannot be symbols", "quote")],
+            vec![
+                ("no bracket is open here", "]"),
+                ("this bracket is not closed", "["),
+                ("this bracket is not closed", "["),
+            ],
         ),
         ("good", true, vec![]),
-        (
-            "turned",
-            true,
-            vec![("\\ and / do not turn F and G: they are left out", "turned")],
-        ),
-        (
-            "coloured",
-            true,
-            vec![("colours are taken back at ], as headings are", "coloured")],
-        ),
+        ("turned", true, vec![]),
+        ("coloured", true, vec![]),
+        ("quote", true, vec![]),
+        ("two", true, vec![]),
+        ("back", true, vec![]),
     ];
     assert_eq!(told.collect::<Vec<_>>(), expected);
+    // At the character, not anywhere in the entry.
+    let places = imported[5].found.iter().map(|found| {
+        let place = found.place().expect("every mistake has its place");
+        (place.line(), place.column())
+    });
+    assert_eq!(places.collect::<Vec<_>>(), [(6, 26), (6, 32), (6, 33)]);
 }
