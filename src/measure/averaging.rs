@@ -1,11 +1,14 @@
 //! Dimensions as means over models, for counts over many decades.
 //!
 //! Counts are a power of the size only in the limit. Beside the straight line, all lines with a second
-//! power are looked at, N = A size^-D (1 + C size^θ), from every size on. For each, D is fitted to
-//! the growth of counts from size to size, and the model counts as much as its likelihood and an
-//! e-th for every size that it leaves out and every parameter that it has more (Akaike 1974; averages
-//! over models and ranges: Jay & Neil 2021). D is the mean over all of them, and its error holds how
-//! far they differ.
+//! power are looked at, N = A size^-D (1 + C size^θ), from every size on. Where slopes go on drifting over
+//! many decades, as they do where two exponents lie close together or powers have a logarithm beside
+//! them, so that no second power dies out over the sizes, all lines with a power of the logarithm are,
+//! N = A size^-D ln(1 / size)^c: their local slopes are D + c / ln(1 / size). For each, D is fitted to
+//! the growth of counts from size to size, and the model counts as much as its likelihood, an e-th for
+//! every size that it leaves out, and a part for what it has more (Akaike 1974; averages over models
+//! and ranges: Jay & Neil 2021). D is the mean over all of them, and its error holds how far they
+//! differ: where local slopes drift, the mean lies beyond the last of them, and its error is large.
 
 use super::regression::{Estimate, Reading, line};
 
@@ -16,6 +19,15 @@ const MOST_PART: [f64; 2] = [0.1, 50.0];
 const LEAST_PART: [f64; 2] = [0.1, 0.8];
 const PARTS_ABOVE: i32 = 32;
 const PARTS_BELOW: i32 = 8;
+
+/// The exponents c of a logarithm, and the logarithm of the ratio of the extent to the largest size.
+const POWERS: [f64; 2] = [0.2, 1.5];
+const POWER_STEPS: i32 = 16;
+const LARGEST: f64 = 2.0;
+
+/// By how much of an e-th a second power, and a logarithm, make a model count less.
+const POWER_COSTS: f64 = 4.0;
+const LOGARITHM_COSTS: f64 = 1.5;
 
 /// Growth is not believed to be known better.
 const LEAST_ERROR: f64 = 0.001;
@@ -32,14 +44,14 @@ struct Growth {
     weight: f64,
 }
 
-/// What a second power adds to the growth, from each size to the next, and the logarithm of what the
-/// model counts before anything is measured.
+/// What a second power or a logarithm adds to the growth, from each size to the next, and the logarithm
+/// of what the model counts before anything is measured.
 struct Correction {
     growth: Vec<f64>,
     prior: f64,
 }
 
-/// A line, with a second power or without, fitted from a size on.
+/// A line, with a correction or without, fitted from a size on.
 #[derive(Clone, Copy)]
 struct Fit {
     from: usize,
@@ -138,21 +150,17 @@ impl Fit {
     }
 }
 
-/// No correction, and corrections of all exponents and parts: two parameters more.
+/// No correction, second powers of all exponents and parts, and logarithms to all powers.
 fn corrections(readings: &[Reading]) -> Vec<Correction> {
     let parts =
         spread(MOST_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
     let parts: Vec<f64> = parts.collect();
     let models = count(parts.len()) * f64::from(EXPONENT_STEPS);
-    let prior = -2.0 - libm::log(models);
-    let of = |exponent: f64, part: f64| {
-        let log = |reading: &Reading| {
-            let size = reading.size / readings[0].size;
-            libm::log1p(part * libm::pow(size, exponent))
-        };
+    let correction = |log: &dyn Fn(f64) -> f64, prior: f64| {
+        let at = |reading: &Reading| log(reading.size / readings[0].size);
         let pairs = readings.windows(2);
         Correction {
-            growth: pairs.map(|pair| log(&pair[1]) - log(&pair[0])).collect(),
+            growth: pairs.map(|pair| at(&pair[1]) - at(&pair[0])).collect(),
             prior,
         }
     };
@@ -161,7 +169,16 @@ fn corrections(readings: &[Reading]) -> Vec<Correction> {
         prior: 0.0,
     }];
     for exponent in spread(EXPONENTS, EXPONENT_STEPS) {
-        corrections.extend(parts.iter().map(|&part| of(exponent, part)));
+        let of = |part: f64| {
+            let log = |size: f64| libm::log1p(part * libm::pow(size, exponent));
+            correction(&log, -POWER_COSTS - libm::log(models))
+        };
+        corrections.extend(parts.iter().copied().map(of));
+    }
+    let models = 2.0 * f64::from(POWER_STEPS);
+    for power in spread(POWERS, POWER_STEPS).flat_map(|power| [power, -power]) {
+        let log = |size: f64| power * libm::log(LARGEST - libm::log(size));
+        corrections.push(correction(&log, -LOGARITHM_COSTS - libm::log(models)));
     }
     corrections
 }
@@ -216,6 +233,22 @@ mod tests {
         assert!((estimate.value - 1.9).abs() < 0.005, "{estimate:?}");
         let off = (estimate.value - 1.9).abs();
         assert!(off < 2.0 * estimate.std_error, "{estimate:?}");
+    }
+
+    #[test]
+    fn slopes_that_go_on_drifting_are_followed() {
+        // A logarithm beside the power, and two exponents that lie close together (a Lévy curve).
+        let logarithm = |x: f64| 1.1 * x + 0.5 * libm::log(x + 1.0);
+        let close = |x: f64| libm::log(libm::exp(1.95 * x) - 0.7 * libm::exp(1.88 * x));
+        let cases: [(f64, &dyn Fn(f64) -> f64); 2] = [(1.1, &logarithm), (1.95, &close)];
+        for (exponent, log) in cases {
+            let readings = readings(28, 0.002, log);
+            let estimate = averaged(&readings, 2.0).unwrap();
+            let off = (estimate.value - exponent).abs();
+            assert!(off < 2.0 * estimate.std_error, "{estimate:?}");
+            let last = readings[27].growth / std::f64::consts::LN_2;
+            assert!(off < (last - exponent).abs(), "{estimate:?} {last}");
+        }
     }
 
     #[test]

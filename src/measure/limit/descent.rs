@@ -266,6 +266,21 @@ impl LimitSet {
     }
 }
 
+/// Errors that are told from few grids, drawn half of the way to those of all sizes.
+fn pooled(scales: &mut [Scale]) {
+    let sampled = scales.iter().skip(1).filter(|scale| scale.sampled);
+    let squares = sampled.map(|scale| scale.growth_error * scale.growth_error);
+    let squares: Vec<f64> = squares.collect();
+    if squares.is_empty() {
+        return;
+    }
+    let all = mean(&squares);
+    for scale in scales.iter_mut().skip(1).filter(|scale| scale.sampled) {
+        let own = scale.growth_error * scale.growth_error;
+        scale.growth_error = f64::midpoint(own, all).sqrt();
+    }
+}
+
 /// The least counts of all grids, and how they grow where they come from samples.
 fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
     let levels = counts.iter().map(Vec::len).min().unwrap_or_default();
@@ -299,6 +314,7 @@ fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
             sampled,
         });
     }
+    pooled(&mut scales);
     scales
 }
 
