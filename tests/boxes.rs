@@ -7,6 +7,8 @@ mod bad;
 mod common;
 #[path = "boxes/laws.rs"]
 mod laws;
+#[path = "boxes/pictures.rs"]
+mod pictures;
 
 use std::num::NonZero;
 
@@ -34,7 +36,7 @@ fn picture(side: usize, is_set: impl Fn(usize, usize) -> bool) -> Bits {
 }
 
 fn measured(pixels: &Bits) -> Estimate {
-    let counting = BoxCounting::of_pixels(pixels, number(2), &grids(), number(2));
+    let counting = BoxCounting::of_pixels(pixels, None, &grids(), number(2));
     counting.estimate.unwrap()
 }
 
@@ -104,7 +106,7 @@ fn boxes_of_other_sizes_measure_the_same() {
         }
         true
     });
-    let counting = BoxCounting::of_pixels(&carpet, number(3), &grids(), number(1));
+    let counting = BoxCounting::of_pixels(&carpet, Some(number(3)), &grids(), number(1));
     assert_eq!(
         counting.boxes.iter().map(|it| it.size).fold(0.0, f64::max),
         729.0

@@ -24,7 +24,9 @@ use super::{Failure, format, help, output, text};
 /// Measures the dimension of a rule's limit set, a picture or a table of points
 ///
 /// Boxes are counted at many sizes, on grids that are moved and turned, and the least cover is kept.
-/// The dimension is the slope of the logarithms, with its standard error and its evidence. Of a rule,
+/// The dimension is the slope of the logarithms, with its standard error and its evidence; where local
+/// slopes drift, this is said, and the estimate goes on with them. Of a picture, the mean counts over all
+/// grids tell the slope, with the width of a pen and the boxes of rims allowed for. Of a rule,
 /// the limit set of what stays fertile is measured, straight from the rule: boxes that are too many to
 /// be counted are told by a sample of them. Beside it stands what is
 /// exact: its similarity dimension, how its copies lie, the dimension that follows for the set itself
@@ -54,7 +56,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
     /// By what number boxes get smaller [default: the least whole number that is a power of the ratio
-    /// that a rule repeats itself by, or 2; a whole number for pictures and points]
+    /// that a rule repeats itself by, or that fits a picture, or 2; a whole number for pictures and
+    /// points]
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
     /// How many grids are tried

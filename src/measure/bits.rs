@@ -1,5 +1,7 @@
 //! Sets of boxes as bits: the boxes of one size that hold something, folded to larger boxes.
 
+mod dilation;
+
 /// Boxes in rows, a bit for each: set where the box holds something.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {

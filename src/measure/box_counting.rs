@@ -3,10 +3,12 @@ use std::num::NonZero;
 use super::averaging::averaged;
 use super::bits::Bits;
 use super::cover::{Grid, Scale};
+use super::extrapolation::extrapolated;
 use super::limit::LimitSet;
-use super::raster::raster_scales;
-use super::regression::{Estimate, Reading, estimate};
+use super::raster::{means, own_base, raster_scales, regular, thickness};
+use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
+use super::trend::Trend;
 
 /// No set of the plane has a larger dimension.
 pub(super) const PLANE: f64 = 2.0;
@@ -14,13 +16,27 @@ pub(super) const PLANE: f64 = 2.0;
 /// Fewer boxes tell nothing but where they lie.
 const LEAST_BOXES: u64 = 9;
 
+/// Where boxes fit a picture, its pixels tell the dimension no better.
+const LEAST_ERROR: f64 = 0.001;
+
 /// A box-counting dimension, and its evidence.
 #[derive(Clone, Debug, Default)]
 pub struct BoxCounting {
     /// The dimension; none if there are fewer than three sizes in the range.
     pub estimate: Option<Estimate>,
+    /// How local slopes drift over the finer half of the sizes that may be used (of pictures: over all that
+    /// are); none if there are too few.
+    pub trend: Option<Trend>,
+    /// By what number boxes get smaller; none if nothing had to be measured.
+    pub base: Option<f64>,
+    /// Of pictures: the number that boxes get smaller by where local slopes are all the same; none if there
+    /// is no such number.
+    pub fitting_base: Option<f64>,
     /// The boxes of every size, from the largest to the smallest.
     pub boxes: Vec<Boxes>,
+    /// Of pictures: the sides of boxes, and the mean number of those that meet the set over all grids,
+    /// from the smallest boxes on. A dimension is told from these where boxes of no base fit a picture.
+    pub means: Vec<(f64, f64)>,
 }
 
 /// The boxes of one size.
@@ -59,12 +75,10 @@ impl BoxCounting {
             estimate: Some(Estimate {
                 value: 0.0,
                 std_error: 0.0,
-                range: [0.0; 2],
                 r_squared: 1.0,
-                intercept: 0.0,
-                sizes: 0,
+                ..Estimate::default()
             }),
-            boxes: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -106,22 +120,64 @@ impl BoxCounting {
 
     /// Measures the set pixels of a picture, with boxes of `base`, base² … pixels.
     ///
-    /// Used are boxes of at least 4 pixels, of which at least 8 make the long side of the picture.
+    /// Without a base, boxes grow by the number whose powers a picture is made of, if there is one (by
+    /// 3 for a carpet of 729² pixels), or by 2. With such a base, all local slopes are the same, and
+    /// they are the dimension. Otherwise it is told from the mean numbers of boxes over all grids, of 3
+    /// pixels (or 1, if the set is filled) up to a quarter of its long side: these grow as powers do
+    /// whose exponents are the dimension and those of rims. The width of a pen is allowed for.
     #[must_use]
     pub fn of_pixels(
         pixels: &Bits,
-        base: NonZero<usize>,
+        base: Option<NonZero<usize>>,
         grids: &[Grid],
         threads: NonZero<usize>,
     ) -> Self {
+        const TWO: NonZero<usize> = NonZero::<usize>::MIN.saturating_add(1);
+        let pixels = pixels.cropped();
+        let longest = pixels.width().max(pixels.height());
+        if longest <= 1 {
+            return Self::of_point();
+        }
+        let own = own_base(&pixels);
+        let base = base.or(own).unwrap_or(TWO);
+        let scales = raster_scales(&pixels, base, grids, threads);
+        let means = means(&pixels, threads);
         #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
-        let longest = pixels.width().max(pixels.height()) as f64;
-        let window = Window {
-            finest: 4.0,
-            coarsest: longest / 8.0,
-            least_boxes: 1,
+        let (longest, base) = (longest as f64, base.get() as f64);
+        let estimate = match regular(&scales) {
+            Some((value, away)) => Some(Estimate {
+                value,
+                std_error: away.max(LEAST_ERROR),
+                range: [1.0, scales[1].size],
+                sizes: scales.len() - 1,
+                ..Estimate::default()
+            }),
+            None => extrapolated(&means, longest, thickness(&pixels, threads)),
         };
-        Self::of(&raster_scales(pixels, base, grids, threads), &window)
+        let range = estimate.map_or([0.0; 2], |it| it.range);
+        let used = |size: f64| (range[0]..=range[1]).contains(&size);
+        let readings = readings(scales.iter().filter(|scale| used(scale.size)));
+        let estimate = estimate.map(|estimate| {
+            let (r_squared, intercept) = line(&readings, estimate.value);
+            Estimate {
+                r_squared,
+                intercept,
+                ..estimate
+            }
+        });
+        let drifting = means.iter().rev().filter(|mean| used(mean.size));
+        let drifting: Vec<(f64, f64)> = drifting.map(|mean| (mean.size, mean.boxes)).collect();
+        Self {
+            estimate,
+            trend: match regular(&scales) {
+                Some(_) => Trend::of(&readings),
+                None => Trend::of(&of_means(&drifting)),
+            },
+            base: Some(base),
+            fitting_base: own.map(|own| own.get() as f64),
+            boxes: evidence(&scales, |scale| used(scale.size)),
+            means: means.iter().map(|mean| (mean.size, mean.boxes)).collect(),
+        }
     }
 
     /// Measures points as a sample of a set, with boxes that are at least `finest`.
@@ -155,42 +211,76 @@ impl BoxCounting {
         estimate: impl Fn(&[Reading]) -> Option<Estimate>,
     ) -> Self {
         const SLACK: f64 = 1.0 + 1e-6;
-        let log = |scale: &Scale| {
-            #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
-            libm::log(scale.count.max(1) as f64)
-        };
         let used = |scale: &Scale| {
             scale.size * SLACK >= window.finest
                 && scale.size <= window.coarsest * SLACK
                 && scale.count >= window.least_boxes
         };
-        let readings = scales
-            .iter()
-            .filter(|scale| used(scale))
-            .map(|scale| Reading {
-                size: scale.size,
-                log: log(scale),
-                scatter: scale.scatter,
-                growth: scale.growth,
-                growth_error: scale.growth_error,
-            });
-        let estimate = estimate(&readings.collect::<Vec<_>>());
-        let [finest, coarsest] = estimate.map_or([0.0, f64::INFINITY], |it| it.range);
-        let boxes = scales.iter().enumerate().map(|(number, scale)| Boxes {
-            size: scale.size,
-            count: scale.count,
-            sampled: scale.sampled,
-            scatter: scale.scatter,
-            local_slope: scales
-                .get(number + 1)
-                .map(|finer| (log(finer) - log(scale)) / libm::log(scale.size / finer.size)),
-            used: used(scale) && (finest..=coarsest).contains(&scale.size),
+        let readings = readings(scales.iter().filter(|scale| used(scale)));
+        let finer = &readings[readings.len() / 2..];
+        let trend = Trend::of(finer);
+        let estimate = estimate(&readings).map(|estimate| match trend {
+            Some(trend) if trend.is_significant() => estimate.drifting(trend.over(finer)),
+            _ => estimate,
         });
+        let [finest, coarsest] = estimate.map_or([0.0, f64::INFINITY], |it| it.range);
+        let is_inside = |size: f64| (finest..=coarsest).contains(&size);
         Self {
             estimate,
-            boxes: boxes.collect(),
+            trend,
+            base: scales
+                .windows(2)
+                .next()
+                .map(|pair| pair[0].size / pair[1].size),
+            fitting_base: None,
+            boxes: evidence(scales, |scale| used(scale) && is_inside(scale.size)),
+            means: Vec::new(),
         }
     }
+}
+
+/// What a regression reads of sizes.
+fn readings<'a>(scales: impl Iterator<Item = &'a Scale>) -> Vec<Reading> {
+    let reading = |scale: &Scale| Reading {
+        size: scale.size,
+        log: log(scale),
+        scatter: scale.scatter,
+        growth: scale.growth,
+        growth_error: scale.growth_error,
+    };
+    scales.map(reading).collect()
+}
+
+/// The same of mean counts, from the largest size on.
+fn of_means(means: &[(f64, f64)]) -> Vec<Reading> {
+    let reading = |(number, &(size, boxes)): (usize, &(f64, f64))| Reading {
+        size,
+        log: libm::log(boxes),
+        scatter: 0.0,
+        growth: libm::log(boxes / means[number.saturating_sub(1)].1),
+        growth_error: 0.0,
+    };
+    means.iter().enumerate().map(reading).collect()
+}
+
+/// The boxes of every size, with local slopes.
+fn evidence(scales: &[Scale], used: impl Fn(&Scale) -> bool) -> Vec<Boxes> {
+    let boxes = scales.iter().enumerate().map(|(number, scale)| Boxes {
+        size: scale.size,
+        count: scale.count,
+        sampled: scale.sampled,
+        scatter: scale.scatter,
+        local_slope: scales
+            .get(number + 1)
+            .map(|finer| (log(finer) - log(scale)) / libm::log(scale.size / finer.size)),
+        used: used(scale),
+    });
+    boxes.collect()
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
+fn log(scale: &Scale) -> f64 {
+    libm::log(scale.count.max(1) as f64)
 }
 
 /// The least whole number that is a power of a period, if there is one that is not too large, or 2.

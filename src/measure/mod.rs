@@ -5,6 +5,7 @@
 //! where maps are drawn by chance). Every size of boxes is counted on several [`Grid`]s, of which the
 //! least cover counts; boxes of a limit set that are too many to be counted are told by a sample of
 //! them, which is followed down to 10⁻⁹ of its extent. Points are taken for a [`Sample`] of a set.
+//! Of pictures, the mean counts over all grids are told as well, and extrapolated.
 //! [`BoxCounting`] is the slope of the counts with its error and its evidence, [`Generalised`] are the
 //! other dimensions D_q; [`Masses`] tell lacunarity. [`hausdorff`] tells how far two sets are apart.
 //!
@@ -18,6 +19,7 @@ mod box_counting;
 mod cover;
 mod distance;
 pub mod exact;
+mod extrapolation;
 mod grown;
 mod limit;
 mod mass;
@@ -27,6 +29,7 @@ mod regression;
 mod sample;
 mod similarity;
 mod spectrum;
+mod trend;
 
 pub use bits::Bits;
 pub use box_counting::{BoxCounting, Boxes, Window};
@@ -41,3 +44,4 @@ pub use regression::Estimate;
 pub use sample::Sample;
 pub use similarity::{Similarity, similarity_dimension};
 pub use spectrum::Generalised;
+pub use trend::Trend;

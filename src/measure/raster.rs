@@ -1,9 +1,13 @@
 //! The pixels of a picture, covered by boxes.
 
+mod sliding;
+
 use std::num::NonZero;
 
+pub(super) use sliding::{Mean, means, thickness};
+
 use super::bits::Bits;
-use super::cover::{Grid, Scale, least};
+use super::cover::{Grid, Scale, least, mean};
 
 /// How the set pixels of a picture are covered by boxes of `base`, base², … pixels, and of one.
 ///
@@ -30,16 +34,7 @@ pub fn raster_scales(
     let sizes: Vec<f64> = sides.iter().rev().map(|&side| side as f64).collect();
     least(&sizes, grids, threads, |grid| {
         let shift = whole(grid.shift, largest);
-        let mut counts = if base == 2 {
-            pyramid(pixels, shift, sides.len())
-        } else {
-            let count = |&side: &usize| {
-                pixels
-                    .coarser(side, shift.map(|shift| shift % side))
-                    .count()
-            };
-            sides.iter().map(count).collect()
-        };
+        let mut counts = pyramid(pixels, shift, base, sides.len());
         counts.reverse();
         counts
     })
@@ -58,15 +53,57 @@ pub(super) fn whole(shift: crate::geometry::DVec2, largest: usize) -> [usize; 2]
         .map(|shift| shift as usize)
 }
 
-/// The counts of boxes of 1, 2, 4 … pixels whose grid begins so many pixels before the picture.
-fn pyramid(pixels: &Bits, shift: [usize; 2], levels: usize) -> Vec<u64> {
+/// The counts of boxes of 1, `base`, base² … pixels whose grid begins so many pixels before the picture.
+fn pyramid(pixels: &Bits, mut shift: [usize; 2], base: usize, levels: usize) -> Vec<u64> {
     let mut counts = vec![pixels.count()];
-    let mut folded: Option<Bits> = None;
-    for level in 1..levels {
-        let odd = shift.map(|shift| shift >> (level - 1) & 1 == 1);
-        let next = folded.as_ref().unwrap_or(pixels).folded(odd);
+    let mut coarser: Option<Bits> = None;
+    for _ in 1..levels {
+        let finer = coarser.as_ref().unwrap_or(pixels);
+        let own = shift.map(|shift| shift % base);
+        let next = match base {
+            2 => finer.folded(own.map(|shift| shift == 1)),
+            _ => finer.coarser(base, own),
+        };
+        shift = shift.map(|shift| shift / base);
         counts.push(next.count());
-        folded = Some(next);
+        coarser = Some(next);
     }
     counts
+}
+
+/// The number that boxes of a picture grow by such that their counts on the picture's own grid are a power of
+/// the size all along, if there is one: the picture is one of a set of squares that are divided by it.
+///
+/// Tried are 2, and other numbers up to 10 of which a high power divides the long side.
+pub(super) fn own_base(pixels: &Bits) -> Option<NonZero<usize>> {
+    const LARGEST: usize = 10;
+    let longest = pixels.width().max(pixels.height());
+    let fits = |base: &usize| {
+        let powers = std::iter::successors(Some(*base), |power| power.checked_mul(*base));
+        let highest = powers.take_while(|power| *power <= longest).last();
+        highest.is_some_and(|power| longest.is_multiple_of(power))
+    };
+    let bases = (2..=LARGEST).filter(fits).filter_map(NonZero::new);
+    bases.into_iter().find(|&base| {
+        let scales = raster_scales(pixels, base, &[Grid::ALONG], NonZero::<usize>::MIN);
+        regular(&scales).is_some()
+    })
+}
+
+/// The slope of counts, and how far local slopes lie from it at most, where they are all the same as
+/// far as pixels can tell.
+pub(super) fn regular(scales: &[Scale]) -> Option<(f64, f64)> {
+    const LEAST_SLOPES: usize = 4;
+    const TOLERANCE: f64 = 0.004;
+    let slopes = scales.windows(2).map(|pair| {
+        #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
+        let log = |scale: &Scale| libm::log(scale.count.max(1) as f64);
+        (log(&pair[1]) - log(&pair[0])) / libm::log(pair[0].size / pair[1].size)
+    });
+    // The largest box may reach beyond the picture.
+    let slopes: Vec<f64> = slopes.skip(1).collect();
+    let slope = mean(&slopes);
+    let away = slopes.iter().map(|it| (it - slope).abs());
+    let most = away.fold(0.0, f64::max);
+    (slopes.len() >= LEAST_SLOPES && most <= TOLERANCE).then_some((slope, most))
 }

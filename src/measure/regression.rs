@@ -26,7 +26,7 @@ pub(super) struct Reading {
 }
 
 /// A dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The dimension. Of pictures: the slope of the finer half of the sizes, or its mean with the slope
     /// of all of them with a correction to scaling, where that is significant. Of points, and of limit
@@ -52,6 +52,17 @@ impl Estimate {
     #[must_use]
     pub fn decades(&self) -> f64 {
         libm::log10(self.range[1] / self.range[0])
+    }
+}
+
+impl Estimate {
+    /// With an error for local slopes that have drifted so far over the finer half of the decades: how far
+    /// they go on is not known. Those that drift as 1 / ln (1 / size) do have as much before them.
+    pub(super) fn drifting(self, drift: f64) -> Self {
+        Self {
+            std_error: libm::hypot(self.std_error, drift / 2.0),
+            ..self
+        }
     }
 }
 
@@ -104,16 +115,16 @@ pub(super) fn line(readings: &[Reading], slope: f64) -> (f64, f64) {
 }
 
 /// Readings as columns: abscissas, ordinates and weights.
-struct Points {
+pub(super) struct Points {
     x: Vec<f64>,
     y: Vec<f64>,
     weights: Vec<f64>,
 }
 
 /// A regression.
-struct Fit {
-    slope: f64,
-    error: f64,
+pub(super) struct Fit {
+    pub(super) slope: f64,
+    pub(super) error: f64,
     /// The weighted sum of the squares of the residuals.
     residual: f64,
     /// The coefficient of the correction in standard errors.
@@ -121,6 +132,16 @@ struct Fit {
 }
 
 impl Points {
+    /// Of abscissas, ordinates and weights.
+    pub(super) fn new(rows: impl Iterator<Item = (f64, f64, f64)>) -> Self {
+        let rows: Vec<_> = rows.collect();
+        Self {
+            x: rows.iter().map(|row| row.0).collect(),
+            y: rows.iter().map(|row| row.1).collect(),
+            weights: rows.iter().map(|row| row.2).collect(),
+        }
+    }
+
     fn of(readings: &[Reading]) -> Self {
         let weight = |it: &Reading| 1.0 / (it.scatter * it.scatter + LEAST_SCATTER * LEAST_SCATTER);
         Self {
@@ -145,7 +166,7 @@ impl Points {
     ///
     /// A coefficient is what a column has to do with y once all other columns are taken out of it
     /// (Frisch & Waugh 1933).
-    fn fit(&self, exponent: Option<f64>) -> Fit {
+    pub(super) fn fit(&self, exponent: Option<f64>) -> Fit {
         let first = self.x[0];
         let ones = vec![1.0; self.x.len()];
         let x: Vec<f64> = self.x.iter().map(|x| x - first).collect();

@@ -234,7 +234,8 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Mea
             part(set, all)
         ));
     }
-    let base = whole(arguments.base, "pictures")?;
+    let base = arguments.base.map(|base| whole(Some(base), "pictures"));
+    let base = base.transpose()?;
     let (grids, threads) = (arguments.grids(), arguments.threads());
     let counting = BoxCounting::of_pixels(&pixels, base, &grids, threads);
     let mut measured = Measured {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::measure::exact::{Dimensions, Grown, Hausdorff};
-use crate::measure::{BoxCounting, Estimate};
+use crate::measure::{BoxCounting, Estimate, Trend};
 
 use super::super::Failure;
 use super::Measured;
@@ -33,7 +33,11 @@ struct Counting<'a> {
     set: &'a str,
     #[serde(flatten)]
     estimate: Fields,
+    base: Option<f64>,
+    fitting_base: Option<f64>,
+    trend: Option<Value>,
     boxes: Vec<Boxes>,
+    means: Vec<Value>,
 }
 
 #[derive(Serialize)]
@@ -89,6 +93,8 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
     let lacunarity = measured.lacunarity.iter();
     let lacunarity =
         lacunarity.map(|it| json!({"size": it.size, "value": it.value, "places": it.places}));
+    let means = measured.counting.means.iter();
+    let means = means.map(|(size, boxes)| json!({"size": size, "boxes": boxes}));
     let report = Report {
         similarity: exact.map(|_| similarity(known)),
         affinity: known.and_then(affinity),
@@ -99,7 +105,11 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
         box_counting: Counting {
             set: &measured.set,
             estimate: Fields::of(measured.counting.estimate.as_ref()),
+            base: measured.counting.base,
+            fitting_base: measured.counting.fitting_base,
+            trend: measured.counting.trend.as_ref().map(trend),
             boxes: boxes.collect(),
+            means: means.collect(),
         },
         spectrum: spectrum.collect(),
         lacunarity: lacunarity.collect(),
@@ -108,6 +118,15 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
     let mut text = serde_json::to_string_pretty(&report).map_err(anyhow::Error::from)?;
     text.push('\n');
     Ok(text)
+}
+
+/// How local slopes drift.
+fn trend(trend: &Trend) -> Value {
+    json!({
+        "per_decade": trend.per_decade,
+        "std_error": trend.std_error,
+        "significant": trend.is_significant(),
+    })
 }
 
 /// The similarity dimension, and how it is found.
@@ -273,7 +292,43 @@ pub(super) fn described(measured: &Measured) -> String {
         }
     }
     let _ = writeln!(text, "\n{}", sentence(measured));
+    for remark in remarks(&measured.counting) {
+        let _ = writeln!(text, "{remark}");
+    }
     text
+}
+
+/// What is to be known of the fit beside its result.
+fn remarks(counting: &BoxCounting) -> Vec<String> {
+    const USUAL: f64 = 2.0;
+    let mut remarks = Vec::new();
+    if let (Some(base), Some(fitting)) = (counting.base, counting.fitting_base) {
+        if base != fitting {
+            remarks.push(format!(
+                "Boxes that grow by {fitting} fit this picture better than those that grow by {base}: \
+                 all their local slopes are the same (--base {fitting})."
+            ));
+        } else if base != USUAL {
+            remarks.push(format!(
+                "Boxes that grow by {base} fit this picture better than those that grow by {USUAL}: \
+                 all their local slopes are the same."
+            ));
+        }
+    }
+    if let Some(trend) = counting.trend.filter(Trend::is_significant) {
+        let way = if trend.per_decade > 0.0 {
+            "rise"
+        } else {
+            "fall"
+        };
+        remarks.push(format!(
+            "Local slopes {way} by {:.4} ± {:.4} with every decade of smaller boxes: the estimate goes on \
+             with them beyond the sizes, and its error allows for that.",
+            trend.per_decade.abs(),
+            2.0 * trend.std_error,
+        ));
+    }
+    remarks
 }
 
 /// What is known without measuring.

@@ -1,0 +1,85 @@
+//! Whether local slopes drift: a dimension is a limit, and they may not have come to it.
+
+use super::regression::{Points, Reading};
+
+/// How local slopes of a logarithm change as boxes get smaller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trend {
+    /// By how much they rise from boxes to those ten times smaller.
+    pub per_decade: f64,
+    /// Its standard error.
+    pub std_error: f64,
+}
+
+/// Of so many local slopes, a trend can be told.
+const LEAST_SLOPES: usize = 4;
+
+/// A trend that is so many standard errors from 0 is significant.
+const SIGNIFICANT: f64 = 4.0;
+
+/// A local slope is not believed to be known better.
+const LEAST_ERROR: f64 = 0.001;
+
+impl Trend {
+    /// That of readings, from the largest size to the smallest; none if there are too few.
+    pub(super) fn of(readings: &[Reading]) -> Option<Self> {
+        let slope = |pair: &[Reading]| {
+            let [coarse, fine] = [pair[0], pair[1]];
+            let step = libm::log(coarse.size / fine.size);
+            let error = fine.growth_error.max(LEAST_ERROR) / step;
+            let middle = -libm::log(coarse.size * fine.size) / 2.0;
+            (middle, fine.growth / step, 1.0 / (error * error))
+        };
+        if readings.len() <= LEAST_SLOPES {
+            return None;
+        }
+        let fit = Points::new(readings.windows(2).map(slope)).fit(None);
+        Some(Self {
+            per_decade: fit.slope * std::f64::consts::LN_10,
+            std_error: fit.error * std::f64::consts::LN_10,
+        })
+    }
+
+    /// By how much slopes drift over readings.
+    pub(super) fn over(&self, readings: &[Reading]) -> f64 {
+        let ends = readings.first().zip(readings.last());
+        let decades = ends.map(|(coarse, fine)| libm::log10(coarse.size / fine.size));
+        self.per_decade * decades.unwrap_or_default()
+    }
+
+    /// Whether slopes drift by more than chance would have them.
+    #[must_use]
+    pub fn is_significant(&self) -> bool {
+        self.per_decade.abs() > SIGNIFICANT * self.std_error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trend(slope: impl Fn(f64) -> f64, error: f64) -> Trend {
+        let reading = |level: i32| {
+            let x = f64::from(level);
+            Reading {
+                size: libm::exp(-x),
+                log: 0.0,
+                scatter: 0.0,
+                growth: slope(x - 0.5),
+                growth_error: error,
+            }
+        };
+        Trend::of(&(0..12).map(reading).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn a_drift_is_seen_and_chance_is_not() {
+        let chance = |x: f64| 0.02 * libm::sin(7.0 * x * x);
+        let drifting = trend(|x| 1.8 + 0.02 * x + chance(x) / 10.0, 0.005);
+        assert!(drifting.is_significant(), "{drifting:?}");
+        let rise = 0.02 * std::f64::consts::LN_10;
+        assert!((drifting.per_decade - rise).abs() < 0.01, "{drifting:?}");
+        let level = trend(|x| 1.8 + chance(x), 0.02);
+        assert!(!level.is_significant(), "{level:?}");
+    }
+}
