@@ -4,6 +4,7 @@
 //! What is drawn is the limit set itself, as a pen of no less than a pixel goes over a point of each
 //! [cell](crate::grow::LimitCells) that it meets: all that lies within half a pixel of it.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
@@ -11,10 +12,9 @@ use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Field, Found, Growth, Layer, LimitCells, Search, Stopped, WalkError};
 use crate::parallel::Team;
 use crate::style::{Cap, ColorBy, Colour, Join, Style, Width};
-use crate::whole::whole;
 
 use super::layout::Layout;
-use super::sight::starts_rings;
+use super::sight::{NEARLY, starts_rings};
 use super::surface::{FINE, Paint, Pen, Stroke, Surface, position};
 use super::{Canvas, Classes, Drawing, Empty, Format, NoRoom, Options, Picture, RenderError, Size};
 
@@ -30,6 +30,12 @@ const MOST_TIMES: u64 = 4;
 /// The most images of points.
 const MOST_IMAGES: u64 = 400_000_000;
 
+/// The same where every step counts its own.
+const MOST_IMAGES_BY_STEPS: u64 = 250_000_000;
+
+/// The same where only a part of the set is shown, for which elements may be few.
+const MOST_IMAGES_ABOUT_A_WINDOW: u64 = 60_000_000;
+
 /// Objects that are looked into for one colour of all that becomes of them.
 const MOST_PARTS: usize = 1 << 12;
 
@@ -42,19 +48,16 @@ pub(super) struct Cells<'a> {
     steps: u32,
     style: &'a Style,
     pen: Pen,
-    /// Of this many rows that lie within others one is drawn: more would add nothing.
-    step: i64,
-    /// Whether pixels are drawn, so that points are drawn where they are.
-    is_exact: bool,
-    /// What part of the plane can be seen.
-    shown: Bounds,
-    layers: Vec<(Colour, Field)>,
+    /// The ends of what is drawn in a colour, lines and dots.
+    layers: Vec<(Colour, Vec<[DVec2; 2]>)>,
 }
 
 /// What is to be drawn.
 struct Plan {
     layers: Vec<(Colour, Layer)>,
     pen: Pen,
+    /// Whether colours tell steps.
+    tells_steps: bool,
 }
 
 /// What finds cells.
@@ -65,9 +68,14 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The cells of a size; `None` where that takes too much work.
-    fn find(&self, scale: f64) -> Result<Option<Found>, RenderError> {
-        self.done(self.set.find(&self.search(scale)))
+    /// The cells of a size, by steps where elements are replaced down to a length; `None` where that takes
+    /// too much work.
+    fn find(&self, scale: f64, shortest: Option<f64>) -> Result<Option<Found>, RenderError> {
+        let search = self.search(scale);
+        self.done(match shortest {
+            Some(shortest) => self.set.find_steps(&search, shortest),
+            None => self.set.find(&search),
+        })
     }
 
     /// The box of the set, where the graph does not tell it.
@@ -82,7 +90,11 @@ impl Finder<'_> {
     fn search(&self, scale: f64) -> Search<'_> {
         Search {
             scale,
-            most_images: MOST_IMAGES,
+            most_images: match self.options.view.window {
+                Some(_) => MOST_IMAGES_ABOUT_A_WINDOW,
+                None if self.options.style.color_by == ColorBy::Step => MOST_IMAGES_BY_STEPS,
+                None => MOST_IMAGES,
+            },
             threads: self.options.threads,
             cancel: self.cancel,
         }
@@ -104,14 +116,61 @@ fn becomes_flat(graph: &Graph) -> bool {
 }
 
 /// The most elements of a limit set that is drawn by elements: more than its pixels could tell.
-fn most_elements(options: &Options, pixels: f64) -> u64 {
-    const TO_A_PIXEL: f64 = 8.0;
+fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
+    let is_closed = |object: &Object| graph.base_elements()[object.base_element].is_closed();
+    let mut drawn = graph.objects().iter().filter(|object| object.visible);
+    // Lines are drawn by long runs.
+    let to_a_pixel = if drawn.all(is_closed) { 2.0 } else { 8.0 };
     let [width, height] = match options.size {
         Size::Long(side) => [side; 2],
         Size::Exactly(width, height) => [width, height],
     };
     let finest = pixels.min(1.0);
-    whole(TO_A_PIXEL * f64::from(width) * f64::from(height) / (finest * finest)) as u64
+    to_a_pixel * f64::from(width) * f64::from(height) / (finest * finest)
+}
+
+/// Whether a graph of similarities has more elements than so many, down to a length: about, by the powers of
+/// 2 that they are long. It need not be known.
+fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
+    const AN_OCTAVE: f64 = 64.0;
+    const MOST_WORK: usize = 4_000_000;
+    let steps = |length: f64| (libm::log2(length) * AN_OCTAVE).round();
+    let end = steps(shortest);
+    // Outlines of many pieces take as long as some plain ones.
+    let pieces = graph.base_elements().iter().map(|it| it.pieces().len());
+    let worth: Vec<f64> = pieces
+        .map(|pieces| (pieces as f64 / 4.0).max(1.0))
+        .collect();
+    let mut level: BTreeMap<(usize, i64), f64> = BTreeMap::new();
+    let add = |level: &mut BTreeMap<_, _>, object: usize, at: f64, count: f64| -> f64 {
+        let is_replaced = matches!(graph.objects()[object].replacement, Replacement::Fixed(_));
+        if !is_replaced || at < end {
+            return count * worth[graph.objects()[object].base_element];
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "logarithms are small")]
+        let sum: &mut f64 = level.entry((object, at as i64)).or_insert(0.0);
+        *sum += count;
+        0.0
+    };
+    let (mut stand, mut work) = (0.0, 0);
+    for instance in &graph.initiator(0).instances {
+        let at = steps(instance.frame.stretch());
+        stand += add(&mut level, instance.object, at, 1.0);
+    }
+    while !level.is_empty() && stand <= most {
+        for ((object, at), count) in std::mem::take(&mut level) {
+            for (_, instance) in graph.children(object) {
+                work += 1;
+                #[expect(clippy::cast_precision_loss, reason = "logarithms are small")]
+                let at = at as f64 + steps(instance.length);
+                stand += add(&mut level, instance.object, at, count);
+            }
+        }
+        if work > MOST_WORK {
+            break;
+        }
+    }
+    stand > most
 }
 
 /// How a picture is drawn.
@@ -134,47 +193,42 @@ impl<'a> Way<'a> {
         let Some(detail) = options.detail.filter(|detail| detail.decides_steps) else {
             return elements(growth);
         };
-        let cells = || Cells::of(graph, growth, options, detail.pixels);
-        if becomes_flat(graph) {
-            return match cells()? {
-                Some(cells) => Ok(Self::Cells(cells)),
-                None => elements(growth),
-            };
-        }
-        let most_elements = most_elements(options, detail.pixels);
-        let limited = |most_elements: u64| {
-            elements(&Growth {
-                most_elements,
-                ..*growth
-            })
+        let Some(mut plan) = Plan::of(graph, options, detail.pixels) else {
+            return elements(growth);
         };
-        let found = limited(most_elements.min(growth.most_elements));
-        let mut are_too_many = has_too_many(&found);
-        if are_too_many && options.format != Format::Png {
-            // Paths of few elements are better drawn coarser than by cells.
-            are_too_many = has_too_many(&limited(most_elements));
+        let shows_all = options.view.window.is_none();
+        let goes_by_cells = becomes_flat(graph)
+            || shows_all && {
+                let scale = plan.canvas(graph, options)?.map(|canvas| canvas.scale());
+                let most = most_elements(graph, options, detail.pixels);
+                scale.is_some_and(|scale| {
+                    exceeds(graph, detail.pixels / (scale * graph.unit()), most)
+                })
+            };
+        let mut cells = || Cells::of(graph, growth, options, &mut plan, detail.pixels);
+        if goes_by_cells && let Some(cells) = cells()? {
+            return Ok(Self::Cells(cells));
         }
-        if !are_too_many {
-            return found;
-        }
-        match (cells()?, found) {
-            (Some(cells), _) => Ok(Self::Cells(cells)),
-            (None, Ok(found)) => Ok(found),
-            (None, Err(_)) => elements(growth),
+        match elements(growth) {
+            Err(error)
+                if options.format == Format::Png && !goes_by_cells && is_too_much(&error) =>
+            {
+                match cells()? {
+                    Some(cells) => Ok(Self::Cells(cells)),
+                    None => Err(error),
+                }
+            }
+            found => found,
         }
     }
 }
 
-/// Whether there are more elements than allowed, or than have been counted.
-fn has_too_many(found: &Result<Way<'_>, RenderError>) -> bool {
-    match found {
-        Ok(Way::Elements(layout)) => layout.survey.has_more,
-        Err(RenderError::Walk(error)) => matches!(
-            error,
-            WalkError::TooManyElements { .. } | WalkError::TooLong { .. }
-        ),
-        _ => false,
-    }
+/// Whether it is the number of elements that is refused.
+fn is_too_much(error: &RenderError) -> bool {
+    matches!(
+        error,
+        RenderError::Walk(WalkError::TooManyElements { .. } | WalkError::TooLong { .. })
+    )
 }
 
 impl<'a> Cells<'a> {
@@ -199,36 +253,29 @@ impl<'a> Cells<'a> {
         graph: &Graph,
         growth: &Growth<'_>,
         options: &'a Options,
+        plan: &mut Plan,
         pixels: f64,
     ) -> Result<Option<Self>, RenderError> {
-        let Some(plan) = Plan::of(graph, options, pixels) else {
-            return Ok(None);
-        };
-        let (colours, layers): (Vec<Colour>, Vec<Layer>) = plan.layers.into_iter().unzip();
+        let canvas = plan.canvas(graph, options)?;
+        let (colours, layers): (Vec<Colour>, Vec<Layer>) =
+            std::mem::take(&mut plan.layers).into_iter().unzip();
         let finder = Finder {
             set: LimitCells::new(graph, &layers),
             options,
             cancel: growth.cancel,
         };
-        let bounds = match graph.limit_bounds() {
-            Some(bounds) => Some(bounds),
-            None => finder.bounds()?,
+        let canvas = match canvas {
+            Some(canvas) => canvas,
+            None => match finder.bounds()? {
+                Some(bounds) => plan.canvas_of(&bounds, options)?,
+                None => return Ok(None),
+            },
         };
-        let Some(bounds) = bounds else {
-            return Ok(None);
-        };
-        let canvas = match options.view.window {
-            Some(window) => Canvas::of_window(window, &options.view, options.size)?,
-            None => {
-                let room = options.view.margin + plan.pen.width / 2.0;
-                Canvas::fit(&bounds, options.size, room)?
-            }
-        };
-        if !canvas.holds(&bounds) {
-            return Err(NoRoom::TooClose.into());
-        }
         let is_exact = options.format == Format::Png;
         let all: &[u8] = if is_exact { &FINENESS } else { &FINENESS[..1] };
+        let shortest = plan
+            .tells_steps
+            .then(|| NEARLY * pixels / (canvas.scale() * graph.unit()));
         let mut found: Option<(u8, Found)> = None;
         let mut expected = 0;
         for &fineness in all {
@@ -236,7 +283,7 @@ impl<'a> Cells<'a> {
                 break;
             }
             let scale = canvas.scale() * f64::from(fineness) / pixels.max(1.0);
-            let Some(next) = finder.find(scale)? else {
+            let Some(next) = finder.find(scale, shortest)? else {
                 break;
             };
             let before = found.as_ref().map_or(0, |(_, found)| found.images);
@@ -247,47 +294,92 @@ impl<'a> Cells<'a> {
         let Some((fineness, Found { fields, steps, .. })) = found else {
             return Ok(None);
         };
-        let mut cells = Self {
-            canvas,
-            count: 0,
-            steps,
-            style: &options.style,
-            pen: plan.pen,
-            step: i64::from(fineness / 2).max(1),
-            is_exact,
-            shown: canvas.shown(plan.pen.width),
-            layers: colours.into_iter().zip(fields).collect(),
-        };
-        let mut count = 0;
-        for (_, field) in &cells.layers {
-            cells.visit(field, |_| count += 1);
+        let shown = canvas.shown(plan.pen.width);
+        let is_shown = |[from, to]: [DVec2; 2]| shown.meets(&Bounds::new(from, to));
+        let mut layers = Vec::new();
+        if plan.tells_steps {
+            layers = labelled(&fields, graph, &options.style, is_shown);
+        } else {
+            for (colour, field) in colours.into_iter().zip(&fields) {
+                // Rows that lie within others: more would add nothing.
+                let step = i64::from(fineness / 2).max(1);
+                let mut marks = Vec::new();
+                for row in field.rows() {
+                    let visit = |ends| marks.extend(is_shown(ends).then_some(ends));
+                    if is_exact {
+                        row.visit_points(row.number() % step == 0, visit);
+                    } else {
+                        row.visit_runs(visit);
+                    }
+                }
+                layers.push((colour, marks));
+            }
         }
-        cells.count = count;
-        if !is_exact && count > growth.most_elements {
+        let count = layers.iter().map(|(_, marks)| marks.len() as u64).sum();
+        if count > growth.most_elements {
             let limit = growth.most_elements;
             return Err(RenderError::Walk(WalkError::TooManyElements { limit }));
         }
-        Ok(Some(cells))
-    }
-
-    /// Visits what the pen draws: lines, or dots.
-    fn visit(&self, field: &Field, mut visit: impl FnMut([DVec2; 2])) {
-        let mut see = |[from, to]: [DVec2; 2]| {
-            if self.shown.meets(&Bounds::new(from, to)) {
-                visit([from, to]);
-            }
-        };
-        for row in field.rows() {
-            if self.is_exact {
-                row.visit_points(row.number() % self.step == 0, &mut see);
-            } else {
-                row.visit_runs(&mut see);
-            }
-        }
+        Ok(Some(Self {
+            canvas,
+            count,
+            steps,
+            style: &options.style,
+            pen: plan.pen,
+            layers,
+        }))
     }
 }
 
+/// What is drawn of every step, in the order of their classes.
+fn labelled(
+    fields: &[Field],
+    graph: &Graph,
+    style: &Style,
+    is_shown: impl Fn([DVec2; 2]) -> bool,
+) -> Vec<(Colour, Vec<[DVec2; 2]>)> {
+    let mut marks: Vec<(u8, [DVec2; 2])> = Vec::new();
+    for row in fields.iter().flat_map(Field::rows) {
+        row.visit_labels(|label, ends| marks.extend(is_shown(ends).then_some((label, ends))));
+    }
+    let last = marks.iter().map(|(label, _)| *label).max().unwrap_or(0);
+    let classes = Classes::before_survey(style.color_by, graph, last.into());
+    let mut layers: Vec<(Colour, Vec<[DVec2; 2]>)> = { classes.all() }
+        .map(|class| {
+            (
+                classes.colour(class, style).unwrap_or(style.polygons()),
+                Vec::new(),
+            )
+        })
+        .collect();
+    for (label, ends) in marks {
+        if let Ok(class) = usize::try_from(classes.of_value(label.into())) {
+            layers[class].1.push(ends);
+        }
+    }
+    layers.retain(|(_, marks)| !marks.is_empty());
+    layers
+}
+
 impl Plan {
+    /// The canvas of the limit set, where the graph tells its box.
+    fn canvas(&self, graph: &Graph, options: &Options) -> Result<Option<Canvas>, RenderError> {
+        let bounds = graph.limit_bounds();
+        bounds.map(|it| self.canvas_of(&it, options)).transpose()
+    }
+
+    fn canvas_of(&self, bounds: &Bounds, options: &Options) -> Result<Canvas, RenderError> {
+        let Options { view, size, .. } = options;
+        let canvas = match view.window {
+            Some(window) => Canvas::of_window(window, view, *size)?,
+            None => Canvas::fit(bounds, *size, view.margin + self.pen.width / 2.0)?,
+        };
+        if !canvas.holds(bounds) {
+            return Err(NoRoom::TooClose.into());
+        }
+        Ok(canvas)
+    }
+
     fn of(graph: &Graph, options: &Options, pixels: f64) -> Option<Self> {
         let style = &options.style;
         let is_known = graph.is_plain()
@@ -299,11 +391,10 @@ impl Plan {
             ColorBy::None | ColorBy::Hits => true,
             ColorBy::Tint => !graph.tints(),
             ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => true,
-            ColorBy::Step
-            | ColorBy::Age
-            | ColorBy::Fractal
-            | ColorBy::Index
-            | ColorBy::Direction => false,
+            // What is drawn when it is replaced no more hangs on the last step.
+            ColorBy::Step => { graph.objects().iter() }
+                .all(|object| !object.visible || matches!(object.replacement, Replacement::Kept)),
+            ColorBy::Age | ColorBy::Fractal | ColorBy::Index | ColorBy::Direction => false,
         };
         let fills_rings = style.fill.is_some() && starts_rings(graph);
         if !is_known || !is_told || fills_rings || options.plot || !graph.contracts() {
@@ -318,7 +409,12 @@ impl Plan {
         let kept: Vec<&Object> = drawn.filter(is_kept).collect();
         let outlines = any_closed && style.outlines_polygons();
         let has_two_colours = !all_closed && any_closed && style.lines() != style.polygons();
-        if has_two_colours || outlines && kept.iter().any(is_closed) {
+        let is_linked = |object: &&Object| {
+            let base_element = &graph.base_elements()[object.base_element];
+            !base_element.is_closed() && base_element.ends_meet_frame() != [true; 2]
+        };
+        let are_linked = graph.joins() && kept.iter().any(is_linked);
+        if has_two_colours || are_linked || outlines && kept.iter().any(is_closed) {
             return None;
         }
         let has_own_widths = graph.widest().is_some() && !kept.is_empty();
@@ -330,6 +426,7 @@ impl Plan {
             Width::Relative(_) if kept.is_empty() => least,
             Width::Relative(_) => return None,
         };
+        // Steps are told apart within a layer.
         let classes = Classes::before_survey(style.color_by, graph, 0);
         let layers = layers(graph, &classes)?;
         let own = if all_closed && !outlines {
@@ -348,6 +445,7 @@ impl Plan {
                 join: Join::Round,
                 dash: 0.0,
             },
+            tells_steps: style.color_by == ColorBy::Step,
         })
     }
 }
@@ -407,22 +505,18 @@ impl Drawing for Cells<'_> {
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
         let place = |point: DVec2| position(self.canvas.pixel(point) * FINE);
-        for (colour, field) in &self.layers {
+        for (colour, marks) in &self.layers {
             let (colour, pen) = (*colour, self.pen);
             surface.begin(&Paint {
                 fill: None,
                 stroke: Some(Stroke { colour, pen }),
             })?;
-            let mut drawn = Ok(());
-            self.visit(field, |ends| {
+            for ends in marks {
                 let [from, to] = ends.map(place);
                 surface.move_to(from);
                 surface.line_to(to);
-                if drawn.is_ok() {
-                    drawn = surface.hand_on();
-                }
-            });
-            drawn?;
+                surface.hand_on()?;
+            }
             surface.end()?;
         }
         Ok(())

@@ -10,7 +10,7 @@ use kfrac::grow::Growth;
 use kfrac::ifs::System;
 use kfrac::render::{self, Canvas, Detail, Format, Options, Size};
 
-const SIZE: u32 = 96;
+const SIZE: u32 = 64;
 
 /// Numbers without end (splitmix64; Steele et al. 2014).
 struct Random(u64);
@@ -160,9 +160,9 @@ fn hold(name: &str, system: &System, points: usize) {
 
 #[test]
 fn random_systems_are_drawn_where_they_are() {
-    for seed in 0..12 {
+    for seed in 0..8 {
         let system = system(&random_system(seed));
-        hold(&format!("system {seed}"), &system, 30_000);
+        hold(&format!("system {seed}"), &system, 20_000);
     }
 }
 
@@ -191,6 +191,41 @@ fn the_librarys_systems_are_drawn_where_they_are() {
         hold(&name, &system, 50_000);
     }
     assert!(drawn >= 3, "{drawn}");
+}
+
+/// Trunks of which each carries two that are lower, in the colours of their steps.
+#[test]
+fn cells_tell_steps() {
+    let tree = system(
+        "maps:\n  - {matrix: [[0.5, 0], [0, 0.45]], shift: [-0.3, 1]}\n  \
+         - {matrix: [[0.5, 0], [0, 0.45]], shift: [0.3, 1]}\ncondensation:\n  \
+         - {polygon: [[-0.1, 0], [0.1, 0], [0.1, 1], [-0.1, 1]]}\nstyle: {color_by: step, palette: \
+         [\"#ff0000\", \"#0000ff\"]}\n",
+    );
+    let graph = graph(&tree);
+    let mut options = options(200, 1);
+    options.style = tree.heading().style.clone();
+    let (bytes, picture) = drawn(&graph, &options);
+    assert!(picture.is_limit);
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let canvas = Canvas::fit(&graph.limit_bounds().unwrap(), Size::Long(200), 0.5).unwrap();
+    let colour = |x: f64, y: f64| -> Vec<u8> {
+        let at = canvas.pixel(DVec2::new(x, y));
+        let [column, row] =
+            [at.x, at.y].map(|at| (0..200).find(|it| f64::from(it + 1) > at).unwrap());
+        let at = 4 * (row * info.width + column) as usize;
+        pixels[at..at + 4].to_vec()
+    };
+    assert_eq!(colour(0.0, 0.5), [255, 0, 0, 255]);
+    // One and two maps further up.
+    let [first, second] = [colour(-0.3, 1.2), colour(-0.45, 1.53)];
+    assert!(first[2] > 0 && first[2] < second[2], "{first:?} {second:?}");
+    assert_eq!([first[3], second[3]], [255; 2]);
+    assert_eq!(colour(-0.3, 0.5)[3], 0);
 }
 
 #[test]

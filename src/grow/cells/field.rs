@@ -9,9 +9,6 @@ const WIDTH: usize = 64;
 /// Steps to a cell in which its point is kept.
 const STEPS: f64 = 256.0;
 
-/// The middle of a cell.
-const MIDDLE: [u8; 2] = [128; 2];
-
 /// No tile.
 const NONE: u32 = u32::MAX;
 
@@ -128,6 +125,30 @@ impl Field {
         Ok(true)
     }
 
+    /// Adds a point that tells something of its cell, in the place of what is told before.
+    pub(super) fn label(&mut self, point: DVec2, label: u8) -> Result<(), TooFar> {
+        self.add(point)?;
+        let cell = cell_of(point * self.scale);
+        let [column, row] = within(cell);
+        if let Some(slot) = self.slot(tile_of(cell)) {
+            let tile = &mut self.tiles[self.directory[slot] as usize];
+            tile.places[row * WIDTH + column] = [label; 2];
+        }
+        Ok(())
+    }
+
+    /// Whether the cell of a point tells a label.
+    pub(super) fn has_label(&self, point: DVec2, label: u8) -> bool {
+        self.place(cell_of(point * self.scale)) == Some([label; 2])
+    }
+
+    /// Forgets all points.
+    pub(super) fn clear(&mut self) {
+        for tile in &mut self.tiles {
+            tile.rows = [0; WIDTH];
+        }
+    }
+
     /// Makes the directory larger, by more than it takes.
     fn make_room(&mut self, tile: [i64; 2]) -> Result<usize, TooFar> {
         if tile.iter().any(|at| at.abs() > FARTHEST) {
@@ -185,19 +206,18 @@ impl Field {
             for row in first..first + SIDE {
                 let [three, _] = self.neighbours(column, row);
                 let pits = three & !self.word(column, row);
-                if pits != 0 {
-                    filled.push((number as usize, row - first, pits));
+                for bit in bits(pits) {
+                    let cell = [column * SIDE + bit, row];
+                    let beside = [[cell[0] - 1, row], [cell[0] + 1, row]];
+                    let beside = beside.into_iter().find_map(|cell| self.place(cell));
+                    filled.push((number as usize, within(cell), beside.unwrap_or_default()));
                 }
             }
         }
-        for (number, row, pits) in filled {
+        for (number, [column, row], place) in filled {
             let tile = &mut self.tiles[number];
-            let [_, row] = within([0, row]);
-            tile.rows[row] |= pits;
-            for bit in bits(pits) {
-                let [column, _] = within([bit, 0]);
-                tile.places[row * WIDTH + column] = MIDDLE;
-            }
+            tile.rows[row] |= 1 << column;
+            tile.places[row * WIDTH + column] = place;
         }
     }
 
@@ -231,11 +251,16 @@ impl Field {
         tile.map_or(0, |tile| tile.rows[row])
     }
 
+    /// What is kept of a cell that holds a point: the place of that, or a label.
+    fn place(&self, cell: [i64; 2]) -> Option<[u8; 2]> {
+        let [column, row] = within(cell);
+        let tile = self.tile(tile_of(cell))?;
+        (tile.rows[row] >> column & 1 == 1).then(|| tile.places[row * WIDTH + column])
+    }
+
     /// The point of a cell that holds one.
     fn point(&self, cell: [i64; 2]) -> DVec2 {
-        let [column, row] = within(cell);
-        let tile = self.tile(tile_of(cell));
-        let [x, y] = tile.map_or([0; 2], |tile| tile.places[row * WIDTH + column]);
+        let [x, y] = self.place(cell).unwrap_or_default();
         let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / STEPS;
         (corner(cell) + place) / self.scale
     }
@@ -272,6 +297,30 @@ impl Row<'_> {
             [visited, word & three]
         };
         self.visit(sort, visit);
+    }
+
+    /// The same by runs of cells that have one label.
+    pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u8, [DVec2; 2])) {
+        let Self { field, number } = *self;
+        let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
+        let mut run: Option<(u8, [i64; 2])> = None;
+        for column in field.low[0]..field.low[0] + field.room[0] {
+            for bit in bits(field.word(column, number)) {
+                let cell = column * SIDE + bit;
+                let [label, _] = field.place([cell, number]).unwrap_or_default();
+                match &mut run {
+                    Some((of, [_, last])) if *of == label && *last + 1 == cell => *last = cell,
+                    _ => {
+                        if let Some((label, ends)) = run.replace((label, [cell; 2])) {
+                            visit(label, ends.map(middle));
+                        }
+                    }
+                }
+            }
+        }
+        if let Some((label, ends)) = run {
+            visit(label, ends.map(middle));
+        }
     }
 
     /// Visits those cells of each word and column that come first of what `sort` makes of them: those

@@ -16,6 +16,7 @@
 mod field;
 mod net;
 mod outline;
+mod steps;
 
 pub(crate) use field::Field;
 pub(crate) use net::Layer;
@@ -28,7 +29,7 @@ use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 
 use self::field::TooFar;
-use self::net::Net;
+use self::net::{Net, Node};
 
 /// Points whose images are looked for together.
 const BLOCK: usize = 1 << 15;
@@ -48,12 +49,6 @@ pub(crate) enum Stopped {
     Cancelled,
 }
 
-impl From<TooFar> for Stopped {
-    fn from(_: TooFar) -> Self {
-        Self::TooMany
-    }
-}
-
 /// The limit set of a graph that contracts, by the layers of a picture.
 pub(crate) struct LimitCells<'g> {
     graph: &'g Graph,
@@ -70,6 +65,17 @@ pub(crate) struct Search<'a> {
     pub(crate) most_images: u64,
     pub(crate) threads: NonZero<usize>,
     pub(crate) cancel: Option<&'a AtomicBool>,
+}
+
+impl Search<'_> {
+    /// Ends the search if somebody wants that.
+    fn check(&self) -> Result<(), Stopped> {
+        let is_cancelled = |cancel: &AtomicBool| cancel.load(Relaxed);
+        if self.cancel.is_some_and(is_cancelled) {
+            return Err(Stopped::Cancelled);
+        }
+        Ok(())
+    }
 }
 
 /// Cells that have been found.
@@ -165,16 +171,21 @@ impl<'g> LimitCells<'g> {
         while orbit.go_on()? {
             steps += 1;
         }
-        let mut fields = orbit.fields.split_off(nodes.len() - self.layers);
-        for _ in 0..ROUNDS {
-            fields.iter_mut().for_each(Field::fill_pits);
-        }
+        let fields = finished(orbit.fields.split_off(nodes.len() - self.layers));
         Ok(Found {
             images: search.most_images - orbit.left,
             steps,
             fields,
         })
     }
+}
+
+/// Fills the cells of layers that lie between others.
+fn finished(mut layers: Vec<Field>) -> Vec<Field> {
+    for _ in 0..ROUNDS {
+        layers.iter_mut().for_each(Field::fill_pits);
+    }
+    layers
 }
 
 /// Points of all sets, one a cell.
@@ -199,11 +210,7 @@ impl Orbit<'_> {
     /// Takes some work.
     fn take(&mut self, images: usize) -> Result<(), Stopped> {
         self.left = { self.left.checked_sub(images as u64) }.ok_or(Stopped::TooMany)?;
-        let is_cancelled = |cancel: &AtomicBool| cancel.load(Relaxed);
-        if self.search.cancel.is_some_and(is_cancelled) {
-            return Err(Stopped::Cancelled);
-        }
-        Ok(())
+        self.search.check()
     }
 
     /// Points of the sets themselves.
@@ -214,21 +221,10 @@ impl Orbit<'_> {
                 continue;
             }
             let scale = self.fields[number].scale();
-            for (map, base_element) in &node.outlines {
-                let mut points = Vec::new();
-                let base_element = &graph.base_elements()[*base_element];
-                let room = self.left;
-                let are_all = outline::visit(base_element, map, scale, &mut |point| {
-                    points.push(point);
-                    points.len() as u64 <= room
-                });
-                if !are_all {
-                    return Err(Stopped::TooMany);
-                }
-                self.take(points.len())?;
-                for point in points {
-                    self.add(number, point)?;
-                }
+            let points = outlined(graph, node, scale, self.left)?;
+            self.take(points.len())?;
+            for point in points {
+                self.add(number, point)?;
             }
             if let Some(point) = node.point {
                 self.add(number, point)?;
@@ -257,33 +253,56 @@ impl Orbit<'_> {
                     continue;
                 }
                 let fields = &self.fields;
-                let look = |points: &[DVec2]| -> Vec<(usize, DVec2)> {
-                    let images = points.iter().flat_map(|point| {
-                        maps.iter()
-                            .map(|(map, whole)| (*whole, map.transform_point2(*point)))
-                    });
-                    images
-                        .filter(|(whole, image)| !fields[*whole].holds(*image))
-                        .collect()
-                };
-                let parts = block.chunks(block.len().div_ceil(threads));
-                let found: Vec<Vec<(usize, DVec2)>> = thread::scope(|scope| {
-                    let others: Vec<_> = { parts.clone().skip(1) }
-                        .map(|part| scope.spawn(move || look(part)))
-                        .collect();
-                    let first = parts.clone().next().map(look);
-                    let others = others.into_iter().map(|other| {
-                        other
-                            .join()
-                            .unwrap_or_else(|cause| std::panic::resume_unwind(cause))
-                    });
-                    first.into_iter().chain(others).collect()
+                let found = looked_for(block, threads, |point, found| {
+                    let images = maps.iter();
+                    let images = images.map(|(map, whole)| (*whole, map.transform_point2(*point)));
+                    found.extend(images.filter(|(whole, image)| !fields[*whole].holds(*image)));
                 });
-                for (whole, image) in found.into_iter().flatten() {
+                for (whole, image) in found {
                     self.add(whole, image)?;
                 }
             }
         }
         Ok(wave.iter().any(|points| !points.is_empty()))
     }
+}
+
+/// Points of the outlines of a set, no more than so many.
+fn outlined(graph: &Graph, node: &Node, scale: f64, most: u64) -> Result<Vec<DVec2>, Stopped> {
+    let mut points = Vec::new();
+    for (map, base_element) in &node.outlines {
+        let base_element = &graph.base_elements()[*base_element];
+        let are_all = outline::visit(base_element, map, scale, &mut |point| {
+            points.push(point);
+            points.len() as u64 <= most
+        });
+        if !are_all {
+            return Err(Stopped::TooMany);
+        }
+    }
+    Ok(points)
+}
+
+/// What is found for each of some points, in their order, by so many threads.
+fn looked_for<P: Sync, T: Send>(
+    points: &[P],
+    threads: usize,
+    look: impl Fn(&P, &mut Vec<T>) + Sync,
+) -> Vec<T> {
+    let look = |points: &[P]| -> Vec<T> {
+        let mut found = Vec::new();
+        points.iter().for_each(|point| look(point, &mut found));
+        found
+    };
+    let mut parts = points.chunks(points.len().div_ceil(threads.max(1)).max(1));
+    let first = parts.next().unwrap_or_default();
+    thread::scope(|scope| {
+        let others: Vec<_> = { parts }.map(|part| scope.spawn(|| look(part))).collect();
+        let mut found = look(first);
+        for other in others {
+            let other = other.join();
+            found.extend(other.unwrap_or_else(|cause| std::panic::resume_unwind(cause)));
+        }
+        found
+    })
 }
