@@ -7,6 +7,8 @@ mod common;
 mod laws;
 #[path = "exact/library.rs"]
 mod library;
+#[path = "exact/spectrum.rs"]
+mod spectrum;
 #[path = "exact/systems.rs"]
 mod systems;
 

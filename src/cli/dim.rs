@@ -31,6 +31,11 @@ use super::{Failure, format, help, output, text};
 /// be counted are told by a sample of them. Beside it stands what is
 /// exact: its similarity dimension, how its copies lie, the dimension that follows for the set itself
 /// and for its boundary.
+///
+/// The spectrum of dimensions D_q is that of a measure on the limit set: the one that the weights of a
+/// system give, or else the natural one, under which copies have the masses that their sizes call for, and
+/// copies that coincide count once. It is exact where copies are similar and do not overlap, and measured
+/// by the masses of boxes about points of the set, which the graph tells.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -122,6 +127,10 @@ struct Measured {
     exact: Option<exact::Grown>,
     counting: BoxCounting,
     spectrum: Vec<Generalised>,
+    /// The spectrum that is known without measuring.
+    spectrum_known: Option<exact::Spectrum>,
+    /// What measure of a limit set the spectrum is of.
+    measure: Option<&'static str>,
     lacunarity: Vec<Lacunarity>,
     warnings: Vec<String>,
 }

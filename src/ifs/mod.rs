@@ -151,6 +151,13 @@ impl Ifs {
         self.maps().iter().all(|map| map.weight.is_none())
     }
 
+    /// Whether maps or edges have weights that were given.
+    #[must_use]
+    pub fn has_weights(&self) -> bool {
+        let edges = self.definition.edges.iter().flatten();
+        !self.has_default_weights() || { edges }.any(|edge| edge.weight.is_some())
+    }
+
     /// The edges of the digraph with their weights, in the order of listing; `None` where any map may
     /// follow any other and itself, by its own weight.
     pub fn edges(&self) -> Option<impl Iterator<Item = (Edge, f64)>> {

@@ -85,11 +85,11 @@ fn boxes(extent: f64) -> usize {
     whole(extent.ceil()).max(1)
 }
 
-/// What `count` tells of every grid, in the order of the grids.
-pub(super) fn on_all<T: Send>(
-    grids: &[Grid],
+/// What `count` tells of every grid, or what else there is, in their order.
+pub(super) fn on_all<G: Sync, T: Send>(
+    grids: &[G],
     threads: NonZero<usize>,
-    count: impl Fn(usize, &Grid) -> T + Sync,
+    count: impl Fn(usize, &G) -> T + Sync,
 ) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let work = || {

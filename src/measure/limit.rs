@@ -1,15 +1,21 @@
 //! The limit set of a graph as points, as close as one likes, with nothing drawn.
 
+mod cascade;
 mod descent;
+mod moments;
 
 use std::num::NonZero;
 
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
 
 use super::bits::Bits;
+use super::copies::norm;
 use super::cover::{Grid, Scale, least};
+
+pub use cascade::Cascade;
+pub(super) use moments::Moments;
 
 /// Why a graph has no limit set that can be walked over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -142,27 +148,30 @@ impl LimitSet {
         }
         let lasting = lasting(graph);
         let kept = |instance: &&Instance| lasting[instance.object];
-        let part = |object| Part {
-            children: fertile(graph, object)
-                .filter(kept)
-                .map(|instance| Placed::new(instance.frame.map, instance.object))
-                .collect(),
+        let placed = |instance: &Instance| Placed::new(instance.frame.map, instance.object);
+        let children = |object| fertile(graph, object).filter(kept).map(placed).collect();
+        let children = (0..graph.objects().len()).map(children).collect();
+        let start = graph.initiator(0).instances.iter();
+        let start: Vec<_> = start.filter(kept).map(placed).collect();
+        if start.is_empty() {
+            return Err(NoLimit::NothingFertile);
+        }
+        Ok(Self::of_copies(children, start))
+    }
+
+    /// From the copies in every object's set, and those that the whole is made of.
+    ///
+    /// Precondition: what is copied has copies in turn, and they shrink.
+    fn of_copies(children: Vec<Vec<Placed>>, start: Vec<Placed>) -> Self {
+        let part = |children| Part {
+            children,
             ..Part::default()
         };
         let mut set = Self {
-            objects: (0..graph.objects().len()).map(part).collect(),
-            start: graph
-                .initiator(0)
-                .instances
-                .iter()
-                .filter(kept)
-                .map(|instance| Placed::new(instance.frame.map, instance.object))
-                .collect(),
+            objects: children.into_iter().map(part).collect(),
+            start,
             bounds: Bounds::EMPTY,
         };
-        if set.start.is_empty() {
-            return Err(NoLimit::NothingFertile);
-        }
         set.find_points();
         set.find_radii();
         set.bounds = Self::extent(&set.objects, &set.start);
@@ -172,7 +181,7 @@ impl LimitSet {
         if set.bounds.size().max_element() <= ROUNDING * scale {
             set.bounds = Bounds::new(set.bounds.min(), set.bounds.min());
         }
-        Ok(set)
+        set
     }
 
     /// Its box, to some 12 digits.
@@ -487,15 +496,4 @@ fn lasting(graph: &Graph) -> Vec<bool> {
 )]
 fn boxed(point: DVec2) -> [i64; 2] {
     [point.x.floor() as i64, point.y.floor() as i64]
-}
-
-/// The most that a linear map lengthens a vector: its largest singular value.
-#[inline]
-fn norm(matrix: &DMat2) -> f64 {
-    let (a, b) = (matrix.x_axis, matrix.y_axis);
-    let half = (a.length_squared() + b.length_squared()) / 2.0;
-    let difference = (a.length_squared() - b.length_squared()) / 2.0;
-    let product = a.dot(b);
-    let root = (difference * difference + product * product).sqrt();
-    (half + root).sqrt()
 }

@@ -9,6 +9,11 @@
 //! [`BoxCounting`] is the slope of the counts with its error and its evidence, [`Generalised`] are the
 //! other dimensions D_q; [`Masses`] tell lacunarity. [`hausdorff`] tells how far two sets are apart.
 //!
+//! The D_q of a limit set are those of a measure on it, a [`Cascade`]: what its weights give, or the
+//! natural one. Of every entry of the library whose dimension is decided, what is measured lies within 0.03 and
+//! three standard errors of it for q from −2 to 5 (`cargo run --release --example spectra`): within 0.01 but
+//! for sets whose rim has nearly their own dimension, as the Lévy curve's of 1.934.
+//!
 //! The axes are those of the sets: x to the right and y up, but rows of pictures from the top down.
 //!
 #![doc = include_str!("library.md")]
@@ -16,6 +21,7 @@
 mod averaging;
 mod bits;
 mod box_counting;
+mod copies;
 mod cover;
 mod distance;
 pub mod exact;
@@ -23,6 +29,7 @@ mod extrapolation;
 mod grown;
 mod limit;
 mod mass;
+mod perron;
 mod points;
 mod raster;
 mod regression;
@@ -36,7 +43,7 @@ pub use box_counting::{BoxCounting, Boxes, Window};
 pub use cover::{Grid, Scale};
 pub use distance::{Distance, NoCover, Precision, Set, Subject, TooMany, hausdorff};
 pub use grown::{Grown, grown};
-pub use limit::{LimitSet, NoLimit};
+pub use limit::{Cascade, LimitSet, NoLimit};
 pub use mass::{FINENESS, Lacunarity, Masses};
 pub use points::{NoExtent, Points, counts};
 pub use raster::raster_scales;

@@ -8,6 +8,8 @@ use crate::digraph::components;
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
 
+use super::perron::{beside_one, crossing, perron};
+
 /// A similarity dimension, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Similarity {
@@ -206,17 +208,7 @@ impl Part {
         while radius(high) > 1.0 {
             (low, high) = (high, 2.0 * high);
         }
-        loop {
-            let middle = low + (high - low) / 2.0;
-            if middle <= low || middle >= high {
-                return high;
-            }
-            if radius(middle) > 1.0 {
-                low = middle
-            } else {
-                high = middle
-            }
-        }
+        crossing(high, low, radius)
     }
 
     /// The ratios of Moran's equation, if all objects have the same ones.
@@ -235,35 +227,10 @@ impl Part {
             .then_some(first)
     }
 
-    /// The spectral radius of the matrix of Σ ratio^D, by power iteration on the matrix plus the
-    /// identity, which has one dominant eigenvalue even where the part is periodic. The quotients of
-    /// successive vectors enclose it (Collatz 1942, Wielandt 1950).
+    /// The spectral radius of the matrix of Σ ratio^D.
     fn spectral_radius(&self, dimension: f64) -> f64 {
-        let weights: Vec<f64> = self
-            .edges
-            .iter()
-            .map(|edge| libm::pow(edge.ratio, dimension))
-            .collect();
-        let mut vector = vec![1.0; self.size];
-        let mut enclosed = (0.0, f64::INFINITY);
-        for _ in 0..100_000 {
-            let mut next = vector.clone();
-            for (edge, weight) in self.edges.iter().zip(&weights) {
-                next[edge.from] += weight * vector[edge.to];
-            }
-            let quotients = next.iter().zip(&vector).map(|(next, entry)| next / entry);
-            enclosed = quotients.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), quotient| {
-                (low.min(quotient), high.max(quotient))
-            });
-            // Enough to decide on which side of 1 the radius lies, or to all digits.
-            if enclosed.1 - enclosed.0 <= 4e-16 * enclosed.1 || enclosed.0 > 2.0 || enclosed.1 < 2.0
-            {
-                break;
-            }
-            let largest = next.iter().copied().fold(0.0, f64::max);
-            next.iter_mut().for_each(|entry| *entry /= largest);
-            vector = next;
-        }
-        f64::midpoint(enclosed.0, enclosed.1) - 1.0
+        let edges = self.edges.iter();
+        let entries = edges.map(|edge| (edge.from, edge.to, libm::pow(edge.ratio, dimension)));
+        perron(self.size, &entries.collect::<Vec<_>>(), beside_one).radius
     }
 }

@@ -6,8 +6,8 @@ use super::averaging::averaged;
 use super::bits::Bits;
 use super::box_counting::{BoxCounting, Boxes, PLANE};
 use super::cover::{Grid, deviation, mean, on_all};
-use super::limit::LimitSet;
-use super::mass::{COARSEST, FINENESS, Masses};
+use super::limit::{Cascade, Moments};
+use super::mass::Masses;
 use super::raster::whole;
 use super::regression::{Estimate, Reading, estimate};
 use super::sample::Sample;
@@ -20,7 +20,9 @@ pub struct Generalised {
     /// The dimension; none if there are fewer than three sizes.
     pub estimate: Option<Estimate>,
     /// By the side of the boxes, from the largest on: ln Σ p^q / (1 − q), or −Σ p ln p for q = 1, where
-    /// p are the parts of the mass in the boxes; the least of all grids, or their mean for points.
+    /// p are the parts of the mass in the boxes; the least of all grids, or their mean for points. Of a
+    /// measure on a limit set, balls about its points are in their place: ln (mean of p^(q − 1)) / (1 − q), or the mean
+    /// of −ln p.
     pub entropies: Vec<(f64, f64)>,
 }
 
@@ -57,28 +59,78 @@ impl Generalised {
         of_masses(orders, grids, threads, range, masses).unwrap_or_default()
     }
 
-    /// Those of a limit set whose mass is the same in all boxes of a fine grid that it meets, for some
-    /// orders.
+    /// Those of a measure on a limit set, for some orders, in balls about its points that are each
+    /// `base` times smaller than those before.
     ///
-    /// Used are boxes from 1/128 to a quarter of the extent on four grids, or from coarser ones where the
-    /// set cannot be covered by smaller boxes; none if not even by 128 in a row.
+    /// Without a base, it is the least power of the set's own period that is about 2 or more, or 2. Balls
+    /// go from about half the extent down to 10⁻⁸ of it, or to where too many copies lie over each
+    /// other, in so many series of sizes. What is told does not [rise](Self::fall) with the order.
     #[must_use]
-    pub fn of_limit(
-        set: &LimitSet,
+    pub fn of_measure(
+        measure: &Cascade,
         orders: &[f64],
-        grids: &[Grid],
+        base: Option<f64>,
+        series: NonZero<usize>,
         threads: NonZero<usize>,
     ) -> Vec<Self> {
-        const GRIDS: usize = 4;
-        let grids = &grids[..grids.len().min(GRIDS)];
-        let extent = set.bounds().size().max_element();
-        let by = |boxes: usize| {
-            #[expect(clippy::cast_precision_loss, reason = "grids are small")]
-            let finest = extent * COARSER / boxes as f64;
-            let masses = |grid: &Grid| Masses::of_limit(set, grid, boxes);
-            of_masses(orders, grids, threads, [finest, extent * COARSEST], masses)
+        let extent = measure.set().bounds().size().max_element();
+        if extent <= 0.0 {
+            let of = |&order: &f64| Self {
+                order,
+                estimate: BoxCounting::of_point().estimate,
+                entropies: Vec::new(),
+            };
+            return orders.iter().map(of).collect();
+        }
+        let base = base.unwrap_or_else(|| base_of(measure.set().period()));
+        let moments = Moments::of(measure, orders, base, series, threads);
+        let of = |(number, &order): (usize, &f64)| {
+            let readings = moments.readings(number);
+            let estimate = averaged(&readings, most(order)).or_else(|| estimate(&readings));
+            Self {
+                order,
+                estimate: estimate.map(|estimate| with_drift(estimate, &readings, most(order))),
+                entropies: readings.iter().map(|it| (it.size, it.log)).collect(),
+            }
         };
-        FINENESS.into_iter().find_map(by).unwrap_or_default()
+        let mut spectrum: Vec<Self> = orders.iter().enumerate().map(of).collect();
+        Self::fall(&mut spectrum);
+        spectrum
+    }
+
+    /// Makes dimensions not rise with the order, as those of no measure do (Beck 1990): of neighbours that
+    /// do, all have the mean, weighted by their errors (pool adjacent violators: Ayer et al. 1955).
+    /// How far a dimension is moved is part of its error.
+    pub fn fall(spectrum: &mut [Self]) {
+        let mut order: Vec<usize> = (0..spectrum.len())
+            .filter(|&number| spectrum[number].estimate.is_some())
+            .collect();
+        order.sort_by(|&a, &b| spectrum[a].order.total_cmp(&spectrum[b].order));
+        let mut pools: Vec<Pool> = Vec::new();
+        for &number in &order {
+            let Some(estimate) = &spectrum[number].estimate else {
+                continue;
+            };
+            let error = estimate.std_error.max(LEAST_ERROR);
+            let mut pool = Pool {
+                value: estimate.value,
+                weight: 1.0 / (error * error),
+                members: vec![number],
+            };
+            while let Some(last) = pools.pop_if(|last| last.value < pool.value) {
+                pool = last.with(pool);
+            }
+            pools.push(pool);
+        }
+        for pool in pools.into_iter().filter(|pool| pool.members.len() > 1) {
+            for number in pool.members {
+                if let Some(estimate) = &mut spectrum[number].estimate {
+                    let moved = pool.value - estimate.value;
+                    estimate.std_error = libm::hypot(estimate.std_error, moved);
+                    estimate.value = pool.value;
+                }
+            }
+        }
     }
 
     /// Those of points as a sample of a set, for some orders.
@@ -99,6 +151,89 @@ impl Generalised {
         };
         orders.iter().map(of).collect()
     }
+}
+
+/// Dimensions of neighbouring orders that are put together.
+struct Pool {
+    value: f64,
+    weight: f64,
+    members: Vec<usize>,
+}
+
+/// No error is believed to be smaller where dimensions are put together.
+const LEAST_ERROR: f64 = 1e-9;
+
+impl Pool {
+    fn with(mut self, next: Self) -> Self {
+        let weight = self.weight + next.weight;
+        self.value = (self.value * self.weight + next.value * next.weight) / weight;
+        self.weight = weight;
+        self.members.extend(next.members);
+        self
+    }
+}
+
+/// The least power of a period that is not far below 2, or 2.
+fn base_of(period: Option<f64>) -> f64 {
+    const LEAST: f64 = 1.8;
+    period.map_or(2.0, |period| {
+        let power = (libm::log(LEAST) / libm::log(period)).ceil();
+        libm::pow(period, power.max(1.0))
+    })
+}
+
+/// The mean slope of some readings, and its standard error.
+fn slope(readings: &[Reading]) -> (f64, f64) {
+    let pairs = readings.windows(2);
+    let of = |pair: &[Reading]| {
+        let step = libm::log(pair[0].size / pair[1].size);
+        (pair[1].growth / step, pair[1].growth_error / step)
+    };
+    let (slopes, errors): (Vec<f64>, Vec<f64>) = pairs.map(of).unzip();
+    let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
+    #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
+    let count = slopes.len() as f64;
+    (mean(&slopes), (mean(&squares) / count).sqrt())
+}
+
+/// An estimate where slopes still drift as balls get smaller: what the mean slopes of the last three
+/// quarters of all sizes tend to, if they halve their distance from one to the next. It lies a third of the
+/// whole drift beyond the last of them, and half of the drift is part of its error.
+///
+/// Where slopes do not drift by more than the error of the estimate, it stays as it is; where that may be
+/// chance, or they go to and fro, half of the drift is part of its error all the same.
+fn with_drift(estimate: Estimate, readings: &[Reading], most: f64) -> Estimate {
+    const SIGNIFICANT: f64 = 3.0;
+    let quarter = readings.len().saturating_sub(1) / 4;
+    if quarter == 0 {
+        return estimate;
+    }
+    let from = |number: usize| readings.len() - 1 - number * quarter;
+    let [(first, coarse), (second, _), (last, fine)] =
+        [3, 2, 1].map(|number| slope(&readings[from(number)..=from(number - 1)]));
+    let (drift, chance) = (last - first, libm::hypot(coarse, fine));
+    if drift.abs() <= estimate.std_error {
+        return estimate;
+    }
+    let goes_on = (second - first) * (last - second) > 0.0;
+    if drift.abs() <= SIGNIFICANT * chance || !goes_on {
+        return Estimate {
+            std_error: libm::hypot(estimate.std_error, drift / 2.0),
+            ..estimate
+        };
+    }
+    Estimate {
+        value: (last + drift / 3.0).min(most),
+        std_error: libm::hypot(chance, drift / 2.0),
+        range: [readings[readings.len() - 1].size, readings[from(3)].size],
+        sizes: 3 * quarter + 1,
+        ..estimate
+    }
+}
+
+/// Of negative orders, dimensions may be larger than the plane's.
+fn most(order: f64) -> f64 {
+    if order < 0.0 { f64::INFINITY } else { PLANE }
 }
 
 /// Sizes that differ by rounding only are the same.
@@ -166,12 +301,75 @@ fn fitted(order: f64, entropies: &[(f64, Vec<f64>)], is_sample: bool) -> General
         }
     };
     let readings: Vec<Reading> = entropies.iter().enumerate().map(reading).collect();
-    // Of negative orders, dimensions may be larger than the plane's.
-    let most = if order < 0.0 { f64::INFINITY } else { PLANE };
-    let averaged = is_sample.then(|| averaged(&readings, most)).flatten();
+    let averaged = is_sample
+        .then(|| averaged(&readings, most(order)))
+        .flatten();
     Generalised {
         order,
         estimate: averaged.or_else(|| estimate(&readings)),
         entropies: readings.iter().map(|it| (it.size, it.log)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(order: f64, value: f64, std_error: f64) -> Generalised {
+        Generalised {
+            order,
+            estimate: Some(Estimate {
+                value,
+                std_error,
+                range: [0.1, 1.0],
+                r_squared: 1.0,
+                intercept: 0.0,
+                sizes: 5,
+            }),
+            entropies: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn dimensions_do_not_rise_with_the_order() {
+        let mut spectrum = vec![
+            of(2.0, 1.3, 0.01),
+            of(0.0, 1.0, 0.01),
+            of(1.0, 1.2, 0.02),
+            of(5.0, 0.9, 0.01),
+        ];
+        Generalised::fall(&mut spectrum);
+        let told: Vec<Estimate> = spectrum.iter().filter_map(|it| it.estimate).collect();
+        // 1 and 1.3 count four times as much as 1.2.
+        let mean = (4.0 * 1.0 + 1.2 + 4.0 * 1.3) / 9.0;
+        for estimate in &told[..3] {
+            assert!((estimate.value - mean).abs() < 1e-12, "{estimate:?}");
+        }
+        assert!(told[0].std_error > 0.1 && told[1].std_error > 0.1);
+        assert_eq!(told[3].value, 0.9);
+        assert_eq!(told[3].std_error, 0.01);
+    }
+
+    #[test]
+    fn slopes_that_drift_tell_a_larger_error() {
+        // 2 − ε^0.1 / 4: slowly nearer to 2.
+        let slope = |level: i32| 2.0 - 0.25 * libm::exp2(-0.1 * f64::from(level));
+        let mut log = 0.0;
+        let readings = (0..25).map(|level| {
+            let growth = slope(level) * std::f64::consts::LN_2;
+            log += growth;
+            Reading {
+                size: libm::exp2(-f64::from(level)),
+                log,
+                scatter: 0.0,
+                growth,
+                growth_error: 0.001,
+            }
+        });
+        let readings: Vec<Reading> = readings.collect();
+        let plain = of(1.0, 1.9, 0.002).estimate.unwrap();
+        let told = with_drift(plain, &readings, PLANE);
+        assert!((told.value - 2.0).abs() < 0.04, "{told:?}");
+        assert!((told.value - 2.0).abs() < 2.0 * told.std_error, "{told:?}");
     }
 }

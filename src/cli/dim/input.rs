@@ -13,10 +13,12 @@ use crate::diagnostic::Source;
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::import::{Channel, Picture, read_points};
-use crate::measure::exact::dimensions_of_graph;
+use crate::measure::exact::{Spectrum, dimensions_of_graph};
 use crate::measure::{
-    Bits, BoxCounting, FINENESS, Generalised, Grid, LimitSet, Masses, NoLimit, Points, grown,
+    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, Masses, NoLimit, Points,
+    grown,
 };
+use crate::model::Model;
 
 use super::super::Failure;
 use super::super::rule::Loaded;
@@ -142,6 +144,8 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
         exact: Some(dimensions_of_graph(&graph)),
         counting: BoxCounting::default(),
         spectrum: Vec::new(),
+        spectrum_known: None,
+        measure: None,
         lacunarity: Vec::new(),
         warnings: Vec::new(),
     };
@@ -161,12 +165,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
         }
         return Ok(measured);
     }
-    measured.tell(Generalised::of_limit(
-        &set,
-        &arguments.orders,
-        &grids,
-        threads,
-    ));
+    measured.tell_measure(arguments, loaded, &graph);
     let mut masses = FINENESS.into_iter();
     let masses = masses.find_map(|boxes| Masses::of_limit(&set, &Grid::ALONG, boxes));
     measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
@@ -249,6 +248,8 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Mea
         exact: None,
         counting,
         spectrum: Vec::new(),
+        spectrum_known: None,
+        measure: None,
         lacunarity: Masses::of_pixels(&pixels, [0; 2]).lacunarity(),
         warnings,
     };
@@ -290,6 +291,8 @@ fn of_points(
         exact: None,
         counting: BoxCounting::default(),
         spectrum: Vec::new(),
+        spectrum_known: None,
+        measure: None,
         lacunarity: Vec::new(),
         warnings: Vec::new(),
     };
@@ -306,6 +309,42 @@ impl Measured {
             _ => it,
         };
         self.spectrum = spectrum.into_iter().map(told).collect();
+        Generalised::fall(&mut self.spectrum);
+    }
+
+    /// Tells the spectrum of the measure that a rule's limit set has: that of its weights, if a system
+    /// gives any, or the natural one.
+    fn tell_measure(&mut self, arguments: &Arguments, loaded: &Loaded, graph: &Graph) {
+        let weighted = match &loaded.model {
+            Model::Ifs(system) if system.ifs().has_weights() => Some(system.ifs()),
+            _ => None,
+        };
+        let by_weights = weighted.and_then(|ifs| Some((ifs, Cascade::of_weights(ifs)?)));
+        if weighted.is_some() && by_weights.is_none() {
+            let reason = "the weights have no one measure: where random iteration ends depends on where \
+                          it starts; the spectrum is that of the natural measure";
+            self.warnings.push(reason.into());
+        }
+        let cascade = match by_weights {
+            Some((ifs, cascade)) => {
+                self.measure = Some("weights");
+                self.spectrum_known = Spectrum::of_weights(ifs);
+                cascade
+            }
+            None => {
+                let Some(cascade) = Cascade::natural(graph) else {
+                    return;
+                };
+                self.measure = Some("natural");
+                let exact = self.exact.as_ref();
+                let dimensions = exact.and_then(|exact| exact.dimensions.as_ref());
+                self.spectrum_known = dimensions.and_then(Spectrum::natural);
+                cascade
+            }
+        };
+        let (orders, base, series) = (&arguments.orders, arguments.base, arguments.grids);
+        self.spectrum =
+            Generalised::of_measure(&cascade, orders, base, series, arguments.threads());
     }
 
     /// Measures points as a sample of a set, with boxes that are at least `finest`.

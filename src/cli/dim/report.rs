@@ -23,6 +23,7 @@ struct Report<'a> {
     drawn: Option<f64>,
     notes: &'a [String],
     box_counting: Counting<'a>,
+    measure: Option<&'a str>,
     spectrum: Vec<Value>,
     lacunarity: Vec<Value>,
     warnings: &'a [String],
@@ -87,6 +88,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
         let sums = sums.map(|(size, entropy)| json!({"size": size, "entropy": entropy}));
         let mut value = json!(Fields::of(it.estimate.as_ref()));
         value["q"] = json!(it.order);
+        value["exact"] = json!(measured.known(it.order));
         value["boxes"] = sums.collect();
         value
     });
@@ -111,6 +113,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
             boxes: boxes.collect(),
             means: means.collect(),
         },
+        measure: measured.measure,
         spectrum: spectrum.collect(),
         lacunarity: lacunarity.collect(),
         warnings: &measured.warnings,
@@ -150,7 +153,7 @@ fn affinity(known: &Dimensions) -> Option<Value> {
 }
 
 /// The dimension of the set itself, where copies may overlap.
-fn hausdorff(known: Option<&Dimensions>) -> Value {
+pub(in crate::cli) fn hausdorff(known: Option<&Dimensions>) -> Value {
     known.map_or_else(
         || json!({"value": null, "overlap": "unknown", "method": null}),
         |known| {
@@ -178,17 +181,31 @@ fn boundary(known: &Dimensions) -> Option<Value> {
 
 /// Adds what is to be said against the measurement.
 pub(super) fn warn(measured: &mut Measured) {
-    let warning = match &measured.counting.estimate {
-        Some(estimate) if estimate.sizes > 0 && estimate.decades() < FEW_DECADES => format!(
-            "the range spans {:.1} decades only: below {FEW_DECADES} a slope says little of a dimension",
-            estimate.decades()
-        ),
-        None if !measured.counting.boxes.is_empty() => {
-            "there are fewer than three sizes of boxes that tell anything: nothing is fitted".into()
-        }
-        _ => return,
+    let few = |what: &str, decades: f64| {
+        format!(
+            "{what} {decades:.1} decades only: below {FEW_DECADES} a slope says little of a dimension"
+        )
     };
-    measured.warnings.push(warning);
+    let decades = |estimate: &Estimate| (estimate.sizes > 0).then(|| estimate.decades());
+    let counted = measured.counting.estimate.as_ref();
+    let counted_decades = counted.and_then(decades);
+    if let Some(decades) = counted_decades.filter(|decades| *decades < FEW_DECADES) {
+        measured.warnings.push(few("the range spans", decades));
+    } else if counted.is_none() && !measured.counting.boxes.is_empty() {
+        let warning =
+            "there are fewer than three sizes of boxes that tell anything: nothing is fitted";
+        measured.warnings.push(warning.into());
+    }
+    // Of order 0, points and pictures have been told of already.
+    let spectrum = measured.spectrum.iter();
+    let spectrum = spectrum.filter(|it| measured.measure.is_some() || it.order != 0.0);
+    let spectrum = spectrum.filter_map(|it| it.estimate.as_ref().and_then(decades));
+    let least = spectrum.reduce(f64::min);
+    if let Some(decades) = least.filter(|decades| *decades < FEW_DECADES) {
+        measured
+            .warnings
+            .push(few("the spectrum D_q rests on", decades));
+    }
 }
 
 /// The result in a sentence.
@@ -261,30 +278,7 @@ pub(super) fn described(measured: &Measured) -> String {
         known(&mut text, exact);
     }
     table(&mut text, &measured.counting, measured.unit);
-    if !measured.spectrum.is_empty() {
-        let _ = writeln!(
-            text,
-            "\n{:>6}  {:>8}  {:>8}  {:>9}",
-            "q", "D_q", "± 2 s.e.", "r²"
-        );
-        for it in &measured.spectrum {
-            let name = match it.order {
-                1.0 => "information",
-                2.0 => "correlation",
-                _ => "",
-            };
-            if let Some(estimate) = &it.estimate {
-                let line = format!(
-                    "{:>6}  {:>8.4}  {:>8.4}  {:>9.6}  {name}",
-                    it.order,
-                    estimate.value,
-                    2.0 * estimate.std_error,
-                    estimate.r_squared
-                );
-                let _ = writeln!(text, "{}", line.trim_end());
-            }
-        }
-    }
+    spectrum(&mut text, measured);
     if !measured.lacunarity.is_empty() {
         let _ = writeln!(text, "\n{:>12}  {:>10}", "gliding box", "lacunarity");
         for it in &measured.lacunarity {
@@ -329,6 +323,61 @@ fn remarks(counting: &BoxCounting) -> Vec<String> {
         ));
     }
     remarks
+}
+
+impl Measured {
+    /// The dimension of an order, where it is known without measuring.
+    fn known(&self, order: f64) -> Option<f64> {
+        let known = self.spectrum_known.as_ref()?;
+        Some(known.at(order)).filter(|value| value.is_finite())
+    }
+}
+
+/// The dimensions of all orders.
+fn spectrum(text: &mut String, measured: &Measured) {
+    if measured.spectrum.is_empty() {
+        return;
+    }
+    let of = match measured.measure {
+        Some("weights") => "\nof the measure that the weights give",
+        Some(_) => "\nof the natural measure",
+        None => "",
+    };
+    let has_known = measured.spectrum_known.is_some();
+    let exact = |value: String| {
+        if has_known {
+            format!("  {value:>10}")
+        } else {
+            String::new()
+        }
+    };
+    let head = exact("exact".into());
+    let _ = writeln!(
+        text,
+        "{of}\n{:>6}{head}  {:>8}  {:>8}  {:>9}",
+        "q", "D_q", "± 2 s.e.", "r²"
+    );
+    for it in &measured.spectrum {
+        let name = match it.order {
+            1.0 => "information",
+            2.0 => "correlation",
+            _ => "",
+        };
+        let known = measured.known(it.order);
+        let known = exact(known.map_or_else(String::new, |value| format!("{value:.6}")));
+        let line = match &it.estimate {
+            Some(estimate) => format!(
+                "{:>6}{known}  {:>8.4}  {:>8.4}  {:>9.6}  {name}",
+                it.order,
+                estimate.value,
+                2.0 * estimate.std_error,
+                estimate.r_squared
+            ),
+            None if has_known => format!("{:>6}{known}  {:>30}{name}", it.order, ""),
+            None => continue,
+        };
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
 }
 
 /// What is known without measuring.

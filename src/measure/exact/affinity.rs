@@ -6,6 +6,7 @@
 
 use glam::DMat3;
 
+use super::Effort;
 use super::spectral::dense_radius;
 use super::system::System;
 
@@ -39,7 +40,7 @@ struct Product {
 
 /// The affinity dimension of a strongly connected part; `None` unless all products of some length
 /// contract, as far as they are followed.
-pub(super) fn affinity(part: &System) -> Option<Affinity> {
+pub(super) fn affinity(part: &System, effort: Effort) -> Option<Affinity> {
     let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
         .map(|set| (set, set, DMat3::IDENTITY))
         .collect();
@@ -52,7 +53,7 @@ pub(super) fn affinity(part: &System) -> Option<Affinity> {
             let copies = part.copies.iter().filter(|copy| copy.from == *to);
             next.extend(copies.map(|copy| (*from, copy.to, *matrix * copy.map.matrix3)));
         }
-        if next.len() > MOST_PRODUCTS {
+        if next.len() > effort.of(MOST_PRODUCTS) {
             break;
         }
         let products = next.iter().map(|&(from, to, matrix)| Product {

@@ -2,6 +2,7 @@
 
 use glam::DAffine3;
 
+use super::Effort;
 use super::neighbours::{Pair, Register};
 use super::sizes::{Generations, Piece};
 
@@ -12,9 +13,10 @@ const MOST_PIECES: usize = 60_000;
 /// has in generation n, for the n that gives the least.
 ///
 /// The most of all sets cannot more than multiply: N(m + n) ≤ N(m) N(n).
-pub(super) fn upper_bound(generations: &Generations) -> Option<f64> {
+pub(super) fn upper_bound(generations: &Generations, effort: Effort) -> Option<f64> {
+    let most = effort.of(MOST_PIECES);
     let counts: Vec<Vec<usize>> = (0..generations.size())
-        .map(|set| counts(generations, set, MOST_PIECES / generations.size()))
+        .map(|set| counts(generations, set, most / generations.size()))
         .collect();
     let last = counts.iter().map(Vec::len).min()?;
     #[expect(

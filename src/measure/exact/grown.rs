@@ -5,7 +5,7 @@ use crate::measure::similarity_dimension;
 
 use super::closed_form::{plain, settled};
 use super::random::expected_dimension;
-use super::{Dimensions, Equation, Hausdorff, Overlap, Similar, System, dimensions};
+use super::{Dimensions, Effort, Equation, Hausdorff, Overlap, Similar, System, dimensions_within};
 
 /// What is known exactly of the dimensions of a graph's limit.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,10 +23,18 @@ pub struct Grown {
 /// The dimensions of a graph's limit, as far as they are known exactly.
 #[must_use]
 pub fn dimensions_of_graph(graph: &Graph) -> Grown {
+    dimensions_of_graph_within(graph, Effort::Full)
+}
+
+/// The same, by so much work.
+#[must_use]
+pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> Grown {
     if graph.draws() {
         return at_random(graph);
     }
-    let Some(dimensions) = System::of(graph).as_ref().and_then(dimensions) else {
+    let system = System::of(graph);
+    let dimensions = system.and_then(|system| dimensions_within(&system, effort));
+    let Some(dimensions) = dimensions else {
         let reason = similarity_dimension(graph).note;
         let reason = reason.unwrap_or_else(|| "there is no limit set: maps do not shrink".into());
         return Grown {
@@ -90,6 +98,7 @@ fn at_random(graph: &Graph) -> Grown {
                     method: method.into(),
                 },
                 boundary: None,
+                regular: false,
             };
             Grown {
                 dimensions: Some(dimensions),

@@ -18,6 +18,8 @@ pub(super) struct Flat {
     /// Maps in the coordinates of the hulls: 0 is a point of the set, the first `dimension` axes
     /// span its hull, and the others are scaled by the ratio. Sets are about 1 large.
     pub(super) copies: Vec<Copy>,
+    /// From the coordinates of every set's hull to those that the sets are given in.
+    pub(super) frames: Vec<DAffine3>,
 }
 
 /// What is smaller, in a system of size 1, is taken for zero.
@@ -63,11 +65,16 @@ impl Flat {
                 ..*copy
             }
         });
+        let frame = |(basis, point): (&DMat3, &DVec3)| DAffine3 {
+            matrix3: *basis * unit,
+            translation: *point,
+        };
         Self {
             space: system.space,
             dimension,
             size: system.size,
             copies: copies.collect(),
+            frames: bases.iter().zip(&points).map(frame).collect(),
         }
     }
 }

@@ -22,22 +22,29 @@ mod affinity;
 mod balls;
 mod closed_form;
 mod distinct;
+mod effort;
 mod grown;
 mod hull;
 mod neighbours;
 mod open_set;
 mod part;
+mod pieces;
 mod random;
 mod sizes;
 mod spectral;
+mod spectrum;
 mod system;
 mod types;
 
 use std::fmt;
 
 pub use affinity::Affinity;
-pub use grown::{Grown, dimensions_of_graph};
+pub use effort::Effort;
+pub use grown::{Grown, dimensions_of_graph, dimensions_of_graph_within};
+pub use spectrum::{Spectrum, Weighted};
 pub use system::System;
+
+pub(super) use pieces::distinct;
 
 use affinity::affinity;
 use part::{PartDimension, part_dimension};
@@ -135,6 +142,9 @@ pub struct Dimensions {
     pub hausdorff: Hausdorff,
     /// The dimension of its boundary, where it is known to have inside.
     pub boundary: Option<Boundary>,
+    /// Whether the natural measure is known to be regular: a ball of radius r about a point of it has a
+    /// mass of about r to the power of the dimension.
+    pub regular: bool,
 }
 
 /// The dimensions of the sets of a system: the largest of theirs.
@@ -142,17 +152,30 @@ pub struct Dimensions {
 /// `None` if a map does not shrink, or if nothing is a copy again and again.
 #[must_use]
 pub fn dimensions(system: &System) -> Option<Dimensions> {
-    let parts = system.parts();
+    dimensions_within(system, Effort::Full)
+}
+
+/// The same, by so much work.
+#[must_use]
+pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> {
+    let system = &system.in_own_units();
+    let (component, components) = system.components();
+    let parts = components.iter().filter(|part| !part.copies.is_empty());
+    let parts: Vec<&System> = parts.collect();
     if parts.is_empty() {
         return None;
     }
     if !system.is_similar() {
-        return of_affine(&parts, system.space);
+        return of_affine(&parts, system.space, effort);
     }
-    if system.ratios().any(|(_, _, ratio)| ratio >= 1.0) {
+    if !system.shrinks() {
         return None;
     }
-    let parts: Vec<PartDimension> = parts.iter().map(part_dimension).collect();
+    let parts = components.iter();
+    let of_part = |part: &System| (!part.copies.is_empty()).then(|| part_dimension(part, effort));
+    let parts: Vec<Option<PartDimension>> = parts.map(of_part).collect();
+    let regular = is_regular(system, &component, &parts);
+    let parts: Vec<PartDimension> = parts.into_iter().flatten().collect();
     let similar = parts.iter().map(|part| &part.similarity);
     let similarity = similar.max_by(|a, b| a.value.total_cmp(&b.value))?;
     let deciding = parts.iter().max_by(|a, b| rank(a).total_cmp(&rank(b)))?;
@@ -161,7 +184,45 @@ pub fn dimensions(system: &System) -> Option<Dimensions> {
         affinity: None,
         hausdorff: deciding.hausdorff.clone(),
         boundary: deciding.boundary.clone(),
+        regular,
     })
+}
+
+/// Whether the natural measure is known to be regular.
+///
+/// In a set whose pieces do not overlap, or are of finitely many types, it is: a ball meets a bounded number of
+/// distinct pieces of its size, each of which has a mass of about that to the power of the dimension. So
+/// it is in finitely many copies of such sets, wherever they lie. Of smaller dimensions there may be
+/// more sets, as long as they do not hold such copies: these are infinitely many. Pieces that coincide
+/// are told apart only [in sets that hold no others](distinct).
+fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimension>]) -> bool {
+    const SAME: f64 = 1e-9;
+    let decided = || parts.iter().flatten().map(|part| part.hausdorff.value);
+    let most = decided().flatten().fold(0.0, f64::max);
+    if decided().any(|value| value.is_none()) {
+        return false;
+    }
+    // Whether a component leads to one of the largest dimension; those of lower numbers come first.
+    let mut leads = vec![false; parts.len()];
+    for (number, part) in parts.iter().enumerate() {
+        let own_copies = system.copies.iter();
+        let own_copies = own_copies.filter(|copy| component[copy.from] == number);
+        let mut others: Vec<usize> = own_copies.map(|copy| component[copy.to]).collect();
+        others.retain(|&other| other != number);
+        let is_above = others.iter().any(|&other| leads[other]);
+        let hausdorff = part.as_ref().map(|part| &part.hausdorff);
+        let own = hausdorff.and_then(|hausdorff| hausdorff.value);
+        let is_largest = own.is_some_and(|own| most - own <= SAME);
+        let coincide = hausdorff.is_some_and(|hausdorff| hausdorff.overlap == Overlap::Exact);
+        if coincide && !others.is_empty() {
+            return false;
+        }
+        if is_above && own.is_some() && !is_largest {
+            return false;
+        }
+        leads[number] = is_above || is_largest;
+    }
+    true
 }
 
 /// The part that has the largest rank has the largest dimension, or keeps it from being known.
@@ -170,8 +231,8 @@ fn rank(part: &PartDimension) -> f64 {
 }
 
 /// What is known where maps are not similarities.
-fn of_affine(parts: &[System], space: usize) -> Option<Dimensions> {
-    let all: Option<Vec<Affinity>> = parts.iter().map(affinity).collect();
+fn of_affine(parts: &[&System], space: usize, effort: Effort) -> Option<Dimensions> {
+    let all: Option<Vec<Affinity>> = parts.iter().map(|part| affinity(part, effort)).collect();
     let all = all?.into_iter();
     let affinity = all.max_by(|a, b| a.upper_bound.total_cmp(&b.upper_bound))?;
     #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
@@ -190,5 +251,6 @@ fn of_affine(parts: &[System], space: usize) -> Option<Dimensions> {
             ),
         },
         boundary: None,
+        regular: false,
     })
 }

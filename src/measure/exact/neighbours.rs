@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3};
 
+use super::Effort;
 use super::balls::Balls;
 use super::sizes::{Generations, Piece, Step};
 
@@ -127,7 +128,7 @@ fn floor(value: f64) -> i64 {
 
 impl Neighbours {
     /// Follows all pairs of pieces, from the steps of every set on.
-    pub(super) fn of(generations: &Generations) -> Self {
+    pub(super) fn of(generations: &Generations, effort: Effort) -> Self {
         let balls = Balls::of(generations.first_steps());
         let mut search = Search {
             generations,
@@ -156,7 +157,8 @@ impl Neighbours {
             let Some(&pair) = search.register.pairs.get(number) else {
                 break End::Complete;
             };
-            if search.register.pairs.len() > MOST_PAIRS || search.work > MOST_WORK {
+            let pairs = search.register.pairs.len();
+            if pairs > effort.of(MOST_PAIRS) || search.work > effort.of(MOST_WORK) {
                 break End::Capped;
             }
             next.push(if search.coincide[number] {

@@ -6,6 +6,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
+use super::Effort;
 use super::balls::Balls;
 use super::hull::Flat;
 use super::system::ratio;
@@ -23,11 +24,11 @@ const SLACK: f64 = 1e-10;
 
 /// Whether the inside of the convex hulls is a feasible open set: the hulls of the copies in each
 /// set overlap in sides only. `false` where that is not so, or hulls have too many corners.
-pub(super) fn hulls_are_open_sets(flat: &Flat) -> bool {
+pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
     if flat.dimension == 0 || flat.dimension > 2 {
         return false;
     }
-    let Some(hulls) = hulls(flat) else {
+    let Some(hulls) = hulls(flat, effort) else {
         return false;
     };
     let copies: Vec<(usize, Vec<DVec2>)> = flat
@@ -47,7 +48,7 @@ fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// The corners of every set's convex hull, counter-clockwise.
-fn hulls(flat: &Flat) -> Option<Vec<Vec<DVec2>>> {
+fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     let mut hulls = vec![vec![DVec2::ZERO]; flat.size];
     for _ in 0..MOST_ROUNDS {
         let mut points: Vec<Vec<DVec2>> = hulls.clone();
@@ -58,7 +59,10 @@ fn hulls(flat: &Flat) -> Option<Vec<Vec<DVec2>>> {
             .into_iter()
             .map(|points| convex_hull(points, STILL))
             .collect();
-        if next.iter().any(|corners| corners.len() > MOST_CORNERS) {
+        if next
+            .iter()
+            .any(|corners| corners.len() > effort.of(MOST_CORNERS))
+        {
             return None;
         }
         let still = next.iter().zip(&hulls).all(|(next, hull)| {
@@ -112,7 +116,7 @@ const TOUCH: f64 = 1e-7;
 /// Whether no two copies in a set have a point in common: the larger piece of a pair is split until
 /// the balls around pieces are apart. `false` where some come as near as numbers tell, or the search
 /// is given up.
-pub(super) fn copies_are_apart(flat: &Flat) -> bool {
+pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
     let mut copies = vec![Vec::new(); flat.size];
     for copy in &flat.copies {
         copies[copy.from].push((copy.to, copy.map));
@@ -139,7 +143,7 @@ pub(super) fn copies_are_apart(flat: &Flat) -> bool {
             continue;
         }
         seen += 1;
-        if seen > MOST_PAIRS {
+        if seen > effort.of(MOST_PAIRS) {
             return false;
         }
         let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {

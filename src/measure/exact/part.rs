@@ -11,7 +11,7 @@ use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
 use super::system::System;
 use super::types::Types;
-use super::{Boundary, Equation, Hausdorff, Overlap, Similar};
+use super::{Boundary, Effort, Equation, Hausdorff, Overlap, Similar};
 
 /// What is known of a part.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub(super) struct PartDimension {
 const SAME: f64 = 1e-10;
 
 /// The dimension of a part: similarities with ratios below 1.
-pub(super) fn part_dimension(system: &System) -> PartDimension {
+pub(super) fn part_dimension(system: &System, effort: Effort) -> PartDimension {
     let (value, moran) = dimension_of_part(system.size, system.ratios());
     let value = settled(value);
     let equation = if moran {
@@ -57,8 +57,8 @@ pub(super) fn part_dimension(system: &System) -> PartDimension {
     }
     let flat = Flat::of(system);
     match Generations::of(&flat) {
-        Some(generations) => part.by_neighbours(&flat, &generations),
-        None => part.by_open_set(&flat, "the ratios are not powers of one number"),
+        Some(generations) => part.by_neighbours(&flat, &generations, effort),
+        None => part.by_open_set(&flat, effort, "the ratios are not powers of one number"),
     }
     if part.has_inside(&flat) && part.boundary.is_none() {
         part.boundary = Some(Boundary {
@@ -98,7 +98,7 @@ impl PartDimension {
         })
     }
 
-    fn by_neighbours(&mut self, flat: &Flat, generations: &Generations) {
+    fn by_neighbours(&mut self, flat: &Flat, generations: &Generations, effort: Effort) {
         let similarity = self.similarity.value;
         let agrees =
             |growth: &f64| (libm::log(*growth) / generations.depth - similarity).abs() < SAME;
@@ -107,21 +107,25 @@ impl PartDimension {
             let form = closed_form(growth, generations.depth);
             self.similarity.closed_form = form.or(self.similarity.closed_form.take());
         }
-        let neighbours = Neighbours::of(generations);
+        let neighbours = Neighbours::of(generations, effort);
         let count = neighbours.pairs.len();
         if neighbours.coincide.contains(&true) {
-            self.by_types(generations, &neighbours);
+            self.by_types(generations, &neighbours, effort);
             return;
         }
         match neighbours.end {
             End::Complete => {}
             End::Capped => {
                 let tried = format!("more than {count} neighbour maps");
-                self.by_open_set(flat, &tried);
+                self.by_open_set(flat, effort, &tried);
                 return;
             }
             End::TooClose => {
-                self.by_open_set(flat, "neighbour maps that are neither equal nor apart");
+                self.by_open_set(
+                    flat,
+                    effort,
+                    "neighbour maps that are neither equal nor apart",
+                );
                 return;
             }
         }
@@ -144,11 +148,11 @@ impl PartDimension {
             .collect();
         let spread = spectral_radius(&targets);
         let (Some(growth), Some(spread)) = (growth, spread) else {
-            self.by_open_set(flat, "a spectral radius was not found");
+            self.by_open_set(flat, effort, "a spectral radius was not found");
             return;
         };
         if spread > growth * (1.0 - SAME) {
-            self.by_open_set(flat, "different sets overlap as much as they grow");
+            self.by_open_set(flat, effort, "different sets overlap as much as they grow");
             return;
         }
         let method = format!(
@@ -165,10 +169,10 @@ impl PartDimension {
     }
 
     /// Pieces coincide.
-    fn by_types(&mut self, generations: &Generations, neighbours: &Neighbours) {
+    fn by_types(&mut self, generations: &Generations, neighbours: &Neighbours, effort: Effort) {
         self.hausdorff.overlap = Overlap::Exact;
         let types = (neighbours.end == End::Complete)
-            .then(|| Types::of(generations, neighbours))
+            .then(|| Types::of(generations, neighbours, effort))
             .flatten();
         if let Some(types) = types {
             let value = settled(libm::log(types.growth) / generations.depth);
@@ -192,19 +196,21 @@ impl PartDimension {
             }
         };
         self.give_up(&tried);
-        if let (Some(bound), Some(known)) = (upper_bound(generations), self.hausdorff.upper_bound) {
+        if let (Some(bound), Some(known)) =
+            (upper_bound(generations, effort), self.hausdorff.upper_bound)
+        {
             self.hausdorff.upper_bound = Some(known.min(bound));
         }
     }
 
     /// Not of finite type, as far as is known.
-    fn by_open_set(&mut self, flat: &Flat, tried: &str) {
-        if copies_are_apart(flat) {
+    fn by_open_set(&mut self, flat: &Flat, effort: Effort, tried: &str) {
+        if copies_are_apart(flat, effort) {
             self.decide(
                 Overlap::None,
                 "open set condition: no two copies touch".into(),
             );
-        } else if hulls_are_open_sets(flat) {
+        } else if hulls_are_open_sets(flat, effort) {
             let method = "open set condition: the convex hulls of copies overlap in sides only";
             self.decide(Overlap::Touching, method.into());
             // The hulls of copies leave no gap: they are as large as the hull that they lie in.

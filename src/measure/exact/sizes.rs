@@ -40,6 +40,8 @@ impl Step {
 pub(super) struct Generations {
     /// log 1/ρ.
     pub(super) depth: f64,
+    /// The unit of every set, as a multiple of that of the system.
+    pub(super) scale: Vec<f64>,
     /// What takes the place of a piece that does not wait, by set.
     steps: Vec<Vec<Step>>,
     /// What takes the place of a piece that does, by piece.
@@ -90,6 +92,7 @@ impl Generations {
         });
         Some(Self {
             depth,
+            scale,
             steps,
             waits: waiting.collect(),
         })

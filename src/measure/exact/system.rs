@@ -2,8 +2,8 @@
 
 use crate::digraph::components;
 use crate::geometry::{DAffine2, DMat2};
-use crate::graph::{Graph, Instance, Replacement};
-use crate::rule::Placement;
+use crate::graph::Graph;
+use crate::measure::copies::fixed_copies;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// A copy of one set inside another: the set `from` holds the image of the set `to` under the map.
@@ -63,38 +63,15 @@ impl System {
     /// `None` if the graph is not a list of fixed maps, or has resets.
     #[must_use]
     pub fn of(graph: &Graph) -> Option<Self> {
-        if !graph.is_regular() || !graph.is_plain() || graph.depth().is_some() {
-            return None;
-        }
-        let fertile = |instance: &Instance| {
-            let object = &graph.objects()[instance.object];
-            !matches!(object.replacement, Replacement::Kept)
-        };
-        let mut copies = Vec::new();
-        // Objects of one behaviour are replaced by the same.
-        for object in graph.behaviours() {
-            let Replacement::Fixed(production) = &object.replacement else {
-                continue;
-            };
-            for (placement, instance) in production.placed_instances() {
-                if !fertile(instance) {
-                    continue;
-                }
-                if placement == Placement::SeedsAsInitiator {
-                    return None;
-                }
-                let to = graph.objects()[instance.object].behaviour;
-                copies.push((object.behaviour, to, instance.frame.map));
-            }
-        }
-        Self::plane(copies)
+        Self::plane(fixed_copies(graph)?)
     }
 
-    /// The strongly connected parts that have a copy inside, each with its sets numbered from 0.
+    /// The number of every set's strongly connected component, and all of these, each with its sets
+    /// numbered from 0. A copy never leads to a component of a higher number.
     ///
-    /// The dimension of the whole is the largest of theirs: every point lies in a copy of one, and
-    /// there are countably many copies.
-    pub(super) fn parts(&self) -> Vec<Self> {
+    /// The dimension of the whole is the largest of those of components that have a copy inside: every
+    /// point lies in a copy of one, and there are countably many copies.
+    pub(super) fn components(&self) -> (Vec<usize>, Vec<Self>) {
         let mut targets = vec![Vec::new(); self.size];
         for copy in &self.copies {
             targets[copy.from].push(copy.to);
@@ -125,8 +102,7 @@ impl System {
                 });
             }
         }
-        parts.retain(|part| !part.copies.is_empty());
-        parts
+        (component, parts)
     }
 
     /// Whether all maps are similarities.
@@ -139,6 +115,60 @@ impl System {
             let scaled = DMat3::from_diagonal(DVec3::splat(ratio * ratio));
             ratio > 0.0 && square.abs_diff_eq(scaled, 1e-9 * ratio * ratio)
         })
+    }
+
+    /// The same sets, each in a unit of its own, in which all maps shrink where those along every cycle
+    /// do. Dimensions stay. Maps that are no similarities stay as they are.
+    pub(super) fn in_own_units(&self) -> Self {
+        // By how much every map shrinks, at least, as a logarithm: what cycles allow.
+        const LEAST: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+        if !self.is_similar() || self.shrinks() {
+            return self.clone();
+        }
+        let units = LEAST.into_iter().find_map(|least| self.units(least));
+        let Some(units) = units else {
+            return self.clone();
+        };
+        let copies = self.copies.iter().map(|copy| {
+            let [outer, inner] = [copy.from, copy.to].map(|set| libm::exp(units[set]));
+            let map = DAffine3 {
+                matrix3: copy.map.matrix3 * (inner / outer),
+                translation: copy.map.translation / outer,
+            };
+            Copy { map, ..*copy }
+        });
+        Self {
+            copies: copies.collect(),
+            ..*self
+        }
+    }
+
+    /// Units for all sets, as logarithms: the longest ways that copies lead (Bellman 1958), with so much
+    /// more for every copy. `None` where they have no end.
+    fn units(&self, more: f64) -> Option<Vec<f64>> {
+        let ways: Vec<(usize, usize, f64)> = self
+            .ratios()
+            .map(|(from, to, ratio)| (from, to, libm::log(ratio) + more))
+            .collect();
+        let mut units: Vec<f64> = vec![0.0; self.size];
+        for _ in 0..=self.size {
+            let mut changes = false;
+            for &(from, to, way) in &ways {
+                if units[to] + way > units[from] {
+                    units[from] = units[to] + way;
+                    changes = true;
+                }
+            }
+            if !changes {
+                return Some(units);
+            }
+        }
+        None
+    }
+
+    /// Whether all maps are similarities that shrink.
+    pub(super) fn shrinks(&self) -> bool {
+        self.is_similar() && self.ratios().all(|(_, _, ratio)| ratio < 1.0)
     }
 
     /// The copies as the similarity dimension sees them: from, to, ratio.

@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use super::Effort;
 use super::neighbours::Neighbours;
 use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
@@ -15,13 +16,19 @@ const MOST_TYPES: usize = 10_000;
 const MOST_EARLIER: usize = 200_000;
 
 /// How distinct pieces multiply.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Types {
     /// The number of types.
     pub(super) count: usize,
     /// The growth of their number from generation to generation.
     pub(super) growth: f64,
+    /// The steps that every type keeps; the first types are those of the sets.
+    pub(super) kept: Vec<Kept>,
 }
+
+/// The piece of a type, and the steps that it keeps: their number among those of the piece, and their
+/// type.
+pub(super) type Kept = (Piece, Vec<(usize, usize)>);
 
 /// A piece, and the pairs that it makes with those before it.
 type Type = (Piece, Vec<u32>);
@@ -30,24 +37,33 @@ impl Types {
     /// `None` where there are too many types.
     ///
     /// Precondition: the search for neighbours is complete.
-    pub(super) fn of(generations: &Generations, neighbours: &Neighbours) -> Option<Self> {
+    pub(super) fn of(
+        generations: &Generations,
+        neighbours: &Neighbours,
+        effort: Effort,
+    ) -> Option<Self> {
         let sharing = neighbours.sharing();
         let mut list = List::default();
         for set in 0..generations.size() {
             list.number((Piece { set, wait: 0 }, Vec::new()));
         }
-        let mut targets: Vec<Vec<usize>> = Vec::new();
-        while let Some((piece, before)) = list.types.get(targets.len()).cloned() {
-            let kept = steps_of_type(generations, neighbours, &sharing, piece, &before);
-            targets.push(kept.into_iter().map(|found| list.number(found)).collect());
-            if list.types.len() > MOST_TYPES || list.earlier > MOST_EARLIER {
+        let mut kept: Vec<Kept> = Vec::new();
+        while let Some((piece, before)) = list.types.get(kept.len()).cloned() {
+            let steps = steps_of_type(generations, neighbours, &sharing, piece, &before);
+            let steps = steps.into_iter();
+            let steps = steps.map(|(step, found)| (step, list.number(found)));
+            kept.push((piece, steps.collect()));
+            let [types, earlier] = [MOST_TYPES, MOST_EARLIER].map(|most| effort.of(most));
+            if list.types.len() > types || list.earlier > earlier {
                 return None;
             }
         }
-        let types = list.types;
+        let targets = |(_, steps): &Kept| steps.iter().map(|(_, to)| *to).collect();
+        let targets: Vec<Vec<usize>> = kept.iter().map(targets).collect();
         Some(Self {
-            count: types.len(),
+            count: kept.len(),
             growth: spectral_radius(&targets)?,
+            kept,
         })
     }
 }
@@ -71,14 +87,14 @@ impl List {
     }
 }
 
-/// The types of the steps that a piece keeps.
+/// The numbers and the types of the steps that a piece keeps.
 fn steps_of_type(
     generations: &Generations,
     neighbours: &Neighbours,
     sharing: &[bool],
     piece: Piece,
     before: &[u32],
-) -> Vec<Type> {
+) -> Vec<(usize, Type)> {
     let steps = generations.steps(piece);
     // By step: whether it belongs to an earlier piece, and the pairs that it makes with those.
     let mut kept: Vec<Option<Vec<u32>>> = vec![Some(Vec::new()); steps.len()];
@@ -100,11 +116,12 @@ fn steps_of_type(
             pairs.push(next.pair);
         }
     }
-    let kept = steps.iter().zip(kept).filter_map(|(step, pairs)| {
+    let kept = steps.iter().zip(kept).enumerate();
+    let kept = kept.filter_map(|(number, (step, pairs))| {
         let mut pairs = pairs?;
         pairs.sort_unstable();
         pairs.dedup();
-        Some((step.piece, pairs))
+        Some((number, (step.piece, pairs)))
     });
     kept.collect()
 }

@@ -1,0 +1,442 @@
+//! What measures are made of: sets that are made of copies of each other, and how mass is shared
+//! among them.
+
+use crate::digraph::components;
+use crate::geometry::{DAffine2, DMat2};
+use crate::graph::{Graph, Instance, Replacement};
+use crate::ifs::Ifs;
+use crate::rule::Placement;
+
+use super::perron::{Entry, beside_one, crossing, perron};
+
+/// A copy of one set inside another: the set `from` holds the image of the set `to` under the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Copy {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) map: DAffine2,
+}
+
+/// Sets that are made of copies of each other, and the whole, which is made of copies of them.
+#[derive(Clone, Debug)]
+pub(super) struct Copies {
+    pub(super) size: usize,
+    pub(super) copies: Vec<Copy>,
+    pub(super) start: Vec<(usize, DAffine2)>,
+}
+
+/// Copies with the shares that they have of the mass of the set that holds them, and the masses of what
+/// the whole is made of.
+#[derive(Clone, Debug)]
+pub(super) struct Shared {
+    pub(super) copies: Copies,
+    pub(super) shares: Vec<f64>,
+    pub(super) masses: Vec<f64>,
+}
+
+/// Dimensions that differ by less are the same.
+const SAME: f64 = 1e-9;
+
+/// A dimension beyond this means that maps do not contract.
+const LARGEST: f64 = 64.0;
+
+/// Rounds in which masses flow along the parts of a graph.
+const MOST_ROUNDS: usize = 100_000;
+
+/// A strongly connected component.
+#[derive(Clone, Debug, Default)]
+struct Component {
+    sets: Vec<usize>,
+    /// The copies inside.
+    inside: Vec<usize>,
+    dimension: Option<f64>,
+}
+
+impl Copies {
+    /// What the fertile elements of a graph become; `None` if it is not made of fixed maps.
+    pub(super) fn of(graph: &Graph) -> Option<Self> {
+        let copies = fixed_copies(graph)?;
+        let copies = copies
+            .into_iter()
+            .map(|(from, to, map)| Copy { from, to, map });
+        let start = graph.initiator(0).instances.iter();
+        let start = start.map(|instance| {
+            let set = graph.objects()[instance.object].behaviour;
+            (set, instance.frame.map)
+        });
+        let all = Self {
+            size: graph.behaviours().count(),
+            copies: copies.collect(),
+            start: start.collect(),
+        };
+        Some(all.lasting())
+    }
+
+    /// Without the sets that come to an end.
+    fn lasting(mut self) -> Self {
+        loop {
+            let mut lasts = vec![false; self.size];
+            self.copies.iter().for_each(|copy| lasts[copy.from] = true);
+            let before = self.copies.len();
+            self.copies.retain(|copy| lasts[copy.to]);
+            if self.copies.len() == before {
+                self.start.retain(|(set, _)| lasts[*set]);
+                return self;
+            }
+        }
+    }
+
+    /// The natural measure, under which a copy of the size r has a mass of about r^s, where s is
+    /// the similarity dimension (Hutchinson 1981): shares are r^s h(to) / h(from), where h is what the
+    /// matrix of the sums of r^s leaves as it is (Mauldin & Williams 1988).
+    ///
+    /// Of maps that are no similarities, the singular value function takes the place of r^s (Falconer
+    /// 1988). What does not come to the sets of the largest dimension has no mass. Where there are
+    /// several of these on one way, the mass stays with the first: the numbers of small copies beyond
+    /// it are as nothing to the numbers in it.
+    ///
+    /// `None` where maps do not contract, or nothing is a copy again and again.
+    pub(super) fn natural(self) -> Option<Shared> {
+        let values: Vec<SingularValues> = self
+            .copies
+            .iter()
+            .map(|copy| SingularValues::of(&copy.map.matrix2))
+            .collect();
+        let mut components = self.components();
+        for component in &mut components {
+            component.dimension = self.dimension(component, &values)?;
+        }
+        let dimensions = components.iter().filter_map(|it| it.dimension);
+        let most = dimensions.max_by(f64::total_cmp)?;
+        let sizes: Vec<f64> = values.iter().map(|it| it.cost(most)).collect();
+        let mut heights = vec![0.0; self.size];
+        let mut levels = vec![0; self.size];
+        let mut shares = vec![0.0; self.copies.len()];
+        // Copies lead to components of lower numbers only.
+        let mut leaving: Vec<Vec<usize>> = vec![Vec::new(); components.len()];
+        let mut component_of = vec![0; self.size];
+        for (number, component) in components.iter().enumerate() {
+            component
+                .sets
+                .iter()
+                .for_each(|&set| component_of[set] = number);
+        }
+        for (number, copy) in self.copies.iter().enumerate() {
+            if component_of[copy.from] != component_of[copy.to] {
+                leaving[component_of[copy.from]].push(number);
+            }
+        }
+        for (number, component) in components.iter().enumerate() {
+            let leaving = &leaving[number];
+            let below = leaving
+                .iter()
+                .map(|&copy| levels[self.copies[copy].to])
+                .max();
+            let below = below.unwrap_or(0);
+            let is_largest = component.dimension.is_some_and(|own| most - own <= SAME);
+            let level = below + usize::from(is_largest);
+            component.sets.iter().for_each(|&set| levels[set] = level);
+            if level == 0 {
+                continue;
+            }
+            let inside = component.inside.iter().copied();
+            let used: Vec<usize> = if is_largest {
+                self.fill(component, &sizes, &mut heights);
+                inside.collect()
+            } else {
+                let leaving = leaving.iter().copied();
+                let leaving = leaving.filter(|&copy| levels[self.copies[copy].to] == level);
+                let used: Vec<usize> = inside.chain(leaving).collect();
+                self.flow(&used, &sizes, &mut heights);
+                used
+            };
+            let mut sums = vec![0.0; self.size];
+            for &copy in &used {
+                let Copy { from, to, .. } = self.copies[copy];
+                shares[copy] = sizes[copy] * heights[to];
+                sums[from] += shares[copy];
+            }
+            for &copy in &used {
+                let sum = sums[self.copies[copy].from];
+                shares[copy] = if sum > 0.0 { shares[copy] / sum } else { 0.0 };
+            }
+        }
+        let masses = self.masses(most, &levels, &heights)?;
+        Some(Shared {
+            copies: self,
+            shares,
+            masses,
+        })
+    }
+
+    /// The masses of what the whole is made of.
+    fn masses(&self, dimension: f64, levels: &[usize], heights: &[f64]) -> Option<Vec<f64>> {
+        let level = self.start.iter().map(|(set, _)| levels[*set]).max()?;
+        let mass = |(set, map): &(usize, DAffine2)| {
+            let size = SingularValues::of(&map.matrix2).cost(dimension);
+            if level > 0 && levels[*set] == level {
+                size * heights[*set]
+            } else {
+                0.0
+            }
+        };
+        let masses: Vec<f64> = self.start.iter().map(mass).collect();
+        let sum: f64 = masses.iter().sum();
+        (sum > 0.0 && sum.is_finite()).then(|| masses.iter().map(|mass| mass / sum).collect())
+    }
+
+    fn components(&self) -> Vec<Component> {
+        let mut targets = vec![Vec::new(); self.size];
+        for copy in &self.copies {
+            targets[copy.from].push(copy.to);
+        }
+        let component = components(&targets);
+        let count = component.iter().max().map_or(0, |most| most + 1);
+        let mut components = vec![Component::default(); count];
+        for (set, &number) in component.iter().enumerate() {
+            components[number].sets.push(set);
+        }
+        for (number, copy) in self.copies.iter().enumerate() {
+            if component[copy.from] == component[copy.to] {
+                components[component[copy.from]].inside.push(number);
+            }
+        }
+        components
+    }
+
+    /// The entries of a component's matrix, its sets numbered from 0.
+    fn entries(&self, component: &Component, value: impl Fn(usize) -> f64) -> Vec<Entry> {
+        // Sets of a component come in their order.
+        let number = |set: usize| component.sets.binary_search(&set).unwrap_or(0);
+        let inside = component.inside.iter();
+        let entry = |&copy: &usize| {
+            let Copy { from, to, .. } = self.copies[copy];
+            (number(from), number(to), value(copy))
+        };
+        inside.map(entry).collect()
+    }
+
+    /// The dimension of a component: the s for which its matrix has the spectral radius 1; none if
+    /// nothing comes back to it. `None` if there is no such s.
+    #[expect(clippy::option_option, reason = "no cycle is no failure")]
+    fn dimension(&self, component: &Component, values: &[SingularValues]) -> Option<Option<f64>> {
+        if component.inside.is_empty() {
+            return Some(None);
+        }
+        if component.inside.len() == component.sets.len() {
+            return Some(Some(0.0));
+        }
+        let radius = |s: f64| {
+            let entries = self.entries(component, |copy| values[copy].cost(s));
+            perron(component.sets.len(), &entries, beside_one).radius
+        };
+        let mut high = 1.0;
+        while radius(high) > 1.0 {
+            high *= 2.0;
+            if high > LARGEST {
+                return None;
+            }
+        }
+        Some(Some(crossing(high, 0.0, radius)))
+    }
+
+    /// What the matrix of a component leaves as it is.
+    fn fill(&self, component: &Component, sizes: &[f64], heights: &mut [f64]) {
+        let entries = self.entries(component, |copy| sizes[copy]);
+        let vector = perron(component.sets.len(), &entries, |_| false).vector;
+        for (&set, height) in component.sets.iter().zip(vector) {
+            heights[set] = height;
+        }
+    }
+
+    /// What comes from below, by copies that lead there in the end.
+    fn flow(&self, used: &[usize], sizes: &[f64], heights: &mut [f64]) {
+        const TOLERANCE: f64 = 1e-15;
+        for _ in 0..MOST_ROUNDS {
+            let mut sums = std::collections::BTreeMap::new();
+            for &copy in used {
+                let Copy { from, to, .. } = self.copies[copy];
+                *sums.entry(from).or_insert(0.0) += sizes[copy] * heights[to];
+            }
+            let mut change: f64 = 0.0;
+            for (set, sum) in sums {
+                change = change.max((sum - heights[set]).abs() / sum);
+                heights[set] = sum;
+            }
+            if change <= TOLERANCE || change.is_nan() {
+                break;
+            }
+        }
+    }
+}
+
+/// The logarithms of a map's singular values: the larger one first.
+#[derive(Clone, Copy, Debug)]
+struct SingularValues([f64; 2]);
+
+impl SingularValues {
+    fn of(matrix: &DMat2) -> Self {
+        let larger = norm(matrix);
+        let area = matrix.determinant().abs();
+        Self([libm::log(larger), libm::log(area / larger)])
+    }
+
+    /// The singular value function φ^s (Falconer 1988): r^s of a similarity.
+    fn cost(&self, s: f64) -> f64 {
+        let [larger, smaller] = self.0;
+        // 0 times the logarithm of 0 is nothing.
+        let times = |share: f64, log: f64| if share > 0.0 { share * log } else { 0.0 };
+        if s >= 2.0 {
+            return libm::exp(s / 2.0 * (larger + smaller));
+        }
+        libm::exp(times(s.min(1.0), larger) + times(s - 1.0, smaller))
+    }
+}
+
+impl Shared {
+    /// The measure that the weights of a system give: that of random iteration without condensation
+    /// sets (Demko, Hodges & Naylor 1985; of recurrent systems: Barnsley, Elton & Hardin 1989).
+    ///
+    /// Of a recurrent system, the set of a map holds the images of those before it under that map: that
+    /// of i in the set of j has the share π_i p_ij / π_j, where p_ij is the probability of going from i
+    /// to j and π is how much of its time the walk spends where. `None` where that depends on where the
+    /// walk starts.
+    pub(super) fn of_weights(ifs: &Ifs) -> Option<Self> {
+        let maps = ifs.maps();
+        let Some(edges) = ifs.edges() else {
+            let all: f64 = ifs.weights().iter().sum();
+            let copies = maps.iter().zip(ifs.weights());
+            let copies = copies.map(|(map, weight)| {
+                let map = map.affine;
+                (
+                    Copy {
+                        from: 0,
+                        to: 0,
+                        map,
+                    },
+                    weight / all,
+                )
+            });
+            let whole = vec![(0, DAffine2::IDENTITY)];
+            return Some(Self::joined(1, copies, whole, vec![1.0]));
+        };
+        let edges: Vec<(usize, usize, f64)> = edges
+            .map(|(edge, weight)| (edge.from, edge.to, weight))
+            .collect();
+        let mut sums = vec![0.0; maps.len()];
+        edges
+            .iter()
+            .for_each(|&(from, _, weight)| sums[from] += weight);
+        let mut targets = vec![Vec::new(); maps.len()];
+        edges
+            .iter()
+            .for_each(|&(from, to, _)| targets[from].push(to));
+        let component = components(&targets);
+        // Steps lead to components of lower numbers only: the first one is never left.
+        let is_left = |part: usize| {
+            edges
+                .iter()
+                .any(|&(from, to, _)| component[from] == part && component[to] != part)
+        };
+        let count = component.iter().max().map_or(0, |most| most + 1);
+        if (1..count).any(|part| !is_left(part)) {
+            return None;
+        }
+        let stay: Vec<usize> = (0..maps.len()).filter(|&map| component[map] == 0).collect();
+        let number = |map: usize| stay.binary_search(&map).unwrap_or(0);
+        let steps = edges.iter().filter(|(from, ..)| component[*from] == 0);
+        let steps: Vec<Entry> = steps
+            .map(|&(from, to, weight)| (number(to), number(from), weight / sums[from]))
+            .collect();
+        let often = perron(stay.len(), &steps, |_| false).vector;
+        let copies = steps.iter().map(|&(to, from, probability)| {
+            let map = maps[stay[to]].affine;
+            (
+                Copy {
+                    from: to,
+                    to: from,
+                    map,
+                },
+                often[from] * probability / often[to],
+            )
+        });
+        let all: f64 = often.iter().sum();
+        let start = (0..stay.len()).map(|set| (set, DAffine2::IDENTITY));
+        let masses = often.iter().map(|often| often / all);
+        Some(Self::joined(
+            stay.len(),
+            copies,
+            start.collect(),
+            masses.collect(),
+        ))
+    }
+
+    /// Copies that are the same are one, of their shares together.
+    fn joined(
+        size: usize,
+        copies: impl Iterator<Item = (Copy, f64)>,
+        start: Vec<(usize, DAffine2)>,
+        masses: Vec<f64>,
+    ) -> Self {
+        let (mut kept, mut shares): (Vec<Copy>, Vec<f64>) = (Vec::new(), Vec::new());
+        for (copy, share) in copies {
+            match kept.iter().position(|known| *known == copy) {
+                Some(known) => shares[known] += share,
+                None => {
+                    kept.push(copy);
+                    shares.push(share);
+                }
+            }
+        }
+        Self {
+            copies: Copies {
+                size,
+                copies: kept,
+                start,
+            },
+            shares,
+            masses,
+        }
+    }
+}
+
+/// The copies that what is fertile in a graph is made of, by the numbers of behaviours: what holds one, what
+/// it is a copy of, and the map. `None` if the graph is not a list of fixed maps, or has resets.
+pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)>> {
+    if !graph.is_regular() || !graph.is_plain() || graph.depth().is_some() {
+        return None;
+    }
+    let fertile = |instance: &Instance| {
+        let object = &graph.objects()[instance.object];
+        !matches!(object.replacement, Replacement::Kept)
+    };
+    let mut copies = Vec::new();
+    // Objects of one behaviour are replaced by the same.
+    for object in graph.behaviours() {
+        let Replacement::Fixed(production) = &object.replacement else {
+            continue;
+        };
+        for (placement, instance) in production.placed_instances() {
+            if !fertile(instance) {
+                continue;
+            }
+            if placement == Placement::SeedsAsInitiator {
+                return None;
+            }
+            let to = graph.objects()[instance.object].behaviour;
+            copies.push((object.behaviour, to, instance.frame.map));
+        }
+    }
+    Some(copies)
+}
+
+/// The most that a linear map lengthens a vector: its largest singular value.
+#[inline]
+pub(super) fn norm(matrix: &DMat2) -> f64 {
+    let (a, b) = (matrix.x_axis, matrix.y_axis);
+    let half = (a.length_squared() + b.length_squared()) / 2.0;
+    let difference = (a.length_squared() - b.length_squared()) / 2.0;
+    let product = a.dot(b);
+    let root = (difference * difference + product * product).sqrt();
+    (half + root).sqrt()
+}

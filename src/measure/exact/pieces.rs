@@ -1,0 +1,101 @@
+//! Sets that are made of distinct pieces: what pieces that coincide are a measure of.
+
+use glam::DAffine3;
+
+use crate::digraph::components;
+use crate::geometry::{DAffine2, DMat2};
+use crate::measure::copies::{Copies, Copy};
+
+use super::Effort;
+use super::hull::Flat;
+use super::neighbours::{End, Neighbours};
+use super::sizes::Generations;
+use super::system::System;
+use super::types::Types;
+
+/// The same sets, made of pieces of which none is there twice, where pieces coincide and are of
+/// finitely many types: there is a set for every type (Ngai & Wang 2001). The sets keep their numbers.
+///
+/// Where pieces are of too many types, or a set holds copies of others that do not hold copies of it,
+/// all stays as it is.
+pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
+    let mut targets = vec![Vec::new(); copies.size];
+    for copy in &copies.copies {
+        targets[copy.from].push(copy.to);
+    }
+    let component = components(&targets);
+    let count = component.iter().max().map_or(0, |most| most + 1);
+    let mut distinct = Copies {
+        copies: Vec::new(),
+        ..copies.clone()
+    };
+    for part in 0..count {
+        let all = copies.copies.iter();
+        let own: Vec<Copy> = all
+            .filter(|copy| component[copy.from] == part)
+            .copied()
+            .collect();
+        let sets = (0..copies.size).filter(|&set| component[set] == part);
+        let sets: Vec<usize> = sets.collect();
+        let is_closed = !own.is_empty() && own.iter().all(|copy| component[copy.to] == part);
+        let pieces = is_closed
+            .then(|| pieces(&sets, &own, distinct.size))
+            .flatten();
+        match pieces {
+            Some((size, pieces)) => {
+                distinct.size = size;
+                distinct.copies.extend(pieces);
+            }
+            None => distinct.copies.extend(own),
+        }
+    }
+    distinct
+}
+
+/// The copies of types that sets are made of, and the number of sets with those that are new;
+/// `None` where no pieces coincide, or they are of too many types.
+fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Copy>)> {
+    // Sets come in their order.
+    let number = |set: usize| sets.binary_search(&set).unwrap_or(0);
+    let inside = copies.iter();
+    let inside = inside.map(|copy| (number(copy.from), number(copy.to), copy.map));
+    let system = System::plane(inside).filter(System::shrinks)?;
+    let flat = Flat::of(&system);
+    let generations = Generations::of(&flat)?;
+    let neighbours = Neighbours::of(&generations, Effort::Full);
+    if !neighbours.coincide.contains(&true) || neighbours.end != End::Complete {
+        return None;
+    }
+    let types = Types::of(&generations, &neighbours, Effort::Full)?;
+    let of_type = |kind: usize| match sets.get(kind) {
+        Some(&set) => set,
+        None => size + kind - sets.len(),
+    };
+    let frame = |set: usize| {
+        let scale = DAffine3::from_scale(glam::DVec3::splat(1.0 / generations.scale[set]));
+        flat.frames[set] * scale
+    };
+    let mut pieces = Vec::new();
+    for (kind, (piece, kept)) in types.kept.iter().enumerate() {
+        let steps = generations.steps(*piece);
+        for &(step, to) in kept {
+            let step = &steps[step];
+            let map = frame(piece.set) * step.map * frame(step.piece.set).inverse();
+            pieces.push(Copy {
+                from: of_type(kind),
+                to: of_type(to),
+                map: flattened(&map),
+            });
+        }
+    }
+    Some((size + types.kept.len() - sets.len(), pieces))
+}
+
+/// What a map of space does in the plane.
+fn flattened(map: &DAffine3) -> DAffine2 {
+    let linear = map.matrix3;
+    DAffine2 {
+        matrix2: DMat2::from_cols(linear.x_axis.truncate(), linear.y_axis.truncate()),
+        translation: map.translation.truncate(),
+    }
+}

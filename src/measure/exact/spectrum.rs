@@ -1,0 +1,152 @@
+//! The spectrum of dimensions D_q of a measure, where it is known exactly.
+
+use crate::ifs::Ifs;
+use crate::measure::copies::Shared;
+use crate::measure::perron::{Entry, beside_one, crossing, perron};
+
+use super::{Dimensions, Overlap, System, dimensions};
+
+/// The spectrum of dimensions D_q of a measure (Hentschel & Procaccia 1983), for all real orders q.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spectrum {
+    /// All are the same: a ball of radius r about a point of the measure has a mass of about r^D.
+    Constant {
+        /// The dimension.
+        value: f64,
+        /// An expression that is equal, as rule files write it, where one was found.
+        closed_form: Option<String>,
+    },
+    /// That of a measure whose copies have given shares, under the open set condition.
+    Cascade(Weighted),
+}
+
+/// Copies of sets by their shares of the mass and their ratios.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weighted {
+    size: usize,
+    edges: Vec<Edge>,
+}
+
+/// A copy: the set that holds it, the set that it is a copy of, and logarithms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Edge {
+    from: usize,
+    to: usize,
+    /// Of its share of the mass.
+    share: f64,
+    /// Of its ratio.
+    ratio: f64,
+}
+
+/// Orders that are nearer to 1 are taken for it.
+const NEAR_ONE: f64 = 1e-7;
+
+/// Exponentials of more are not needed to tell on which side of 1 a radius lies.
+const MOST_EXPONENT: f64 = 300.0;
+
+impl Spectrum {
+    /// That of a set's natural measure: all D_q are its dimension, where the measure of balls is
+    /// known to be regular.
+    #[must_use]
+    pub fn natural(dimensions: &Dimensions) -> Option<Self> {
+        let hausdorff = &dimensions.hausdorff;
+        let value = hausdorff.value.filter(|_| dimensions.regular)?;
+        Some(Self::Constant {
+            value,
+            closed_form: hausdorff.closed_form.clone(),
+        })
+    }
+
+    /// That of the measure that the weights of a system give, where its maps are similarities and fulfil
+    /// the open set condition (Cawley & Mauldin 1992; for graphs: Edgar & Mauldin 1992; for negative
+    /// orders: Riedi 1995). Maps that are listed twice are one of their weights together.
+    ///
+    /// `None` where this is not decided, or [the weights have no one measure](crate::ifs::Walk::stationary).
+    #[must_use]
+    pub fn of_weights(ifs: &Ifs) -> Option<Self> {
+        let Shared { copies, shares, .. } = Shared::of_weights(ifs)?;
+        let maps = copies.copies.iter();
+        let system = System::plane(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
+        let Dimensions { hausdorff, .. } = dimensions(&system)?;
+        let is_open = matches!(hausdorff.overlap, Overlap::None | Overlap::Touching);
+        if !is_open || hausdorff.value.is_none() {
+            return None;
+        }
+        let edges = system.ratios().zip(shares);
+        let edges = edges.map(|((from, to, ratio), share)| Edge {
+            from,
+            to,
+            share: libm::log(share),
+            ratio: libm::log(ratio),
+        });
+        Some(Self::Cascade(Weighted {
+            size: copies.size,
+            edges: edges.collect(),
+        }))
+    }
+
+    /// The dimension of an order.
+    #[must_use]
+    pub fn at(&self, order: f64) -> f64 {
+        match self {
+            Self::Constant { value, .. } => *value,
+            Self::Cascade(weighted) => weighted.at(order),
+        }
+    }
+}
+
+impl Weighted {
+    fn at(&self, order: f64) -> f64 {
+        if (order - 1.0).abs() < NEAR_ONE {
+            return self.information();
+        }
+        // A single copy in each: the mass of a point.
+        if self.edges.len() == self.size {
+            return 0.0;
+        }
+        // Σ p^q r^−τ = 1, or the spectral radius of the matrix of these sums, with τ = (q − 1) D_q: for
+        // larger τ it is larger.
+        let radius = |tau: f64| self.radius(|edge| order * edge.share - tau * edge.ratio);
+        let (mut low, mut high) = (-1.0, 1.0);
+        while radius(low) > 1.0 {
+            low *= 2.0;
+        }
+        while radius(high) <= 1.0 {
+            high *= 2.0;
+        }
+        crossing(low, high, radius) / (order - 1.0) + 0.0
+    }
+
+    /// The spectral radius of the matrix of exponentials between sets.
+    fn radius(&self, exponent: impl Fn(&Edge) -> f64) -> f64 {
+        let entries: Vec<Entry> = self
+            .edges
+            .iter()
+            .map(|edge| {
+                let exponent = exponent(edge).clamp(-MOST_EXPONENT, MOST_EXPONENT);
+                (edge.from, edge.to, libm::exp(exponent))
+            })
+            .collect();
+        if self.size == 1 {
+            return entries.iter().map(|(.., value)| value).sum();
+        }
+        perron(self.size, &entries, beside_one).radius
+    }
+
+    /// D_1: the entropy of the shares over the mean logarithm of the ratios (Young 1982).
+    fn information(&self) -> f64 {
+        let shares = self.edges.iter();
+        // How often the sets come on the way of a point: what the transposed matrix leaves as it is.
+        let entries: Vec<Entry> = shares
+            .map(|edge| (edge.to, edge.from, libm::exp(edge.share)))
+            .collect();
+        let often = perron(self.size, &entries, |_| false).vector;
+        let mean = |of: fn(&Edge) -> f64| -> f64 {
+            let edges = self.edges.iter();
+            edges
+                .map(|edge| often[edge.from] * libm::exp(edge.share) * of(edge))
+                .sum()
+        };
+        mean(|edge| edge.share) / mean(|edge| edge.ratio)
+    }
+}

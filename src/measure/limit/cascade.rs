@@ -1,0 +1,110 @@
+//! Measures on a limit set: a multiplicative cascade that hands the mass of a copy on to its parts.
+
+use crate::geometry::DVec2;
+use crate::graph::Graph;
+use crate::ifs::Ifs;
+use crate::measure::copies::{Copies, Shared};
+use crate::measure::exact::distinct;
+
+use super::{LimitSet, Placed};
+
+/// A measure on a limit set, by the share of its mass that every copy has: that of a copy in a copy
+/// is the product of the shares on the way (Hutchinson 1981; for graphs: Mauldin & Williams 1988).
+///
+/// Copies that have no share are left out, so that the set is the measure's support.
+#[derive(Clone, Debug)]
+pub struct Cascade {
+    pub(super) set: LimitSet,
+    /// By object, the shares of its copies, which add up to 1.
+    pub(super) shares: Vec<Vec<f64>>,
+    /// The masses of what the whole is made of, which add up to 1.
+    pub(super) start: Vec<f64>,
+    /// The centres of mass of the objects.
+    pub(super) centres: Vec<DVec2>,
+}
+
+/// Sweeps after which centres have settled.
+const MOST_SWEEPS: usize = 1_000;
+
+impl Cascade {
+    /// The natural measure of the limit set of a graph's fertile elements: a copy of the size r has a
+    /// mass of about r^s, where s is the set's dimension (Hutchinson 1981; for graphs: Mauldin &
+    /// Williams 1988).
+    ///
+    /// Pieces that coincide count once, where they are of finitely many types (Ngai & Wang 2001); else
+    /// s is the similarity dimension. Of maps that are no similarities, the singular value function
+    /// takes the place of r^s (Falconer 1988).
+    ///
+    /// `None` where the graph is not made of fixed maps that contract.
+    #[must_use]
+    pub fn natural(graph: &Graph) -> Option<Self> {
+        Self::of(&distinct(Copies::of(graph)?).natural()?)
+    }
+
+    /// The measure that the weights of a system give, without condensation sets.
+    ///
+    /// `None` where [there is no one measure](crate::ifs::Walk::stationary).
+    #[must_use]
+    pub fn of_weights(ifs: &Ifs) -> Option<Self> {
+        Self::of(&Shared::of_weights(ifs)?)
+    }
+
+    /// `None` if nothing has a mass.
+    pub(in crate::measure) fn of(shared: &Shared) -> Option<Self> {
+        let mut children = vec![Vec::new(); shared.copies.size];
+        let mut shares = vec![Vec::new(); shared.copies.size];
+        for (copy, &share) in shared.copies.copies.iter().zip(&shared.shares) {
+            if share > 0.0 {
+                children[copy.from].push(Placed::new(copy.map, copy.to));
+                shares[copy.from].push(share);
+            }
+        }
+        let all = shared.copies.start.iter().zip(&shared.masses);
+        let all = all.filter(|(_, mass)| **mass > 0.0);
+        let (start, masses): (Vec<Placed>, Vec<f64>) = all
+            .map(|(&(object, map), &mass)| (Placed::new(map, object), mass))
+            .unzip();
+        if start.is_empty() {
+            return None;
+        }
+        let mut cascade = Self {
+            centres: vec![DVec2::ZERO; children.len()],
+            set: LimitSet::of_copies(children, start),
+            shares,
+            start: masses,
+        };
+        cascade.find_centres();
+        Some(cascade)
+    }
+
+    /// The support.
+    #[must_use]
+    pub fn set(&self) -> &LimitSet {
+        &self.set
+    }
+
+    /// Centres of mass, c(o) = Σ share f(c(p)) over the copies f of p.
+    fn find_centres(&mut self) {
+        const TOLERANCE: f64 = 1e-6;
+        let mut centres: Vec<DVec2> = self.set.objects.iter().map(|part| part.point).collect();
+        for _ in 0..MOST_SWEEPS {
+            let mut change: f64 = 0.0;
+            for object in (0..centres.len()).rev() {
+                let part = &self.set.objects[object];
+                let copies = part.children.iter().zip(&self.shares[object]);
+                let centre: DVec2 = copies
+                    .map(|(copy, share)| *share * copy.map.transform_point2(centres[copy.object]))
+                    .sum();
+                if !part.children.is_empty() {
+                    change = change.max((centre - centres[object]).length() / part.radius);
+                    centres[object] = centre;
+                }
+            }
+            // A set of a single point has no radius.
+            if change <= TOLERANCE || change.is_nan() {
+                break;
+            }
+        }
+        self.centres = centres;
+    }
+}
