@@ -16,6 +16,7 @@ use crate::measure::{BoxCounting, Generalised, Grid, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels, RenderError};
 
+pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::family::{Assignment, assignment};
 use super::rule::RuleArguments;

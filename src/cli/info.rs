@@ -9,12 +9,14 @@ use crate::estimate::{Estimate, Estimator, instanced_bytes};
 use crate::geometry::Bounds;
 use crate::graph::{Count, Graph, Level};
 use crate::heading::Parameter;
+use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
 use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
 use crate::wording;
 
+use super::dim::hausdorff;
 use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
 use super::structure::StructureInfo;
@@ -110,6 +112,34 @@ impl fmt::Display for Corners {
 struct Dimension {
     similarity: Option<f64>,
     note: Option<String>,
+    /// That of the set itself, or what bounds it, as `dim` has it.
+    hausdorff: serde_json::Value,
+    #[serde(skip)]
+    exact: Option<exact::Hausdorff>,
+}
+
+impl Dimension {
+    /// The similarity dimension, and that of the set itself.
+    fn lines(&self) -> [Option<String>; 2] {
+        let similarity = self.similarity.map(|value| {
+            let note = self.note.as_ref();
+            let note = note.map(|note| format!(" ({note})")).unwrap_or_default();
+            format!("similarity dimension {}{note}", decimal(value))
+        });
+        let similarity = similarity.or_else(|| self.note.clone());
+        let own = self.exact.as_ref().and_then(|known| {
+            let told = match (known.value, known.upper_bound) {
+                (Some(value), _) => decimal(value),
+                (None, Some(bound)) => format!("at most {} ({})", decimal(bound), known.method),
+                (None, None) => return None,
+            };
+            let form = known.closed_form.as_ref();
+            let form = form.filter(|form| known.value.is_some() && **form != told);
+            let form = form.map(|form| format!(" = {form}")).unwrap_or_default();
+            Some(format!("Hausdorff dimension {told}{form}"))
+        });
+        [Some(similarity.unwrap_or_else(|| "unknown".into())), own]
+    }
 }
 
 /// Decimal strings: the numbers may be larger than those of JSON's readers.
@@ -218,6 +248,9 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         counts.map(Some)
     });
     let similarity = similarity_dimension(graph);
+    // What is drawn by chance may take many integrals.
+    let exact = (!graph.draws()).then(|| dimensions_of_graph_within(graph, Effort::Quick));
+    let exact = exact.and_then(|known| known.dimensions);
     let heading = loaded.model.heading();
     let params = heading.parameters.iter();
     Info {
@@ -244,6 +277,8 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,
+            hausdorff: hausdorff(exact.as_ref()),
+            exact: exact.map(|known| known.hausdorff),
         },
         system: match &loaded.model {
             Model::Ifs(system) => Some(SystemInfo::of(system)),
@@ -342,12 +377,10 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
             "no: the walk counts indices"
         },
     );
-    let dimension = match (info.dimension.similarity, &info.dimension.note) {
-        (Some(value), Some(note)) => format!("{} ({note})", decimal(value)),
-        (Some(value), None) => decimal(value),
-        (None, note) => note.clone().unwrap_or_else(|| "unknown".into()),
-    };
-    line("dimension", &dimension);
+    let labels = ["dimension", ""].into_iter();
+    for (label, dimension) in labels.zip(info.dimension.lines().into_iter().flatten()) {
+        line(label, &dimension);
+    }
     if let Some(bytes) = info.instanced_svg_bytes {
         let bytes = wording::rough_bytes(bytes);
         line(

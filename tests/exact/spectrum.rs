@@ -228,3 +228,47 @@ fn the_program_tells_what_is_exact_beside_what_is_measured() {
     );
     assert!(text.contains("0.295903"), "{text}");
 }
+
+#[test]
+fn info_tells_similarity_dimensions_from_those_of_sets() {
+    let folder = tempfile::tempdir().unwrap();
+    let info = |arguments: &[&str]| {
+        let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+        let output = command
+            .current_dir(folder.path())
+            .arg("info")
+            .args(arguments)
+            .output();
+        String::from_utf8(output.unwrap().stdout).unwrap()
+    };
+    for (name, similarity, own) in [
+        ("ternary-tree", "10.618847905562", "at most 2 ("),
+        ("plant-c", "3", "at most 2 ("),
+        ("maple-leaf-chaos", "2.728515527250", "at most 2 ("),
+        ("levy", "2", "2"),
+        ("gasket", "1.584962500721", "1.584962500721 = log(3)/log(2)"),
+        ("koch-rings", "1.806179973984", "1.556302500767"),
+    ] {
+        let text = info(&[name]);
+        let similarity = similarity.trim_end_matches('0');
+        assert!(
+            text.contains(&format!("similarity dimension {similarity}")),
+            "{text}"
+        );
+        assert!(
+            text.contains(&format!("Hausdorff dimension {own}")),
+            "{text}"
+        );
+        let json: serde_json::Value = serde_json::from_str(&info(&[name, "--json"])).unwrap();
+        let hausdorff = &json["dimension"]["hausdorff"];
+        assert!(
+            hausdorff["upper_bound"].as_f64().unwrap() <= 2.0,
+            "{hausdorff}"
+        );
+        assert_eq!(
+            hausdorff["value"].is_null(),
+            own.starts_with("at most"),
+            "{name}"
+        );
+    }
+}
