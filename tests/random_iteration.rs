@@ -96,11 +96,11 @@ fn random(system: &ifs::System, view: View) -> Pixels {
         size: canvas.size(),
     };
     let game = Game {
-        points: 100_000,
+        points: 1_000_000,
         ..Game::default()
     };
     let histogram = play(&System::of(system.ifs()).unwrap(), &window, &game).unwrap();
-    assert_eq!(histogram.inside(), 100_000);
+    assert_eq!(histogram.inside(), 1_000_000);
     pixels(histogram.counts(0).iter().map(|&count| count > 0))
 }
 
@@ -118,7 +118,7 @@ fn lonely(pixels: &Pixels, others: &Pixels, distance: i64) -> f64 {
 
 /// Every pixel that random iteration hits is beside one that deterministic iteration inks, but for one
 /// in 100, where more grows of an element than is drawn of it (the trunk of a tree). The other way
-/// round one in 50 may be missed: those that are hit less than once in 100,000 points, of systems
+/// round one in 50 may be missed: those that are hit less than once in a million points, of systems
 /// whose weights are uneven.
 #[test]
 fn random_and_deterministic_iteration_draw_one_set() {
