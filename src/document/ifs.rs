@@ -150,6 +150,8 @@ pub enum FormDocument {
 pub struct FractalDocument {
     /// What the fractal's file says.
     pub file: KindDocument,
+    /// Whether nothing is known to be wrong with it: only then can it be grown.
+    pub is_sound: bool,
     /// The number of steps; the file's own if left out.
     pub steps: Option<Number>,
     /// What its random draws depend on; 0 if left out.

@@ -131,6 +131,22 @@ impl Node {
         }
     }
 
+    /// Whether a place lies in it, or in a part of it that is written elsewhere.
+    pub(super) fn holds(&self, place: &Place) -> bool {
+        let [own, other] = [&self.place, place].map(Place::range);
+        if Arc::ptr_eq(self.place.source(), place.source())
+            && own.start <= other.start
+            && other.end <= own.end
+        {
+            return true;
+        }
+        match &self.value {
+            Value::Sequence(nodes) => nodes.iter().any(|node| node.holds(place)),
+            Value::Mapping(entries) => entries.iter().any(|(_, node)| node.holds(place)),
+            _ => false,
+        }
+    }
+
     /// YAML that reads as this value: block style outside, flow style for points and short
     /// mappings, text quoted only where it would read as something else.
     #[must_use]

@@ -52,18 +52,20 @@ pub(super) fn read(
     diagnostics: &mut Diagnostics,
 ) -> Option<KindDocument> {
     let mut reader = Reader::after(diagnostics);
-    let document = match kind {
-        Kind::Rule => rule::read_rule(&mut reader, node, complete).map(KindDocument::Rule),
-        Kind::Ifs => ifs::read_ifs(&mut reader, node, complete).map(KindDocument::Ifs),
-        Kind::Instancing => {
-            instancing::read_instancing(&mut reader, node, complete).map(KindDocument::Instancing)
-        }
-        Kind::LSystem => {
-            lsystem::read_lsystem(&mut reader, node, complete).map(KindDocument::LSystem)
-        }
-    };
+    let document = read_kind(&mut reader, kind, node, complete);
     diagnostics.extend(reader.diagnostics);
     document
+}
+
+fn read_kind(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Option<KindDocument> {
+    match kind {
+        Kind::Rule => rule::read_rule(reader, node, complete).map(KindDocument::Rule),
+        Kind::Ifs => ifs::read_ifs(reader, node, complete).map(KindDocument::Ifs),
+        Kind::Instancing => {
+            instancing::read_instancing(reader, node, complete).map(KindDocument::Instancing)
+        }
+        Kind::LSystem => lsystem::read_lsystem(reader, node, complete).map(KindDocument::LSystem),
+    }
 }
 
 /// The first line of a place: enough to say which mapping lacks something.

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Severity, Source, did_you_mean};
 use crate::expression::{Expression, is_name};
 use crate::style::Named;
 
@@ -19,6 +19,8 @@ pub(super) struct Reader {
     pub(super) names_are_missing: bool,
     /// The places of mistakes of syntax that have been mended.
     mended: HashSet<(*const Source, usize, usize)>,
+    /// The places of errors that were found before anything was read.
+    errors: Arc<[Place]>,
 }
 
 /// The value of a key, and where the key is written.
@@ -73,10 +75,28 @@ impl Reader {
     /// A reader of what has these mistakes.
     pub(super) fn after(diagnostics: &Diagnostics) -> Self {
         let places = diagnostics.iter().filter_map(Diagnostic::place);
+        let is_error = |found: &&Diagnostic| found.severity() == Severity::Error;
+        let errors = diagnostics.iter().filter(is_error);
         Self {
             mended: places.map(identity).collect(),
+            errors: errors.filter_map(Diagnostic::place).cloned().collect(),
             ..Self::default()
         }
+    }
+
+    /// A reader of a file that stands inside the one that is read.
+    pub(super) fn inside(&self) -> Self {
+        Self {
+            mended: self.mended.clone(),
+            errors: Arc::clone(&self.errors),
+            ..Self::default()
+        }
+    }
+
+    /// Whether nothing was wrong with a node before it was read, nor with what has been read by this
+    /// reader.
+    pub(super) fn is_sound(&self, node: &Node) -> bool {
+        !self.diagnostics.has_errors() && !self.errors.iter().any(|place| node.holds(place))
     }
 
     /// Whether a mistake at the very place of this node has been reported.

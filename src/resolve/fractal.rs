@@ -33,6 +33,10 @@ impl<K> Resolver<K> {
                 return None;
             }
         };
+        if !document.is_sound {
+            // What could not be read, which has been said, is missing in the model.
+            return None;
+        }
         let place = &document.place;
         let Some(steps) = steps.unwrap_or(model.heading().steps) else {
             if document.steps.is_none() {

@@ -11,7 +11,7 @@ use crate::resolve::MOST_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
-use super::{first_line, read};
+use super::{first_line, read_kind};
 
 /// The keys of an initial set.
 pub(super) const SET: Shape = Shape {
@@ -280,9 +280,13 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
         Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
         _ => Kind::default(),
     };
-    let file = read(kind, node, true, &mut reader.diagnostics)?;
+    let mut inside = reader.inside();
+    let file = read_kind(&mut inside, kind, node, true);
+    let is_sound = inside.is_sound(node);
+    reader.diagnostics.extend(inside.diagnostics);
     Some(FormDocument::Fractal(Box::new(FractalDocument {
-        file,
+        file: file?,
+        is_sound,
         steps,
         seed,
         set,
