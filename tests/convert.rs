@@ -485,3 +485,18 @@ fn what_is_refused_is_called_by_its_name() {
     let said = refused.unwrap_err().to_string();
     assert!(said.contains("of the object 'leaf'"), "{said}");
 }
+
+#[test]
+fn polygons_without_an_area_become_the_lines_that_they_trace() {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue
+        .component(Shelf::LSystems, "cordate-leaf")
+        .unwrap();
+    let leaf = Document::read(&source, &catalogue).unwrap();
+    let leaf = convert(&model(&leaf), Kind::Instancing, Keeps::Limit).unwrap();
+    let written = leaf.to_yaml();
+    assert!(
+        written.contains("polygon:") && written.contains("segment:"),
+        "{written}"
+    );
+}

@@ -52,6 +52,11 @@ pub enum Refusal {
         "a base element in it is round, and sets of this kind have straight sides or are ellipses"
     )]
     Round,
+    /// An outline crosses itself so that it encloses nothing.
+    #[error(
+        "a closed outline in it crosses itself so that its area is 0, and that of a polygon must not be"
+    )]
+    NoArea,
     /// It would be too long.
     #[error("it would have more than {0} maps")]
     TooManyMaps(usize),

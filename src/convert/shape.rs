@@ -38,7 +38,11 @@ pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refu
         if outline.is_closed() {
             // The last side is what `polygon` says.
             all.pop();
-            return Ok(set.set("polygon", points(all)));
+            if Shape::polygon(&all).is_some_and(|polygon| polygon.moments().is_some()) {
+                return Ok(set.set("polygon", points(all)));
+            }
+            let ends = ends_of_line(&all).ok_or(Refusal::NoArea)?;
+            return Ok(set.set("segment", points(ends.to_vec())));
         }
         let name = if all.len() == 2 {
             "segment"
@@ -58,6 +62,24 @@ pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refu
         let angle = (angle != 0.0).then(|| value(angle));
         set.set("ellipse", form.set_some("rotate", angle).value())
     })
+}
+
+/// The ends of the line that points lie on, if they do.
+fn ends_of_line(all: &[DVec2]) -> Option<[DVec2; 2]> {
+    const ROUNDING: f64 = 1e-12;
+    let start = *all.first()?;
+    let by =
+        |key: &dyn Fn(&DVec2) -> f64| all.iter().copied().max_by(|a, b| key(a).total_cmp(&key(b)));
+    let along = by(&|point| point.distance_squared(start))? - start;
+    let is_on_line =
+        |point: &DVec2| along.perp_dot(*point - start).abs() <= ROUNDING * along.length_squared();
+    if !all.iter().all(is_on_line) {
+        return None;
+    }
+    Some([
+        by(&|point| -along.dot(*point))?,
+        by(&|point| along.dot(*point))?,
+    ])
 }
 
 /// Whether an outline stands for a point: is the shortest line that there is.
