@@ -278,7 +278,10 @@ impl Reader {
             let s = if count == 1 { "" } else { "s" };
             let message = format!("a point has two coordinates, this one has {count} number{s}");
             let hint = match count {
-                3.. => "a point is written [x, y], decimals with a point: 0.5",
+                3 => {
+                    "fractals lie in the plane: a point is written [x, y], decimals with a point: 0.5"
+                }
+                4.. => "a point is written [x, y], decimals with a point: 0.5",
                 _ => hint,
             };
             self.error_with_hint(&node.place, message, hint);

@@ -122,11 +122,23 @@ pub(super) fn translate(
             | ErrorKind::InvalidColonPlacement
             | ErrorKind::MismatchedFlowCollectionEnd { .. }
     );
-    // A key in a line below that is not indented further is no part of what is open.
+    // The parser may look ahead so far that it has not told of the bracket yet.
+    let flow = flow.or_else(|| match error.kind() {
+        ErrorKind::BlockEntryInFlowCollection => open_bracket(text.get(..at)?),
+        _ => None,
+    });
+    // A key or an entry in a line below that is not indented further is no part of what is open.
     let open = flow.filter(|start| {
         let [above, here] = [*start, at].map(|at| source.line_column(line_start(source, at)));
         let is_below = here.0 > above.0 && here.1 <= above.1;
-        *error.kind() == ErrorKind::InvalidColonPlacement && is_below
+        let is_other = match error.kind() {
+            ErrorKind::InvalidColonPlacement | ErrorKind::BlockEntryInFlowCollection => true,
+            ErrorKind::ExpectedFlowMappingSeparator | ErrorKind::ExpectedFlowSequenceSeparator => {
+                rest.starts_with(':')
+            }
+            _ => false,
+        };
+        is_other && is_below
     });
     let flow = match flow {
         Some(start) if start < at => start..at,
@@ -341,6 +353,24 @@ fn spans_lines(source: &Arc<Source>, range: &Range<usize>) -> bool {
         .text()
         .get(range.clone())
         .is_some_and(|text| text.contains(['\n', '\r']))
+}
+
+/// The last bracket of a text that is not closed in it.
+fn open_bracket(text: &str) -> Option<usize> {
+    let mut closed = 0;
+    let mut brackets = text.rmatch_indices(['[', ']', '{', '}']);
+    let open = brackets.find(|(_, bracket)| match (*bracket, closed) {
+        ("]" | "}", _) => {
+            closed += 1;
+            false
+        }
+        (_, 0) => true,
+        _ => {
+            closed -= 1;
+            false
+        }
+    });
+    open.map(|(start, _)| start)
 }
 
 /// The first character of a line that is not indentation.
