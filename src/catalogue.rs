@@ -3,6 +3,8 @@
 //! A library folder holds `rules`, `ifs`, `instancing`, `lsystems`, `initiators`, `generators` and `base_elements`, each with YAML
 //! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
 
+mod file;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,6 +14,8 @@ use include_dir::{Dir, File, include_dir};
 
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
 use crate::model::Kind;
+
+pub use file::{cannot_be_read, open_file};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
 
@@ -176,6 +180,10 @@ impl Catalogue {
                     "'{name}' is a folder, not a rule file"
                 )));
             }
+            // A link that leads nowhere is the file that is meant.
+            Err(error) if path.is_symlink() => {
+                return Err(cannot_be_read(path, &error));
+            }
             _ => {}
         }
         if let Some(component) = self.component_named(path) {
@@ -185,8 +193,8 @@ impl Catalogue {
             return self.named(&[shelf], name);
         }
         let looks_like_path = name.contains(['/', '\\']);
-        if looks_like_path {
-            return Err(Diagnostic::error(format!("there is no file '{name}'")));
+        if looks_like_path && let Err(error) = fs::metadata(path) {
+            return Err(cannot_be_read(path, &error));
         }
         self.named(&Shelf::grown(), &name)
     }
@@ -271,9 +279,14 @@ impl Catalogue {
     /// What has a name on one of some shelves.
     fn named(&self, shelves: &[Shelf], name: &str) -> Result<Arc<Source>, Diagnostic> {
         let Some(entry) = self.candidates(shelves, name).into_iter().next() else {
-            let noun = shelves[0].noun();
-            let mut error =
-                Diagnostic::error(format!("there is no {noun} '{name}' in the library"));
+            // A name that ends as those of files do is that of a file.
+            let is_file = shelves.len() > 1 && Path::new(name).extension().is_some();
+            let message = if is_file {
+                format!("there is no file '{name}', and no rule of this name in the library")
+            } else {
+                format!("there is no {} '{name}' in the library", shelves[0].noun())
+            };
+            let mut error = Diagnostic::error(message);
             let names: Vec<_> = self
                 .entries()
                 .into_iter()
@@ -417,10 +430,7 @@ fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     // One byte more than is allowed tells a file that is too large without reading all of it.
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
-    fs::File::open(path)
-        .and_then(|file| file.take(most).read_to_end(&mut bytes))
-        .map_err(|error| {
-            Diagnostic::error(format!("'{}' cannot be read: {error}", path.display()))
-        })?;
+    let read = open_file(path)?.take(most).read_to_end(&mut bytes);
+    read.map_err(|error| cannot_be_read(path, &error))?;
     Source::read_file(path, bytes)
 }

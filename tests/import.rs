@@ -115,7 +115,7 @@ fn files_that_hold_nothing_are_refused() {
             b"",
             "'curves.txt' is neither a .l nor a .ifs file",
         ),
-        ("missing.l", b"", "'missing.l' cannot be read"),
+        ("missing.l", b"", "there is no file 'missing.l'"),
     ];
     for (name, text, message) in cases {
         if name != "missing.l" {

@@ -3,6 +3,9 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
+#[path = "terminal/signals.rs"]
+mod signals;
+
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::Read;

@@ -16,11 +16,11 @@ use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_dens
 use crate::style::{ColorBy, Colour, Named, Style};
 use crate::wording::counted;
 
+use super::Failure;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::Loaded;
-use super::{Failure, stop};
 
 /// How systems of maps are iterated, and the options of random iteration.
 #[derive(clap::Args)]
@@ -250,12 +250,11 @@ impl ChaosGame<'_> {
             start: self.start.clone(),
             classes: self.classes(),
             threads: growth.threads(),
-            cancel: Some(stop::flag()),
+            cancel: None,
             progress,
         };
         let histogram = play(&self.system, &window, &game).map_err(|error| {
             Stopped::Said(match error {
-                GameError::Cancelled => Failure::Interrupted,
                 error @ GameError::TooManyBins { .. } => anyhow::anyhow!(
                     "{error}; a smaller --size works, and --method deterministic draws large pictures \
                      in bands"
@@ -311,8 +310,7 @@ impl ChaosGame<'_> {
         }
         let all = Points::new(&self.system, &self.start, growth.seed);
         let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
-        export::write_points(all, format, Some(stop::flag()), progress, out)
-            .map_err(RenderError::from)?;
+        export::write_points(all, format, None, progress, out).map_err(RenderError::from)?;
         let described = counted(&points.into(), "point");
         Ok(format!("{}, {described}", self.loaded.name))
     }

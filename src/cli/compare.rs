@@ -23,7 +23,7 @@ use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
 use super::labels::labels_of_two;
 use super::rule::{self, Loaded, RuleArguments};
-use super::{Failure, format, help, length, output, picture, steps, stop, text};
+use super::{Failure, format, help, input, length, output, picture, steps, text};
 
 /// Says whether two fractals are the same: how far apart their limit sets are
 ///
@@ -130,10 +130,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let both = arguments.load(catalogue)?;
     let set = match arguments.steps {
         None => Set::Limit,
-        Some(steps) => Set::Approximant(Growth {
-            cancel: Some(stop::flag()),
-            ..Growth::steps(steps)
-        }),
+        Some(steps) => Set::Approximant(Growth::steps(steps)),
     };
     let subject = |which: usize| {
         let One { loaded, graph } = &both[which];
@@ -192,7 +189,7 @@ impl Arguments {
         }
         let read = |path: &Path| -> Result<Document, Failure> {
             let source = rule::open(path, catalogue)?;
-            Ok(Document::read(&source, catalogue)?)
+            Ok(input::document(&source, catalogue)?)
         };
         let documents = [read(paths[0])?, read(paths[1])?];
         let has = |document: &Document, setting: &Setting| {
@@ -288,7 +285,6 @@ const STEPS: u32 = 64;
 
 fn explain(error: NoCover, loaded: &Loaded) -> Failure {
     match error {
-        NoCover::Walk(WalkError::Cancelled) => Failure::Interrupted,
         NoCover::Walk(WalkError::NotFinite(error)) => loaded.model.diagnostic(&error).into(),
         NoCover::NoLimit(reason) => anyhow!(
             "{} cannot be compared: {reason}; --steps N compares approximants",

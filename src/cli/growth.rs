@@ -17,7 +17,7 @@ use crate::wording::{counted, duration, grouped, rough_bytes};
 
 use super::goal::Goal;
 use super::rule::Loaded;
-use super::{Failure, output, stop};
+use super::{Failure, output};
 
 /// The most elements that are grown unless said otherwise, where a detail in pixels bounds them and all
 /// of them come to no more than pixels.
@@ -115,7 +115,7 @@ impl GrowthArguments {
             steps,
             seed: self.seed,
             most_elements: self.most_elements(),
-            cancel: Some(stop::flag()),
+            cancel: None,
             progress,
         }
     }
@@ -142,7 +142,6 @@ impl GrowthArguments {
     pub(super) fn explain(&self, error: RenderError, loaded: &Loaded, path: &Path) -> Failure {
         match error {
             RenderError::Io(error) => output::failed(error, path),
-            RenderError::Walk(WalkError::Cancelled) => Failure::Interrupted,
             RenderError::Walk(WalkError::NotFinite(error)) => {
                 loaded.model.diagnostic(&error).into()
             }

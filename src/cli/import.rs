@@ -1,15 +1,14 @@
 //! `kfrac import`: files of other programs, written as files to grow.
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::Context as _;
 use clap::ValueHint;
 use serde::Serialize;
 
+use crate::catalogue::{cannot_be_read, open_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::import::{Fractint, Imported, read_fractint};
 
@@ -146,12 +145,10 @@ fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
         }
     };
     let mut bytes = Vec::new();
-    let file = File::open(path);
-    file.and_then(|file| {
-        file.take(Source::MOST_BYTES as u64 + 1)
-            .read_to_end(&mut bytes)
-    })
-    .with_context(|| format!("'{}' cannot be read", path.display()))?;
+    let read = open_file(path)?
+        .take(Source::MOST_BYTES as u64 + 1)
+        .read_to_end(&mut bytes);
+    read.map_err(|error| cannot_be_read(path, &error))?;
     // Such files are older than UTF-8; what is not is taken byte by byte.
     if std::str::from_utf8(&bytes).is_err()
         && !bytes.contains(&0)
@@ -190,8 +187,7 @@ impl Written<'_> {
             found.push(Diagnostic::error(message).hint("--force replaces it"));
             return Ok(None);
         }
-        std::fs::create_dir_all(self.folder)
-            .with_context(|| format!("the folder '{}' cannot be made", self.folder.display()))?;
+        output::make_folder(self.folder)?;
         output::write(&path, true, |out, _| {
             out.write_all(yaml.as_bytes())
                 .map_err(|error| output::failed(error, &path))

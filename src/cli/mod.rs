@@ -17,11 +17,13 @@ mod growth;
 mod help;
 mod import;
 mod info;
+mod input;
 mod labels;
 mod length;
 mod list;
 mod man;
 mod output;
+mod part;
 mod picture;
 mod plot;
 mod progress;
@@ -136,8 +138,6 @@ enum Failure {
     Usage(String),
     /// What was to be said has been said.
     Said,
-    /// The user stopped it.
-    Interrupted,
 }
 
 impl From<Diagnostics> for Failure {
@@ -167,10 +167,11 @@ impl From<io::Error> for Failure {
 /// Runs the program with the arguments of the process.
 ///
 /// The exit status is 0 if its work is done (also if a reader closes the pipe), 1 if the input is
-/// wrong, a limit was met or a file could not be written, 2 if the command line is wrong, 130 if it
-/// was interrupted.
+/// wrong, a limit was met or a file could not be written, 2 if the command line is wrong. If a signal
+/// interrupts it, the process ends here, with status 130.
 #[must_use]
 pub fn run() -> ExitCode {
+    stop::listen();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -234,6 +235,5 @@ fn report(failure: &Failure) -> ExitCode {
             ExitCode::from(2)
         }
         Failure::Said => ExitCode::FAILURE,
-        Failure::Interrupted => ExitCode::from(130),
     }
 }

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
-use tempfile::TempPath;
 
 use crate::grow::Progress;
 
-use super::{Failure, progress, stop};
+use super::part::Part;
+use super::{Failure, input, progress};
 
 /// Where a command writes.
 pub(super) enum Output {
@@ -18,8 +18,7 @@ pub(super) enum Output {
     Standard(BufWriter<io::StdoutLock<'static>>),
     /// A file under another name until it is finished.
     File {
-        file: BufWriter<File>,
-        part: TempPath,
+        part: BufWriter<Part>,
         path: PathBuf,
     },
     /// A pipe or device, written as it is.
@@ -67,7 +66,8 @@ impl Output {
                 path: path.to_path_buf(),
             });
         }
-        let path = behind_links(path);
+        let path = behind_links(path)?;
+        input::check_is_not_read(&path)?;
         let folder = match path.parent() {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
@@ -75,31 +75,12 @@ impl Output {
         if !folder.exists() {
             anyhow::bail!("there is no folder '{}'", folder.display());
         }
-        // From here on a signal must not end the program before the file is removed.
-        let _ = stop::flag();
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".kfrac-").suffix(".part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // What the user's mask leaves of these, as for any new file.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let (file, part) = builder
-            .tempfile_in(folder)
+        let part = Part::begin(folder, metadata.map(|metadata| metadata.permissions()))
             // The name of the temporary file would only confuse.
             .map_err(|error| io::Error::from(error.kind()))
-            .with_context(failed)?
-            .into_parts();
-        if let Some(metadata) = metadata {
-            // Who could not read the old file cannot read the new one.
-            file.set_permissions(metadata.permissions())
-                .with_context(failed)?;
-        }
-        stop::remove_at_exit(Some(&part));
+            .with_context(failed)?;
         Ok(Self::File {
-            file: BufWriter::with_capacity(BUFFER, file),
-            part,
+            part: BufWriter::with_capacity(BUFFER, part),
             path,
         })
     }
@@ -116,42 +97,40 @@ impl Output {
             Self::Device { mut file, path } => file
                 .flush()
                 .with_context(|| format!("'{}' cannot be written", path.display()))?,
-            Self::File {
-                mut file,
-                part,
-                path,
-            } => {
-                let failed = || format!("'{}' cannot be written", path.display());
-                file.flush().with_context(failed)?;
-                part.persist(&path)
-                    .map_err(|error| error.error)
-                    .with_context(failed)?;
-                stop::remove_at_exit(None);
-            }
+            Self::File { part, path } => part
+                .into_inner()
+                .map_err(io::IntoInnerError::into_error)
+                .and_then(|part| part.finish(&path))
+                .with_context(|| format!("'{}' cannot be written", path.display()))?,
         }
         Ok(())
     }
 }
 
 /// The file that a link leads to, whether it is there or not: the link stays one.
-fn behind_links(path: &Path) -> PathBuf {
+fn behind_links(named: &Path) -> anyhow::Result<PathBuf> {
     const MOST_LINKS: usize = 40;
-    let mut path = path.to_path_buf();
+    let mut path = named.to_path_buf();
     for _ in 0..MOST_LINKS {
-        let Ok(target) = path.read_link() else { break };
+        let Ok(target) = path.read_link() else {
+            return Ok(path);
+        };
         // A relative target starts from the link's folder.
         path = path
             .parent()
             .map_or_else(|| target.clone(), |folder| folder.join(&target));
     }
-    path
+    anyhow::bail!(
+        "'{}' is a link that leads to no file, but round in a circle",
+        named.display()
+    )
 }
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Standard(out) => out.write(bytes),
-            Self::File { file, .. } => file.write(bytes),
+            Self::File { part, .. } => part.write(bytes),
             Self::Device { file, .. } => file.write(bytes),
         }
     }
@@ -159,7 +138,7 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Standard(out) => out.flush(),
-            Self::File { file, .. } => file.flush(),
+            Self::File { part, .. } => part.flush(),
             Self::Device { file, .. } => file.flush(),
         }
     }
@@ -180,6 +159,12 @@ pub(super) fn write<T>(
     let told = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
     out.inner.finish()?;
     Ok((told, out.bytes))
+}
+
+/// Makes a folder, and those that it lies in, where they are not there.
+pub(super) fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("the folder '{}' cannot be made", folder.display()))
 }
 
 /// That a path cannot be written.

@@ -9,6 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::grow::Progress;
 
+use super::stop;
+
 /// Work that is done sooner shows nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// The time between two looks at how far the work is.
@@ -47,14 +49,18 @@ fn show(progress: &Progress, done: Receiver<()>) {
             pause = PAUSE;
             bar.set_draw_target(ProgressDrawTarget::stderr());
         }
+        let mut shown = stop::shown();
         bar.update(|state| {
             state.set_pos(progress.walked());
             if let Some(expected) = expected {
                 state.set_len(expected);
             }
         });
+        *shown = Some(bar.clone());
     }
+    let mut shown = stop::shown();
     bar.finish_and_clear();
+    *shown = None;
 }
 
 fn style(template: &str) -> ProgressStyle {

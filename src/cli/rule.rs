@@ -17,7 +17,7 @@ use crate::style::{ColorBy, Named};
 
 use super::family::{self, Assignment};
 use super::growth::GrowthArguments;
-use super::{Failure, text};
+use super::{Failure, input, text};
 
 /// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
 /// and of the embedded library, in this order. Only those that were given must be there.
@@ -131,6 +131,7 @@ fn standard_input() -> Result<Arc<Source>, Failure> {
 
 /// The text that `argument` names.
 pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
+    input::note(argument);
     if argument == Path::new("-") {
         return standard_input();
     }
@@ -175,7 +176,7 @@ impl RuleArguments {
         quiet: bool,
     ) -> Result<Loaded, Failure> {
         let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
-        let document = Document::read(source, catalogue)?;
+        let document = input::document(source, catalogue)?;
         self.resolve(document, settings?.concat(), quiet)
     }
 
@@ -191,7 +192,7 @@ impl RuleArguments {
         if swept.is_empty() {
             return Ok(Vec::new());
         }
-        let document = Document::read(&open(&self.rule, catalogue)?, catalogue)?;
+        let document = input::document(&open(&self.rule, catalogue)?, catalogue)?;
         let members = swept.into_iter().enumerate().map(|(number, own)| {
             let settings = [fixed.as_slice(), &own].concat();
             let mut loaded = self.resolve(document.clone(), settings, quiet || number > 0)?;

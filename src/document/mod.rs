@@ -40,6 +40,8 @@ pub use rule::{
 
 pub use schema::{schema, schema_of_all};
 
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
@@ -210,6 +212,15 @@ impl Document {
             KindDocument::Rule(rule) => Some(rule),
             KindDocument::Ifs(_) | KindDocument::Instancing(_) | KindDocument::LSystem(_) => None,
         }
+    }
+
+    /// The files that it comes from, by name: its own, and those of its parents, its components and
+    /// its data. Texts that are no files, and embedded ones, are named in the same way.
+    #[must_use]
+    pub fn paths(&self) -> BTreeSet<&Path> {
+        let mut paths = BTreeSet::new();
+        self.node.add_paths(&mut paths);
+        paths
     }
 
     /// The file with its parents and components inlined, as YAML that reads back as the same.

@@ -1,6 +1,8 @@
 //! A YAML value in which everything knows its place.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
 use super::yaml;
@@ -144,6 +146,21 @@ impl Node {
             Value::Sequence(nodes) => nodes.iter().any(|node| node.holds(place)),
             Value::Mapping(entries) => entries.iter().any(|(_, node)| node.holds(place)),
             _ => false,
+        }
+    }
+
+    /// Adds the paths of the files that hold parts of it.
+    pub(super) fn add_paths<'n>(&'n self, paths: &mut BTreeSet<&'n Path>) {
+        paths.insert(self.place.source().path());
+        match &self.value {
+            Value::Sequence(nodes) => nodes.iter().for_each(|node| node.add_paths(paths)),
+            Value::Mapping(entries) => {
+                for (key, node) in entries {
+                    paths.insert(key.place.source().path());
+                    node.add_paths(paths);
+                }
+            }
+            _ => {}
         }
     }
 

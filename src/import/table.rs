@@ -1,4 +1,5 @@
-use std::io::Read;
+use std::cell::Cell;
+use std::io::{self, Read};
 
 use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim};
 
@@ -71,17 +72,22 @@ pub fn read_points(
     input: impl Read,
     columns: Option<&[String; 2]>,
 ) -> Result<Vec<DVec2>, TableError> {
+    let bytes = Cell::new(0);
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
         .trim(Trim::All)
         .comment(Some(b'#'))
-        .from_reader(input);
+        .from_reader(Rows {
+            input,
+            bytes: &bytes,
+        });
     let mut record = ByteRecord::new();
     let mut points = Vec::new();
     let mut row = 0;
     let mut places = None;
     while reader.read_byte_record(&mut record).map_err(explained)? {
         row += 1;
+        bytes.set(0);
         let [x, y] = match places {
             Some(places) => places,
             None => {
@@ -101,6 +107,28 @@ pub fn read_points(
         points.push(DVec2::new(coordinate(x)?, coordinate(y)?));
     }
     Ok(points)
+}
+
+/// The most bytes from one row to the next: a stream without ends of lines must not fill the memory.
+const MOST_BYTES: usize = 1 << 24;
+
+/// What is read, as long as rows follow each other.
+struct Rows<'a, R> {
+    input: R,
+    /// The bytes since the last row.
+    bytes: &'a Cell<usize>,
+}
+
+impl<R: Read> Read for Rows<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(buffer)?;
+        self.bytes.set(self.bytes.get() + count);
+        if self.bytes.get() > MOST_BYTES {
+            let message = format!("a row is not to have more than {MOST_BYTES} bytes");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
+        Ok(count)
+    }
 }
 
 /// Where the coordinates stand, by the first row.

@@ -1,17 +1,15 @@
 //! What is to be measured: found, read and measured.
 
-use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::num::NonZero;
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::Context;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
 use crate::graph::Graph;
-use crate::grow::{Growth, WalkError};
+use crate::grow::Growth;
 use crate::import::{Channel, Picture, read_points};
 use crate::measure::exact::{Spectrum, dimensions_of_graph};
 use crate::measure::{
@@ -21,8 +19,8 @@ use crate::measure::{
 use crate::model::Model;
 
 use super::super::Failure;
+use super::super::input;
 use super::super::rule::Loaded;
-use super::super::stop;
 use super::{Arguments, Measured};
 
 /// Graphs whose number of objects does not settle are resolved for so many steps, or for fewer where
@@ -44,7 +42,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     let path = &arguments.rule;
     let rules = || arguments.rules();
     let is_standard = path == Path::new("-");
-    if !is_standard && !path.is_file() {
+    if !is_standard && !path.metadata().is_ok_and(|metadata| !metadata.is_dir()) {
         // A name of the library, or nothing.
         return of_rule(arguments, &rules().load(catalogue, arguments.json)?);
     }
@@ -54,10 +52,11 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
         path.display().to_string()
     };
     let cannot = || format!("{name} cannot be read");
+    input::note(path);
     let mut input: Box<dyn Read> = if is_standard {
         Box::new(io::stdin().lock())
     } else {
-        Box::new(File::open(path).with_context(cannot)?)
+        Box::new(open_file(path)?)
     };
     let mut head = Vec::new();
     input
@@ -83,18 +82,18 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
             of_points(arguments, &name, points.with_context(|| name.clone())?)
         }
         Kind::Rule => {
-            let loaded = if is_standard {
-                let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
-                let mut bytes = Vec::new();
-                whole
-                    .take(most)
-                    .read_to_end(&mut bytes)
-                    .with_context(cannot)?;
-                let source: Arc<Source> = Source::read("<stdin>", bytes)?;
-                rules().load_from(&source, catalogue, arguments.json)?
+            let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+            let mut bytes = Vec::new();
+            whole
+                .take(most)
+                .read_to_end(&mut bytes)
+                .with_context(cannot)?;
+            let source = if is_standard {
+                Source::read("<stdin>", bytes)?
             } else {
-                rules().load(catalogue, arguments.json)?
+                Source::read_file(path, bytes)?
             };
+            let loaded = rules().load_from(&source, catalogue, arguments.json)?;
             of_rule(arguments, &loaded)
         }
     }
@@ -181,13 +180,11 @@ fn of_growth(
 ) -> Result<Measured, Failure> {
     const MOST_POINTS: usize = 1 << 20;
     let growth = Growth {
-        cancel: Some(stop::flag()),
         seed: arguments.seed,
         ..Growth::steps(steps)
     };
     let grown = match grown(graph, &growth, MOST_POINTS) {
         Ok(grown) => grown,
-        Err(WalkError::Cancelled) => return Err(Failure::Interrupted),
         Err(error) => return Ok(measured.without(&error)),
     };
     measured.set = format!(
