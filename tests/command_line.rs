@@ -315,6 +315,98 @@ fn the_command_line_has_its_own_exit_status() {
 }
 
 #[test]
+fn mistakes_on_the_command_line_are_told_in_its_own_words() {
+    let folder = tempfile::tempdir().unwrap();
+    for (wrong, message) in [
+        (
+            &["grow", "koch", "--seed", "abc"][..],
+            "a seed is a whole number from 0 to ",
+        ),
+        (
+            &["grow", "koch", "--seed", "-1"],
+            "a seed is a whole number from 0 to ",
+        ),
+        (
+            &["dim", "koch", "--seed", "1.5"],
+            "a seed is a whole number from 0 to ",
+        ),
+        (
+            &["grow", "koch", "--max-elements", "many"],
+            "a number of elements is a whole number from 0 to ",
+        ),
+        (
+            &["dim", "koch", "--threads", "0"],
+            "a number of threads is a whole number from 1 to 1024",
+        ),
+        (
+            &["sheet", "koch", "--samples", "x"],
+            "a number of values is a whole number from 2 to 1000",
+        ),
+        (
+            &["grow", "koch", "--size", "10cm"],
+            "a side is a whole number of pixels from 1 to 1000000, or of millimetres with one \
+             decimal at most and up to 100000mm: 200mm, 210mmx297mm",
+        ),
+        (
+            &["grow", "koch", "--stroke", "nonee"],
+            "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161); or none",
+        ),
+    ] {
+        let said = stderr(&run(folder.path(), wrong).code(2));
+        assert!(said.contains(message), "{wrong:?}: {said}");
+    }
+    for (missing, message) in [
+        (
+            &["grow", "missing.yaml"][..],
+            "error: there is no file 'missing.yaml', and no rule of this name in the library\n",
+        ),
+        (
+            &["dim", "kohc.png"],
+            "error: there is no file 'kohc.png', and no rule of this name in the library\n",
+        ),
+        (
+            &["check", "./koch.yaml"],
+            "error: there is no file './koch.yaml'\n",
+        ),
+        (&["import", "no.l"], "error: there is no file 'no.l'\n"),
+        (
+            &["list", "kohc"],
+            "error: nothing in the library has 'kohc' in its name, title or tags\n |\n \
+             = help: did you mean 'koch'?\n",
+        ),
+    ] {
+        let said = stderr(&run(folder.path(), missing).code(1));
+        assert!(said.starts_with(message), "{missing:?}: {said}");
+    }
+    assert_eq!(
+        stdout(&run(folder.path(), &["list", "kohc", "--json"]).success()),
+        "[]\n"
+    );
+    assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
+fn colours_may_be_none_as_in_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let rule =
+        "initiator: segment\ngenerator: koch\nsteps: 1\nstyle: {stroke: red, background: blue}\n";
+    fs::write(folder.path().join("k.yaml"), rule).unwrap();
+    let picture = |options: &[&str]| {
+        let arguments = [&["grow", "k.yaml", "-o", "-", "--format", "svg"], options].concat();
+        stdout(&run(folder.path(), &arguments).success())
+    };
+    let own = picture(&[]);
+    assert!(own.contains("#ff0000") && own.contains("#0000ff"), "{own}");
+    let none = picture(&["--stroke", "none", "--background", "none"]);
+    let drawn = none.split("<metadata").next().unwrap();
+    assert!(
+        !drawn.contains("#ff0000") && !drawn.contains("#0000ff"),
+        "{none}"
+    );
+    assert!(none.contains("--stroke=none") && none.contains("--background=none"));
+}
+
+#[test]
 fn folders_of_ones_own_come_before_the_library() {
     let folder = tempfile::tempdir().unwrap();
     let write = |path: &str, title: &str| {
@@ -623,22 +715,6 @@ fn an_existing_file_is_replaced_as_a_whole_or_not_at_all() {
     assert_eq!(files(folder.path()), ["koch.svg"]);
 }
 
-#[cfg(target_os = "linux")]
-#[test]
-fn a_full_device_is_an_error() {
-    let folder = tempfile::tempdir().unwrap();
-    let full = run(
-        folder.path(),
-        &["grow", "koch", "-o", "/dev/full", "--format", "svg"],
-    )
-    .code(1);
-    assert!(
-        stderr(&full).contains("'/dev/full' cannot be written"),
-        "{}",
-        stderr(&full)
-    );
-}
-
 /// Files of many chunks are the same to the byte.
 #[test]
 fn what_is_written_does_not_depend_on_the_threads() {
@@ -805,7 +881,7 @@ fn a_limit_is_met_by_elements_and_by_nothing_else() {
 #[cfg(unix)]
 #[test]
 fn who_ends_the_program_leaves_nothing_behind() {
-    for signal in ["-INT", "-TERM", "-HUP"] {
+    for signal in ["-INT", "-TERM"] {
         interrupt(signal);
     }
 }

@@ -16,11 +16,11 @@ use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_dens
 use crate::style::{ColorBy, Colour, Named, Style};
 use crate::wording::counted;
 
-use super::Failure;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::Loaded;
+use super::{Failure, number};
 
 /// How systems of maps are iterated, and the options of random iteration.
 #[derive(clap::Args)]
@@ -42,7 +42,7 @@ pub(super) struct ChaosArguments {
     #[arg(long, value_name = "X,Y", value_parser = start, allow_hyphen_values = true)]
     start: Vec<DVec2>,
     /// The points of a walk from a start, before the next one begins [default: 256]
-    #[arg(long, value_name = "N", requires = "start", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", requires = "start", value_parser = number::whole("a number of steps", 1..=u32::MAX))]
     walk: Option<u32>,
 }
 

@@ -16,14 +16,14 @@ use crate::measure::{
     Distance, NoCover, Precision, Set, Similarity, Subject, hausdorff, similarity_dimension,
 };
 use crate::render::{self, Canvas, RenderError, Size};
-use crate::style::{Colour, Style};
+use crate::style::Style;
 use crate::wording;
 
 use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
 use super::labels::labels_of_two;
 use super::rule::{self, Loaded, RuleArguments};
-use super::{Failure, format, help, input, length, output, picture, steps, text};
+use super::{Failure, format, help, input, length, number, output, picture, steps, text};
 
 /// Says whether two fractals are the same: how far apart their limit sets are
 ///
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "E", default_value = "0.001", value_parser = tolerance)]
     tolerance: f64,
     /// The most points that may stand for each set; with too few, the error is larger
-    #[arg(long, value_name = "N", default_value_t = 4_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 4_000_000, value_parser = number::whole("a number of points", 0..=usize::MAX))]
     max_points: usize,
     /// A picture of the difference: A alone is orange, B alone blue, both grey
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -61,8 +61,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::size)]
     size: Size,
     /// The colour behind the picture
-    #[arg(long, value_name = "COLOR", value_parser = picture::colour)]
-    background: Option<Colour>,
+    #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
+    background: Option<picture::Ink>,
     /// As JSON
     ///
     /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension
@@ -249,7 +249,7 @@ impl Arguments {
         let options = render::Options {
             format,
             style: Style {
-                background: self.background,
+                background: self.background.and_then(picture::Ink::colour),
                 ..Style::default()
             },
             labels: labels_of_two(&both[0].loaded, &both[1].loaded),

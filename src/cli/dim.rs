@@ -20,7 +20,7 @@ pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::family::{Assignment, assignment};
 use super::rule::RuleArguments;
-use super::{Failure, format, help, output, text};
+use super::{Failure, format, growth, help, number, output, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
 ///
@@ -48,12 +48,12 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<Assignment>,
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
-    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     omit: Vec<u32>,
     /// So many values of a parameter that is set to a range: --set ratio=0.5..0.7
     ///
     /// Of several values of a parameter, the exact dimensions are told, and drawn.
-    #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 21, value_parser = number::whole("a number of values", 2..=1000_u32))]
     samples: u32,
     /// As JSON, with every count
     #[arg(long)]
@@ -81,9 +81,10 @@ pub(super) struct Arguments {
     orders: Vec<f64>,
     /// What random draws of a rule depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
     /// The number of threads [default: as many as the machine has cores]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = growth::threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
     /// What of a pixel tells whether it belongs to the set [default: its opacity, if any pixel is
     /// transparent, or else its darkness]

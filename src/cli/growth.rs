@@ -17,7 +17,7 @@ use crate::wording::{counted, duration, grouped, rough_bytes};
 
 use super::goal::Goal;
 use super::rule::Loaded;
-use super::{Failure, output};
+use super::{Failure, number, output};
 
 /// The most elements that are grown unless said otherwise, where a detail in pixels bounds them and all
 /// of them come to no more than pixels.
@@ -31,12 +31,14 @@ const MOST_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
 pub(super) struct GrowthArguments {
     /// What random draws depend on: another seed makes another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
     pub(super) seed: u64,
     /// The most elements that are grown [default: 50 million; 500 million to a PNG's detail, 5 million
     /// of a plot]
     ///
     /// Where the number is known before, a step that has more is refused before the work starts.
     #[arg(long, value_name = "N")]
+    #[arg(value_parser = number::whole("a number of elements", 0..=u64::MAX), allow_negative_numbers = true)]
     max_elements: Option<u64>,
     /// How many threads work [default: as many as there are cores]
     ///
@@ -49,14 +51,9 @@ pub(super) struct GrowthArguments {
 }
 
 /// Reads a number of threads.
-fn threads(text: &str) -> Result<NonZero<usize>, String> {
-    const MOST: usize = 1024;
-    match text.parse::<NonZero<usize>>() {
-        Ok(threads) if threads.get() <= MOST => Ok(threads),
-        _ => Err(format!(
-            "a number of threads is a whole number from 1 to {MOST}"
-        )),
-    }
+pub(super) fn threads(text: &str) -> Result<NonZero<usize>, String> {
+    let threads = number::whole("a number of threads", 1..=1024)(text)?;
+    NonZero::new(threads).ok_or_else(|| "one thread at least works".into())
 }
 
 impl GrowthArguments {

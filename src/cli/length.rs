@@ -116,9 +116,9 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
 
 /// Reads the size of a picture in pixels or millimetres.
 pub(super) fn paper(text: &str) -> Result<Paper, String> {
-    if !text.contains("mm") {
+    if let Ok(size) = size(text) {
         let unit = Unit::Pixel;
-        return size(text).map(|size| Paper { size, unit });
+        return Ok(Paper { size, unit });
     }
     let most = f64::from(MOST_UNITS);
     let side = |text: &str| {
@@ -135,8 +135,8 @@ pub(super) fn paper(text: &str) -> Result<Paper, String> {
         )]
         tenths.map(|tenths| tenths as u32).ok_or_else(|| {
             format!(
-                "a side is a number of pixels, or of millimetres with one decimal at most and up \
-                 to {}mm: 200mm, 210mmx297mm",
+                "a side is a whole number of pixels from 1 to {MOST_UNITS}, or of millimetres with \
+                 one decimal at most and up to {}mm: 200mm, 210mmx297mm",
                 MOST_UNITS / 10
             )
         })

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::catalogue::{Catalogue, Entry, Shelf};
+use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::node::{Node, Value};
 
 use super::{Failure, help, output};
@@ -40,13 +41,10 @@ struct Row {
 }
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
-    let pattern = arguments
-        .pattern
-        .as_deref()
-        .unwrap_or_default()
-        .to_lowercase();
-    let rows: Vec<_> = catalogue
-        .entries()
+    let entries = catalogue.entries();
+    let asked = arguments.pattern.as_deref().unwrap_or_default();
+    let pattern = asked.to_lowercase();
+    let rows: Vec<_> = entries
         .iter()
         .map(|entry| (entry.shelf, row(entry, catalogue)))
         .filter(|(_, row)| row.matches(&pattern))
@@ -55,6 +53,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let rows: Vec<_> = rows.iter().map(|(_, row)| row).collect();
         let json = serde_json::to_string_pretty(&rows).map_err(anyhow::Error::from)?;
         return Ok(output::print(&format!("{json}\n"))?);
+    }
+    if rows.is_empty() {
+        let message = format!("nothing in the library has '{asked}' in its name, title or tags");
+        let names = entries.iter().map(|entry| entry.name.as_str());
+        let hint = did_you_mean(asked, names);
+        return Err(Diagnostic::error(message)
+            .hint(hint.unwrap_or_else(|| "`kfrac list` shows what there is".into()))
+            .into());
     }
     let wide = rows
         .iter()

@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     /// The command whose page is printed; without it, the page of kfrac itself
     #[arg(value_name = "COMMAND", conflicts_with = "dir")]
     command: Option<String>,
-    /// Writes all pages into a folder: kfrac.1, kfrac-grow.1 and so on
+    /// Writes all pages into a folder: kfrac.1, kfrac-grow.1 and so on; it is made if it is not there
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     dir: Option<PathBuf>,
 }
@@ -40,6 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut command = super::command().disable_help_subcommand(true);
     command.build();
     if let Some(folder) = &arguments.dir {
+        output::make_folder(folder)?;
         let pages = [&command].into_iter().chain(command.get_subcommands());
         for command in pages {
             let mut file = Output::create(&folder.join(format!("{}.1", name(command))))?;

@@ -22,6 +22,7 @@ mod labels;
 mod length;
 mod list;
 mod man;
+mod number;
 mod output;
 mod part;
 mod picture;

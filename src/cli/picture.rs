@@ -1,5 +1,7 @@
 //! How a picture is to be drawn: what the command line says, over what the rule says.
 
+use std::fmt;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::heading::Heading;
@@ -19,16 +21,16 @@ pub(super) struct PictureArguments {
     /// for the rule, or for --color-by index and fractal.
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
-    /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161)
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    stroke: Option<Colour>,
+    /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161); or none
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    stroke: Option<Ink>,
     /// The width of strokes in pixels, or in millimetres as 0.3mm, or, with a % sign, relative to
     /// the element's length
     #[arg(long, value_name = "W", value_parser = StrokeWidth::parse)]
     pub(super) stroke_width: Option<StrokeWidth>,
     /// The colour inside closed shapes
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    fill: Option<Colour>,
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    fill: Option<Ink>,
     /// The shape of the ends of lines
     #[arg(long, value_parser = named::<Cap>())]
     cap: Option<Cap>,
@@ -39,8 +41,8 @@ pub(super) struct PictureArguments {
     #[arg(long, value_name = "PX", value_parser = Length::parse)]
     margin: Option<Length>,
     /// The colour behind the picture
-    #[arg(long, value_name = "COLOR", value_parser = colour)]
-    background: Option<Colour>,
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    background: Option<Ink>,
     /// What the colours of the palette tell apart
     #[arg(long, value_name = "WHAT", value_parser = color_by())]
     color_by: Option<ColorBy>,
@@ -60,16 +62,22 @@ impl PictureArguments {
         let own = &heading.style;
         let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
         Style {
-            stroke: self.stroke.or(own.stroke),
+            stroke: self.stroke.map_or(own.stroke, Ink::colour),
             width: width.width(unit),
             cap: self.cap.unwrap_or(own.cap),
             join: self.join.unwrap_or(own.join),
-            fill: self.fill.or(own.fill),
-            background: self.background.or(own.background),
+            fill: self.fill.map_or(own.fill, Ink::colour),
+            background: self.background.map_or(own.background, Ink::colour),
             color_by: match self.color_by {
                 Some(color_by) => color_by,
                 // A colour that is asked for is not covered by a palette that is not.
-                None if self.stroke.is_some() || self.fill.is_some() => ColorBy::None,
+                None if [self.stroke, self.fill]
+                    .iter()
+                    .flatten()
+                    .any(Ink::is_colour) =>
+                {
+                    ColorBy::None
+                }
                 None => own.color_by,
             },
             palette: self.palette.clone().unwrap_or_else(|| own.palette.clone()),
@@ -138,7 +146,7 @@ impl PictureArguments {
         let mut option = |name: &'static str, value: Option<String>| {
             options.extend(value.map(|value| (name, value)));
         };
-        let colour = |colour: Option<Colour>| colour.map(|colour| format!("{colour:#}"));
+        let colour = |ink: Option<Ink>| ink.map(|ink| ink.to_string());
         option(
             "view",
             self.view
@@ -188,9 +196,39 @@ pub(super) fn pixels(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(super) fn colour(text: &str) -> Result<Colour, String> {
-    Colour::parse(text)
-        .ok_or_else(|| "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161)".into())
+/// A colour, or none, in place of one that a rule's own style has.
+#[derive(Clone, Copy)]
+pub(super) struct Ink(Option<Colour>);
+
+impl Ink {
+    /// The colour, if it is one.
+    pub(super) fn colour(self) -> Option<Colour> {
+        self.0
+    }
+
+    fn is_colour(&self) -> bool {
+        self.0.is_some()
+    }
+}
+
+impl fmt::Display for Ink {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(colour) => write!(f, "{colour:#}"),
+            None => f.write_str("none"),
+        }
+    }
+}
+
+/// Reads a colour, or `none`, as files have them.
+pub(super) fn ink(text: &str) -> Result<Ink, String> {
+    if text == "none" {
+        return Ok(Ink(None));
+    }
+    let colour = Colour::parse(text).ok_or_else(|| {
+        "write a colour as CSS does: teal, #3b7ea1, rgb(59, 126, 161); or none".to_owned()
+    })?;
+    Ok(Ink(Some(colour)))
 }
 
 /// Reads one of the names of an enumeration.

@@ -17,7 +17,7 @@ use crate::style::{ColorBy, Named};
 
 use super::family::{self, Assignment};
 use super::growth::GrowthArguments;
-use super::{Failure, input, text};
+use super::{Failure, input, number, text};
 
 /// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
 /// and of the embedded library, in this order. Only those that were given must be there.
@@ -49,7 +49,7 @@ pub(super) struct RuleArguments {
     #[arg(long, value_name = "NAME=VALUE", value_parser = family::assignment)]
     pub(super) set: Vec<Assignment>,
     /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
-    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     pub(super) omit: Vec<u32>,
 }
 

@@ -17,7 +17,7 @@ use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, Member, RuleArguments};
 use super::steps::Several;
-use super::{Failure, format, help, length, output, steps, text};
+use super::{Failure, format, help, length, number, output, steps, text};
 
 /// Draws approximants side by side, or a family of fractals
 ///
@@ -39,10 +39,10 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
     /// How many pictures stand in a row [default: as many as make the sheet 4 to 3]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = number::whole("a number of columns", 1..=u32::MAX))]
     columns: Option<u32>,
     /// How many values of a range --set NAME=FROM..TO takes
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = number::whole("a number of values", 2..=1000_u32))]
     samples: u32,
     #[command(flatten)]
     growth: GrowthArguments,

@@ -9,7 +9,7 @@ use crate::document::KindDocument;
 use crate::figure::rule;
 use crate::model::Model;
 use crate::render::{self, RenderError, Size};
-use crate::style::{Colour, Named};
+use crate::style::Named;
 use crate::wording;
 
 use super::component::Component;
@@ -37,8 +37,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SIZE", value_parser = length::size)]
     size: Option<Size>,
     /// The colour behind the figure
-    #[arg(long, value_name = "COLOR", value_parser = picture::colour)]
-    background: Option<Colour>,
+    #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
+    background: Option<picture::Ink>,
     /// Says nothing but what is wrong
     #[arg(long, short)]
     quiet: bool,
@@ -125,12 +125,12 @@ impl Arguments {
             options.push(("format", format.name().into()));
         }
         options.extend(self.size.map(|size| ("size", size.to_string())));
-        let background = self.background.map(|colour| format!("{colour:#}"));
+        let background = self.background.map(|ink| ink.to_string());
         options.extend(background.map(|colour| ("background", colour)));
         rule::Options {
             format,
             size: self.size,
-            background: self.background,
+            background: self.background.and_then(picture::Ink::colour),
             labels: labels(loaded, &shown, "show", options),
         }
     }

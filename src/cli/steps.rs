@@ -4,20 +4,15 @@ use std::fmt;
 
 use crate::model::Model;
 
-use super::Failure;
 use super::rule::Loaded;
+use super::{Failure, number};
 
 /// Numbers of steps beyond this are refused.
 pub(super) const MOST_STEPS: u32 = 1_000_000;
 
 /// Reads a number of steps.
 pub(super) fn parse(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(steps) if steps <= MOST_STEPS => Ok(steps),
-        _ => Err(format!(
-            "a number of steps is a whole number from 0 to {MOST_STEPS}"
-        )),
-    }
+    number::whole("a number of steps", 0..=MOST_STEPS)(text)
 }
 
 /// The most approximants on a sheet where nobody says which.

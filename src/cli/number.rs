@@ -1,0 +1,23 @@
+//! Whole numbers as the command line has them.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+/// Reads a whole number within bounds; `what` is what messages call it, as `a number of steps`.
+pub(super) fn whole<T>(
+    what: &'static str,
+    bounds: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: FromStr + PartialOrd + Display + Clone,
+{
+    move |text| match text.parse::<T>() {
+        Ok(number) if bounds.contains(&number) => Ok(number),
+        _ => Err(format!(
+            "{what} is a whole number from {} to {}",
+            bounds.start(),
+            bounds.end()
+        )),
+    }
+}
