@@ -70,8 +70,9 @@ fn examples_work() {
 #[test]
 fn every_command_has_a_manual_page() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
-    assert_eq!(printed(&["man", "--dir", path]), "");
+    // The folder is made.
+    let path = folder.path().join("new/man1");
+    assert_eq!(printed(&["man", "--dir", path.to_str().unwrap()]), "");
     let sections = |page: &str| {
         let headings = page.lines().filter_map(|line| line.strip_prefix(".SH "));
         headings
@@ -93,10 +94,10 @@ fn every_command_has_a_manual_page() {
             "FILES"
         ]
     );
-    assert_eq!(read(folder.path(), "kfrac.1"), main);
+    assert_eq!(read(&path, "kfrac.1"), main);
     for command in commands() {
         let page = printed(&["man", &command]);
-        assert_eq!(read(folder.path(), &format!("kfrac-{command}.1")), page);
+        assert_eq!(read(&path, &format!("kfrac-{command}.1")), page);
         let title = format!(".TH KFRAC-{} 1 ", command.to_uppercase());
         assert!(page.starts_with(&title), "{page}");
         assert!(page.contains(&format!("kfrac\\-{command} \\- ")), "{page}");
@@ -115,7 +116,7 @@ fn every_command_has_a_manual_page() {
             );
         }
     }
-    let count = fs::read_dir(folder.path()).unwrap().count();
+    let count = fs::read_dir(&path).unwrap().count();
     assert_eq!(count, commands().len() + 1);
 }
 
@@ -174,6 +175,9 @@ fn bash_completes() {
         ("kfrac grow swaying-", ""),
         ("kfrac man compl", "completions"),
         ("kfrac grow no-such-rule", ""),
+        ("kfrac grow pythagoras --set an", "angle="),
+        ("kfrac grow --steps 3 complex-pair --set ''", "s="),
+        ("kfrac grow koch --set an", ""),
     ] {
         let ask = format!(
             "source '{}'; COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
@@ -183,6 +187,7 @@ fn bash_completes() {
         );
         let output = Command::new("bash")
             .args(["--norc", "-c", &ask])
+            .env("PATH", path_of_shell())
             .output()
             .unwrap();
         assert_eq!(
@@ -190,5 +195,73 @@ fn bash_completes() {
             completed,
             "{words}"
         );
+    }
+}
+
+/// The program where a shell finds it, in front of what it finds anyway.
+#[cfg(target_os = "linux")]
+fn path_of_shell() -> std::ffi::OsString {
+    let program = assert_cmd::cargo::cargo_bin("kfrac");
+    let known = std::env::var_os("PATH").unwrap_or_default();
+    let folders = program.parent().map(Path::to_path_buf).into_iter();
+    std::env::join_paths(folders.chain(std::env::split_paths(&known))).unwrap()
+}
+
+#[test]
+fn the_parameters_of_a_rule_are_listed_for_shells() {
+    for (line, listed) in [
+        (
+            "kfrac grow --steps 3 pythagoras --set",
+            "angle=\tfoot angle of the roof, degrees\n",
+        ),
+        ("kfrac grow koch --set", ""),
+        ("kfrac grow no-such-rule --set", ""),
+        ("kfrac grow --set", ""),
+        ("kfrac grow -", ""),
+        ("kfrac list pythagoras", ""),
+        (
+            "kfrac sheet complex-pair --set",
+            "s=\twhat both maps multiply by",
+        ),
+        ("kfrac compare koch pythagoras --set", "angle="),
+    ] {
+        let words = ["completions", "--parameters", "--"].into_iter();
+        let words: Vec<_> = words.chain(line.split(' ')).collect();
+        let found = printed(&words);
+        assert!(
+            found.starts_with(listed) && found.is_empty() == listed.is_empty(),
+            "{line}: {found}"
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn fish_and_zsh_complete_parameters() {
+    let folder = tempfile::tempdir().unwrap();
+    let has = |shell: &str| Command::new(shell).arg("--version").output().is_ok();
+    let run = |shell: &str, script: &str| {
+        let output = Command::new(shell)
+            .args(["-c", script])
+            .current_dir(folder.path())
+            .env("PATH", path_of_shell())
+            .env("HOME", folder.path())
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    // A machine that lacks a shell does not test it.
+    if has("fish") {
+        let script =
+            "kfrac completions fish | source; complete -C 'kfrac grow pythagoras --set an'";
+        assert!(run("fish", script).starts_with("angle=\t"));
+    }
+    if has("zsh") {
+        // Without a terminal, what would be offered is looked at where it is collected.
+        let script = "autoload -U compinit && compinit -u -D; \
+             eval \"$(kfrac completions zsh)\" 2>/dev/null; \
+             compadd() { shift 3; print -l -- $@ }; \
+             words=(grow pythagoras --set ''); _kfrac_parameters";
+        assert_eq!(run("zsh", script), "angle=\n");
     }
 }

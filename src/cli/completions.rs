@@ -1,5 +1,8 @@
 //! `kfrac completions`: what shells need to complete command lines.
 
+mod parameters;
+
+use std::ffi::OsString;
 use std::fmt::Write as _;
 
 use clap::Command;
@@ -13,13 +16,23 @@ use super::{Failure, help, output};
 /// Prints a script that completes command lines of kfrac
 ///
 /// The script knows commands, options, their values, and the rules and components that the library has
-/// when it is made (bash, fish, zsh).
+/// when it is made, and it asks kfrac for the parameters of a rule behind --set (bash, fish, zsh).
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// The shell
-    #[arg(value_name = "SHELL", value_enum)]
-    shell: Shell,
+    #[arg(
+        value_name = "SHELL",
+        value_enum,
+        required_unless_present = "parameters"
+    )]
+    shell: Option<Shell>,
+    /// Lists the parameters of the rules on a command line; for the scripts
+    #[arg(long, hide = true, conflicts_with = "shell")]
+    parameters: bool,
+    /// The command line
+    #[arg(last = true, hide = true, requires = "parameters")]
+    words: Vec<OsString>,
 }
 
 const MORE: &str = "\
@@ -51,6 +64,11 @@ const OF_RULES: [(&str, &str); 11] = [
 
 /// Those of them that take a component as well.
 const OF_COMPONENTS: [&str; 3] = ["show", "cat", "check"];
+
+/// The commands that have `--set`.
+const OF_PARAMETERS: [&str; 8] = [
+    "grow", "sheet", "show", "info", "count", "dim", "convert", "compare",
+];
 
 /// The names that a library has.
 #[derive(Default)]
@@ -93,10 +111,13 @@ impl Names {
 }
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let Some(shell) = arguments.shell else {
+        return Ok(output::print(&parameters::listed(&arguments.words))?);
+    };
     let names = Names::of(catalogue);
-    let script = match arguments.shell {
+    let script = match shell {
         // Where no rule matches, bash goes on to files.
-        Shell::Bash => script(Shell::Bash, Some(&names)),
+        Shell::Bash => with_parameters_for_bash(&script(Shell::Bash, Some(&names))),
         Shell::Fish => with_rules_for_fish(script(Shell::Fish, None), &names),
         Shell::Zsh => with_rules_for_zsh(&script(Shell::Zsh, None), &names),
         other => script(other, None),
@@ -129,7 +150,20 @@ fn with_values(command: Command, name: &str, argument: &str, values: Vec<String>
     })
 }
 
-/// With rules beside files.
+/// With the parameters of the rule behind `--set`.
+fn with_parameters_for_bash(script: &str) -> String {
+    const FILES: &str = "                --set)
+                    COMPREPLY=($(compgen -f \"${cur}\"))
+";
+    const PARAMETERS: &str = "                --set)
+                    COMPREPLY=($(compgen -W \"$(\"$1\" completions --parameters -- \
+\"${COMP_WORDS[@]}\" 2>/dev/null | cut -f 1)\" -- \"${cur}\"))
+                    [[ ${#COMPREPLY[@]} -eq 0 ]] || compopt -o nospace 2>/dev/null
+";
+    script.replace(FILES, PARAMETERS)
+}
+
+/// With rules, and with the parameters of the one that is named, beside files.
 fn with_rules_for_fish(mut script: String, names: &Names) -> String {
     let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
     commands.dedup();
@@ -141,16 +175,31 @@ fn with_rules_for_fish(mut script: String, names: &Names) -> String {
             r#"complete -c kfrac -n "__fish_kfrac_using_subcommand {command}" -a "{rules}""#
         );
     }
+    for command in OF_PARAMETERS {
+        let _ = writeln!(
+            script,
+            r#"complete -c kfrac -n "__fish_kfrac_using_subcommand {command}" -l set -x -a "(kfrac completions --parameters -- (commandline -op) 2>/dev/null)""#
+        );
+    }
     script
 }
 
-/// With rules beside files: by functions, before the lines that start the completion.
+/// With rules beside files, and parameters: by functions, before the lines that start the completion.
 fn with_rules_for_zsh(script: &str, names: &Names) -> String {
+    const PARAMETERS: &str = r#"(( $+functions[_kfrac_parameters] )) ||
+_kfrac_parameters() {
+    local -a names
+    names=(${(f)"$(kfrac completions --parameters -- "${words[@]}" 2>/dev/null)"})
+    compadd -S '' -- ${names%%$'\t'*}
+}
+
+"#;
     let mut with_rules = String::new();
     // The command whose arguments are listed.
     let mut command = "";
     for line in script.lines() {
         if line.starts_with("if [ \"$funcstack[1]\"") {
+            with_rules.push_str(PARAMETERS);
             for (function, command) in [(RULES, "grow"), (COMPONENTS, "cat")] {
                 let rules = names.for_command(command).join(" ");
                 let _ = write!(
@@ -172,7 +221,7 @@ fn with_rules_for_zsh(script: &str, names: &Names) -> String {
         };
         let line = match line.strip_suffix(r":_files' \") {
             Some(start) if wants_rule => format!(r"{start}:{function}' \"),
-            _ => line.to_owned(),
+            _ => line.replace(":NAME=VALUE:_default'", ":NAME=VALUE:_kfrac_parameters'"),
         };
         with_rules.push_str(&line);
         with_rules.push('\n');
