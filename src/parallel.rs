@@ -1,5 +1,8 @@
 //! Work on many threads whose results come in order.
 
+#[cfg(test)]
+pub(crate) mod adversary;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::num::NonZero;
 use std::panic::{self, AssertUnwindSafe};
@@ -39,7 +42,7 @@ pub(crate) fn with_team<'w, T>(threads: NonZero<usize>, body: impl FnOnce(&Team<
     thread::scope(|scope| {
         // However the body ends, nothing more is handed out: the threads end.
         let _over = Over(&team);
-        for _ in 1..threads.get() {
+        for _ in 1..team.others() {
             scope.spawn(|| team.serve());
         }
         body(&team)
@@ -80,9 +83,22 @@ impl<'w> Team<'w> {
         }
     }
 
+    /// The threads that are run, with the one that hands out: where an adversary plays the others, that
+    /// does all in their place.
+    fn others(&self) -> usize {
+        #[cfg(test)]
+        if adversary::is_here() {
+            return 1;
+        }
+        self.threads.get()
+    }
+
     /// Does one job that no thread has taken yet, if there is one.
     fn help(&self) -> bool {
-        let job = self.queue().jobs.pop_front();
+        let mut queue = self.queue();
+        let first = pick(queue.jobs.len());
+        let job = queue.jobs.remove(first);
+        drop(queue);
         job.map(|job| job()).is_some()
     }
 
@@ -106,6 +122,31 @@ impl<'w> Team<'w> {
         }
     }
 }
+
+/// Which of so many pieces of work, or of places for it, is taken, where any may be: the first.
+#[cfg(not(test))]
+#[inline]
+pub(crate) fn pick(_: usize) -> usize {
+    0
+}
+
+/// Whether what other threads have done is not known yet, though it is there: where an adversary has it
+/// so.
+#[cfg(not(test))]
+#[inline]
+pub(crate) fn is_too_early() -> bool {
+    false
+}
+
+/// Whether a piece of work is handed on that is still small: where an adversary has it so.
+#[cfg(not(test))]
+#[inline]
+pub(crate) fn is_cut_short() -> bool {
+    false
+}
+
+#[cfg(test)]
+pub(crate) use adversary::{is_cut_short, is_too_early, pick};
 
 /// Pieces of work that are on their way, and those that are done and wait for earlier ones.
 pub(crate) struct Line<'t, 'w, J> {
@@ -159,6 +200,8 @@ impl<'w, J: Send + 'w> Line<'_, 'w, J> {
             }
         }));
         self.handed_out += 1;
+        // One of the others may be at it at once.
+        while pick(3) > 0 && self.team.help() {}
         self.take_until(PIECES_A_THREAD * threads, take)
     }
 

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, fence};
 use std::sync::{Arc, OnceLock};
 
 use crate::geometry::DVec2;
+use crate::parallel::is_too_early;
 use crate::whole::whole;
 
 /// No layer: pixels of none are asked for.
@@ -86,7 +87,7 @@ impl Filled {
     pub(crate) fn is_full(&self, layer: u64, middle: DVec2, reach: [f64; 2]) -> bool {
         let reach = reach.map(|reach| reach + PAD);
         let is_small = reach.iter().all(|reach| 2.0 * reach <= LONGEST);
-        if !is_small || self.layer.load(Acquire) != layer {
+        if !is_small || self.layer.load(Acquire) != layer || is_too_early() {
             return false;
         }
         let middle = DVec2::new(middle.x, middle.y - self.top);

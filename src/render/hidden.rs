@@ -1,19 +1,33 @@
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
+use crate::graph::Graph;
 use crate::grow::Subtree;
-use crate::style::{ColorBy, Width};
+use crate::style::{ColorBy, Style, Width};
 
 use super::filled::Filled;
+use super::png::WIDEST_COVERED;
 use super::scene::{Pass, Scene};
 use super::sight::own_reach;
 use super::sketch::stands_alone;
 use super::survey::overhang;
 
+/// Longer and longer descendants are looked for so many times.
+const MOST_SWEEPS: usize = 64;
+
 /// Tells what need not be drawn, since it lies where all is covered already.
 ///
-/// Coverage of one colour neither grows nor changes where it is whole, and what is left out joins
-/// nothing: the picture stays the same to the bit.
+/// The law: a picture is the same to the bit whether anything is hidden or not. So it does not matter
+/// what a thread knows of that which others have covered, nor when, nor how many they are. It holds
+/// since
+///
+/// - all that hides has been drawn already, and is drawn once: nothing is hidden by itself, or by what
+///   may yet be left out;
+/// - coverage of one opaque colour neither grows nor changes where it is whole;
+/// - what is left out joins nothing: lines that go on behind it begin where all is covered, and no caps
+///   or corners show there;
+/// - all of it would be drawn as coverage, which has no order. Paths that are drawn in pieces, by the
+///   number of their vertices, may have seams; what is drawn as such is not hidden.
 pub(super) struct Hidden {
     filled: Arc<Filled>,
     /// The layer of the first class.
@@ -22,6 +36,8 @@ pub(super) struct Hidden {
     reaches: Arc<[f64]>,
     /// and how many pixels further it is drawn.
     overhang: f64,
+    /// How wide strokes of what becomes of an object are at most, as a multiple of its length, by object.
+    widths: Vec<f64>,
 }
 
 impl Hidden {
@@ -35,7 +51,11 @@ impl Hidden {
             ColorBy::Tint => graph.tints(),
             _ => false,
         };
-        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && stands_alone(scene)
+        pass != Pass::Areas
+            && !numbers_change
+            && !scene.fills_strokes
+            && stands_alone(scene)
+            && Self::is_narrow(graph, style)
     }
 
     /// What is hidden of a scene.
@@ -50,6 +70,28 @@ impl Hidden {
                 Width::Pixels(width) => width * graph.widest().unwrap_or(1.0) * overhang(style),
                 Width::Relative(_) => 0.0,
             },
+            widths: match style.width {
+                Width::Pixels(_) => Vec::new(),
+                Width::Relative(width) => {
+                    let width = width * graph.widest().unwrap_or(1.0) * graph.unit();
+                    let longest = longest(graph).into_iter();
+                    longest.map(|longest| longest * width).collect()
+                }
+            },
+        }
+    }
+
+    /// Whether all lines are narrow enough to be drawn as coverage where they are as wide as `style` says
+    /// in pixels; where widths are relative, some may be.
+    fn is_narrow(graph: &Graph, style: &Style) -> bool {
+        let mut drawn = graph.objects().iter().filter(|object| object.visible);
+        let draws_lines =
+            drawn.any(|object| !graph.base_elements()[object.base_element].is_closed());
+        match style.width {
+            Width::Pixels(width) if draws_lines => {
+                width * graph.widest().unwrap_or(1.0) <= WIDEST_COVERED
+            }
+            Width::Pixels(_) | Width::Relative(_) => true,
         }
     }
 
@@ -68,8 +110,37 @@ impl Hidden {
         let [x, y] = [rows.x_axis, rows.y_axis].map(DVec2::length);
         let reach = [x, y].map(|length| self.reach(scene, subtree.object, length));
         let middle = subtree.frame.map.transform_point2(scene.graph.middle());
+        let length = subtree.frame.stretch() * scene.canvas.scale();
+        let width = self.widths.get(subtree.object);
+        if width.is_some_and(|width| width * length > WIDEST_COVERED) {
+            return false;
+        }
         let layer = self.first + class;
         self.filled
             .is_full(layer, scene.canvas.pixel(middle), reach)
     }
 }
+
+/// By object, the most that what becomes of it is long, as a multiple of its length.
+fn longest(graph: &Graph) -> Vec<f64> {
+    let ratios = graph.ratios();
+    let mut longest = vec![1.0; ratios.len()];
+    for _ in 0..MOST_SWEEPS {
+        let mut changes = false;
+        for (object, children) in ratios.iter().enumerate().rev() {
+            let lengths = children
+                .iter()
+                .map(|&(child, ratio)| ratio * longest[child]);
+            let most = lengths.fold(longest[object], f64::max);
+            changes |= most > longest[object];
+            longest[object] = most;
+        }
+        if !changes {
+            return longest;
+        }
+    }
+    vec![f64::INFINITY; ratios.len()]
+}
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,8 @@
 //!
 //! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
 //! what lies where all is covered in its colour already; and where colours tell steps, maps or
-//! generators, what nothing comes of in those that are painted. All that changes no pixel. In PNGs to a
+//! generators, what nothing comes of in those that are painted. All that changes no pixel, whichever
+//! thread draws first: neither threads nor timing show in any byte. In PNGs to a
 //! detail, small runs of elements that lie alike may be drawn as stamps, which comes close: see
 //! `stamps`.
 

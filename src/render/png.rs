@@ -40,6 +40,9 @@ use super::surface::{FINE, Paint, Position, Stamped, Stencil, Stroke, Surface, T
 /// Outlines may lie so far beside where they are, in pixels: twice as far as rounding moves them.
 const GRAIN: f64 = 1.0 / FINE;
 
+/// Strokes of round pens that are wider than this, in pixels, are not drawn as coverage.
+pub(super) const WIDEST_COVERED: f64 = *RoundPen::WIDTHS.end();
+
 /// The most pixels that a picture may have: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
 

@@ -1,5 +1,6 @@
 //! A stretch of what is drawn as coverage: made in order, covered by any thread.
 
+use crate::parallel::is_cut_short;
 use crate::render::surface::{Position, Stamped, Tuft};
 
 use super::coverage::Plane;
@@ -49,7 +50,7 @@ impl Chunk {
     pub(super) fn is_full(&self) -> bool {
         let most = self.commands.len().max(self.points.len());
         let apart = self.tufts.len().max(self.stamps.len());
-        most.max(apart) >= MANY
+        most.max(apart) >= MANY || is_cut_short()
     }
 
     #[inline]
@@ -149,10 +150,16 @@ impl Chunk {
             let over = strokes.as_deref_mut();
             match command {
                 Command::Nib(next) => nib = Some(next.clone()),
-                Command::Start | Command::GoOn => {
+                Command::Start => {
                     at = next(1).first().copied().unwrap_or(at);
-                    if let (Command::Start, Some(nib)) = (command, &mut nib) {
+                    if let Some(nib) = &mut nib {
                         nib.start(over.unwrap_or(&mut *plane), at);
+                    }
+                }
+                Command::GoOn => {
+                    at = next(1).first().copied().unwrap_or(at);
+                    if let Some(nib) = &nib {
+                        nib.go_on(over.unwrap_or(&mut *plane), at);
                     }
                 }
                 Command::Lines(count) => {

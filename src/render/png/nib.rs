@@ -56,6 +56,14 @@ impl Nib {
         }
     }
 
+    /// Goes on with a subpath whose part before was drawn on another plane, perhaps.
+    #[inline]
+    pub(super) fn go_on(&self, plane: &mut Plane, at: Position) {
+        if let Self::Round(pen) = self {
+            plane.reach(pen, at);
+        }
+    }
+
     /// Lines on from a position, one after another.
     #[inline]
     pub(super) fn lines(&mut self, plane: &mut Plane, mut from: Position, to: &[Position]) {

@@ -1,6 +1,7 @@
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
+use crate::parallel::pick;
 use crate::render::filled::Filled;
 
 use super::coverage::{MARGIN, Plane};
@@ -12,7 +13,7 @@ const MOST_PIXELS: u64 = 1 << 24;
 const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
 
 /// Planes of one part of a picture, so that several threads cover it at once. What they cover comes
-/// together when it is coloured; which of them it is on does not show.
+/// together when it is coloured; which of them it is on does not show, wherever a path is divided.
 pub(super) struct Planes {
     picture: [u32; 2],
     rows: Range<u32>,
@@ -67,6 +68,7 @@ impl Planes {
     /// Covers something on a plane on which no other thread draws.
     pub(super) fn with_one(&self, cover: impl FnOnce(&mut Plane)) {
         let planes = (0..).zip(&self.planes);
+        let planes = planes.skip(pick(self.planes.len()));
         let mut free = planes.filter_map(|(number, plane)| match plane.try_lock() {
             Ok(plane) => Some((number, plane)),
             Err(TryLockError::Poisoned(poisoned)) => Some((number, poisoned.into_inner())),

@@ -109,7 +109,16 @@ impl Plane {
         }
     }
 
-    /// A line on from where the pen has drawn already.
+    /// Takes a position as one that the pen has been to on this plane, whatever has covered the dot there:
+    /// what lies between it and the next one may then be covered.
+    #[inline]
+    pub(crate) fn reach(&mut self, pen: &RoundPen, at: Position) {
+        if self.is_near(at) {
+            self.touch(corner(pen, at));
+        }
+    }
+
+    /// A line on from where the pen has been on this plane: with a dot, a line or [`Plane::reach`].
     #[inline]
     pub(crate) fn line(&mut self, pen: &RoundPen, from: Position, to: Position) {
         if self.is_near(from) && self.is_near(to) {

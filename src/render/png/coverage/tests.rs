@@ -1,10 +1,37 @@
 #![allow(clippy::cast_possible_truncation, reason = "positions are small")]
 
+use std::sync::atomic::Ordering::Relaxed;
+
 use proptest::prelude::*;
 
 use super::{HairPen, Plane, Position, RoundPen, SAMPLES, WHOLE};
 
 const SIZE: u32 = 64;
+
+/// A line that goes on on another plane, outside of all that has been covered there, is not lost.
+#[test]
+fn lines_go_on_on_other_planes() {
+    let corners = [[1000, 1000], [3000, 2000], [500, 3000], [4000, 400]];
+    let pen = RoundPen::new(1.0);
+    let whole = covered(|plane| {
+        plane.dot(&pen, corners[0]);
+        corners
+            .windows(2)
+            .for_each(|line| plane.line(&pen, line[0], line[1]));
+    });
+    let mut planes = [0; 3].map(|_| Plane::new([SIZE; 2]));
+    planes[0].dot(&pen, corners[0]);
+    for (line, plane) in corners.windows(2).zip(&mut planes) {
+        plane.reach(&pen, line[0]);
+        plane.line(&pen, line[0], line[1]);
+    }
+    let [first, others @ ..] = &mut planes;
+    others.iter_mut().for_each(|other| first.take_over(other));
+    assert!(drained(first) == whole);
+    others
+        .iter_mut()
+        .for_each(|other| assert!(other.cells.iter().all(|cell| cell.load(Relaxed) == 0)));
+}
 
 /// How much of every pixel is covered by what is drawn.
 fn covered(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
