@@ -127,6 +127,14 @@ pub enum ColorBy {
     Tint,
 }
 
+impl ColorBy {
+    /// Whether elements have the palette's colours.
+    #[must_use]
+    pub fn takes_palette(self) -> bool {
+        !matches!(self, Self::None | Self::Hits | Self::Tint)
+    }
+}
+
 /// The names of the variants of an enumeration, as files and the command line write them.
 pub trait Named: Sized + Copy + 'static {
     /// Every variant with its name.
@@ -189,7 +197,8 @@ impl Named for ColorBy {
 /// How elements are drawn.
 ///
 /// Open base elements are stroked. Closed ones are filled with the colour of their class, or with
-/// `fill`, or with `stroke`; they are outlined only where both `fill` and `stroke` are given.
+/// `fill`, or with `stroke`; they are outlined where `stroke` is given and they are filled with
+/// something else.
 /// `fill` also fills fractals that are one closed path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
@@ -253,7 +262,8 @@ impl Style {
     /// Whether closed base elements get an outline beside their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {
-        self.fill.is_some() && self.stroke.is_some()
+        let is_filled = self.fill.is_some() || self.color_by.takes_palette();
+        is_filled && self.stroke.is_some()
     }
 }
 

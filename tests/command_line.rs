@@ -252,6 +252,77 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
 }
 
 #[test]
+fn an_svg_is_light_unless_more_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let koch = "initiator: segment\ngenerator: koch\nsteps: 9\n";
+    fs::write(folder.path().join("koch9.yaml"), koch).unwrap();
+    let uneven =
+        "initiator: segment\ngenerator: [[0, 0], [0.3, 0.3], [0.5, 0], [1, 0]]\nsteps: 14\n";
+    fs::write(folder.path().join("uneven.yaml"), uneven).unwrap();
+    for (arguments, note) in [
+        (&["grow", "koch9.yaml"][..], "step 7 is drawn and not 9"),
+        (&["grow", "uneven.yaml"], "pixels are not replaced"),
+        (
+            &["sheet", "koch9.yaml"],
+            "steps 0..7 are drawn and not 0..9",
+        ),
+    ] {
+        let name = arguments[1];
+        let said =
+            stderr(&run(folder.path(), &[arguments, &["-o", "light.svg"]].concat()).success());
+        assert!(
+            said.starts_with("note: ") && said.contains(note),
+            "{name}: {said}"
+        );
+        assert!(said.contains("; --"), "{name}: how to get more: {said}");
+        let light = fs::read(folder.path().join("light.svg")).unwrap();
+        assert!(
+            (20_000..=2_000_000).contains(&light.len()),
+            "{name}: {}",
+            light.len()
+        );
+        let quiet = [arguments, &["-q", "-o", "quiet.svg"]].concat();
+        assert_eq!(stderr(&run(folder.path(), &quiet).success()), "");
+        assert!(
+            fs::read(folder.path().join("quiet.svg")).unwrap() == light,
+            "{name}"
+        );
+    }
+    let all = run(folder.path(), &["grow", "koch9.yaml", "--steps", "9"]).success();
+    assert!(stderr(&all).contains("262,144 elements"));
+    assert!(!stderr(&all).contains("note:"));
+    let all = run(
+        folder.path(),
+        &["grow", "koch9.yaml", "--max-elements", "300000"],
+    )
+    .success();
+    assert!(stderr(&all).contains("262,144 elements"));
+}
+
+#[test]
+fn strokes_of_what_is_filled_are_drawn_or_missed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = "initiator: segment\nbase_element: triangle\ngenerator: [[0, 0], [1/2, 1/4], [1, 0]]\nsteps: 2\n";
+    fs::write(folder.path().join("mine.yaml"), file).unwrap();
+    let outlined = [
+        "grow",
+        "mine.yaml",
+        "--color-by",
+        "index",
+        "--stroke",
+        "#123456",
+        "-o",
+        "-",
+    ];
+    let svg = stdout(&run(folder.path(), &outlined).success());
+    assert!(svg.contains("<g stroke=\"#123456\">") && !svg.contains("stroke=\"none\""));
+    let wide = run(folder.path(), &["grow", "mine.yaml", "--stroke-width", "4"]).success();
+    assert!(stderr(&wide).starts_with("note: mine is drawn as filled shapes"));
+    let wide = run(folder.path(), &["grow", "koch", "--stroke-width", "4"]).success();
+    assert!(!stderr(&wide).contains("note:"));
+}
+
+#[test]
 fn parameters_are_set_by_name_and_within_their_limits() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |setting: &str| {
@@ -881,13 +952,6 @@ fn a_limit_is_met_by_elements_and_by_nothing_else() {
 #[cfg(unix)]
 #[test]
 fn who_ends_the_program_leaves_nothing_behind() {
-    for signal in ["-INT", "-TERM"] {
-        interrupt(signal);
-    }
-}
-
-#[cfg(unix)]
-fn interrupt(signal: &str) {
     let folder = tempfile::tempdir().unwrap();
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("kfrac"))
         .current_dir(folder.path())
@@ -904,7 +968,7 @@ fn interrupt(signal: &str) {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     let killed = std::process::Command::new("sh")
-        .args(["-c", &format!("kill {signal} {}", child.id())])
+        .args(["-c", &format!("kill {}", child.id())])
         .status()
         .unwrap();
     assert!(killed.success());

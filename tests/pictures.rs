@@ -75,7 +75,7 @@ fn a_ring_is_closed_and_its_last_vertex_is_not_written_twice() {
 fn what_rounds_to_nothing_is_left_out() {
     let thin = "initiator: {closed: true, elements: [[0, 0], [1, 0], [0, 1e-9], [1e-9, 0]]}\n\
                 generator: [[0, 0], [1/2, 0], [1, 0]]";
-    assert_eq!(paths(thin, 0), ["d=\"M0 50l10000 0z\""]);
+    assert_eq!(paths(thin, 0), ["d=\"M0 800l10000 0z\""]);
     let small = "initiator: [[0, 0], [1, 0], [1, 1e-9]]\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\n\
                  base_element: {points: [[0, 0], {curve: [1, 0], control: [[1/2, 1]]}]}";
     assert_eq!(
@@ -177,17 +177,58 @@ fn a_path_breaks_where_its_colour_changes() {
         "initiator: segment\ngenerator: [[0, 0], {{to: [1/3, 0], fertile: false}}, [2/3, 0], \
          {{to: [1, 0], fertile: false}}]\n{style}"
     );
-    assert_eq!(paths(&text, 1), ["d=\"M0 50l3333 0 3334 0 3333 0\""]);
+    assert_eq!(paths(&text, 1), ["d=\"M0 800l3333 0 3334 0 3333 0\""]);
     let by_step = text.replace("generator, palette", "step, palette");
     assert_eq!(
         paths(&by_step, 2),
         [
-            "d=\"M0 50l3333 0M6667 50l3333 0\"",
-            "d=\"M3333 50l1111 0 1112 0 1111 0\""
+            "d=\"M0 800l3333 0M6667 800l3333 0\"",
+            "d=\"M3333 800l1111 0 1112 0 1111 0\""
         ]
     );
     let svg = picture(&by_step, 2, "");
     assert!(svg.contains("<g stroke=\"#0000ff\">"), "{svg}");
+}
+
+/// A palette begins with the initiator only if something of it is drawn.
+#[test]
+fn palettes_begin_with_what_is_drawn() {
+    let strokes = |ends: &str, steps: u32| {
+        let text = format!(
+            "initiator: {{connected: false, elements: [{{from: [0, 0], to: [1, 0]}}{ends}]}}\n\
+             generators: {{a: [[0, 0], {{to: [1/2, 1/2], use: b}}, [1, 0]], b: [[0, 0], [1/2, 0], [1, 0]]}}\n\
+             select: [{{use: a}}]\nstyle: {{color_by: generator, palette: [red, lime, blue]}}"
+        );
+        let svg = picture(&text, steps, "");
+        let groups = svg.split("<g stroke=\"").skip(1);
+        let colours = groups.map(|group| group[..7].to_owned());
+        colours.collect::<Vec<_>>()
+    };
+    assert_eq!(strokes("", 0), ["#ff0000"]);
+    assert_eq!(strokes("", 1), ["#ff0000"]);
+    assert_eq!(strokes("", 2), ["#ff0000", "#0000ff"]);
+    let kept = ", {from: [0, 1], to: [1, 1], fertile: false}";
+    assert_eq!(strokes(kept, 2), ["#ff0000", "#00ff00", "#0000ff"]);
+}
+
+/// Filled elements below a pixel are stroked so that they stay a pixel wide.
+#[test]
+fn specks_are_stroked() {
+    let text = "initiator: segment\nbase_element: triangle\n\
+                generator: [{from: [0, 0], to: [1/3, 0]}, {from: [2/3, 0], to: [1, 0]}]\nstyle: {fill: teal}";
+    let widths = |steps: u32| -> Vec<f64> {
+        let found = paths(text, steps);
+        let strokes = found
+            .iter()
+            .filter_map(|path| path.split("stroke-width=\"").nth(1));
+        strokes
+            .map(|width| width.split('"').next().unwrap().parse().unwrap())
+            .collect()
+    };
+    assert!(widths(2).is_empty());
+    // 100/243 and 100/3^9 pixels.
+    assert_eq!(widths(5), [75.0]);
+    assert_eq!(widths(9), [100.0]);
 }
 
 #[test]

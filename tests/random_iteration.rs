@@ -35,6 +35,35 @@ fn library() -> Vec<(String, Arc<ifs::System>)> {
     systems.collect()
 }
 
+/// What a file colours by steps keeps the beginning of its palette for what is large.
+#[test]
+fn trunks_are_brown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tree.png");
+    let arguments = "grow tree-libeskind-hadas --method chaos --points 300k --size 200 -q -o";
+    let status = Command::new(env!("CARGO_BIN_EXE_kfrac"))
+        .args(arguments.split(' '))
+        .arg(&path)
+        .status();
+    assert!(status.unwrap().success());
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(fs::read(&path).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    // Red, green, blue and opacity, from the top down: browner below than above.
+    let brown = |rows: &[u8]| {
+        let seen = rows.chunks_exact(4).filter(|pixel| pixel[3] > 0);
+        let all = seen.clone().count() as f64;
+        seen.filter(|pixel| pixel[0] > pixel[1]).count() as f64 / all
+    };
+    let [crown, trunk] = [
+        brown(&pixels[..pixels.len() / 2]),
+        brown(&pixels[pixels.len() * 4 / 5..]),
+    ];
+    assert!(trunk > 0.7 && crown < 0.3, "{trunk} and {crown}");
+}
+
 const SIDE: u32 = 64;
 
 /// A square window around all of the attractor.
@@ -347,7 +376,7 @@ fn what_cannot_be_played_is_said() {
         (
             "gasket --method chaos --start 1,1 --walk 0",
             2,
-            "0 is not in",
+            "a number of steps is a whole number from 1",
         ),
         ("gasket --method chaos -o x.svg", 2, "too many for an SVG"),
         (

@@ -194,7 +194,10 @@ fn what_is_wrong_with_the_command_line_is_said() {
             &["koch", "--steps", "0..20000"],
             "a sheet has no more than 10000 pictures",
         ),
-        (&["koch", "--columns", "0"], "0 is not in 1.."),
+        (
+            &["koch", "--columns", "0"],
+            "a number of columns is a whole number from 1",
+        ),
         (
             &["koch", "-o", "koch.csv"],
             "the format '.csv' is not known here: .svg, .png, .pdf and .dxf are",

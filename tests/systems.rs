@@ -402,8 +402,8 @@ fn what_is_left_out_beside_a_window_is_not_seen() {
             options.format = Format::Png;
             options.size = Size::Long(120);
             options.view.window = Some(window);
-            options.style.stroke = Some(Colour::BLACK);
-            options.style.fill = None;
+            options.style.stroke = None;
+            options.style.fill = Some(Colour::BLACK);
             options.style.color_by = color_by;
             options.style.palette = Palette::of_colours("black", &[Colour::BLACK]);
             let mut bytes = Vec::new();

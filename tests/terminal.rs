@@ -89,7 +89,7 @@ fn long_work_shows_how_far_it_is_and_clears_it_away() {
     assert!(session.seen.contains(" % ["), "{}", session.seen);
     let id = session.child.id();
     let killed = Command::new("sh")
-        .args(["-c", &format!("kill -INT {id}")])
+        .args(["-c", &format!("kill -TERM {id}")])
         .status();
     assert!(killed.unwrap().success());
     let (seen, status) = session.end();

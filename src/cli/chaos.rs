@@ -160,6 +160,10 @@ impl ChaosArguments {
             system,
             start,
             color_by,
+            is_by_steps: color_by == ColorBy::Hits
+                && picture.asked_color_by().is_none()
+                && !picture.asks_palette()
+                && source.heading().style.color_by == ColorBy::Step,
             steps: steps.or(source.heading().steps).unwrap_or(8),
         })
     }
@@ -188,6 +192,8 @@ pub(super) struct ChaosGame<'a> {
     system: System,
     start: Start,
     color_by: ColorBy,
+    /// Whether hits stand for steps, whose palette the file has.
+    is_by_steps: bool,
     /// The step whose first maps are told apart.
     steps: u32,
 }
@@ -266,7 +272,7 @@ impl ChaosGame<'_> {
         let style = picture.style(self.source.heading());
         let density = Density {
             tone: self.arguments.tone.unwrap_or_default(),
-            shades: self.shades(&style),
+            shades: self.shades(&style, picture.ink(self.source.heading())),
             background: style.background,
         };
         let described = counted(&points.into(), "point");
@@ -327,20 +333,24 @@ impl ChaosGame<'_> {
     }
 
     /// The colours that a style gives to hits, maps or all points.
-    fn shades(&self, style: &Style) -> Shades {
+    fn shades(&self, style: &Style, ink: Option<Colour>) -> Shades {
         let maps = self.source.ifs().maps().len();
         match self.color_by {
+            // What a file colours by steps begins with what is large, and so is hit most.
+            ColorBy::Hits if self.is_by_steps => Shades::Palette(style.palette.clone().reversed()),
             ColorBy::Hits => Shades::Palette(style.palette.clone()),
             ColorBy::FirstMap | ColorBy::LastMap => {
-                // As of approximants, where what no map has moved comes first.
+                // As of approximants, where condensation sets come first, if there are any.
+                let before = usize::from(self.system.classes() > maps);
+                let last = (maps + before).saturating_sub(1).max(1);
                 let place = |class: usize| {
-                    let number = if class < maps { class + 1 } else { 0 };
+                    let number = if class < maps { class + before } else { 0 };
                     #[expect(clippy::cast_precision_loss, reason = "there are not so many maps")]
-                    style.palette.at(number as f64 / maps as f64)
+                    style.palette.at(number as f64 / last as f64)
                 };
                 Shades::Classes((0..self.system.classes()).map(place).collect())
             }
-            _ => Shades::Ink(style.fill.or(style.stroke).unwrap_or(Colour::BLACK)),
+            _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
         }
     }
 

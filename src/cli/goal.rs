@@ -13,7 +13,7 @@ use super::rule::Loaded;
 use super::{Failure, steps};
 
 /// Where growth ends.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Goal {
     /// After a number of steps, or sooner, where elements are smaller than so many pixels.
     Steps(u32, Option<f64>),

@@ -1,5 +1,6 @@
 //! `kfrac grow`: from a rule to a picture or a table.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,9 +8,9 @@ use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
 use crate::export;
-use crate::graph::Graph;
-use crate::grow::Walked;
-use crate::render::{self, Canvas, Empty, Instanced, Plotted, RenderError, Size, Unit};
+use crate::graph::{Graph, Object};
+use crate::grow::{Progress, Walked};
+use crate::render::{self, Canvas, Empty, Instanced, Look, Plotted, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::wording;
 use crate::zoom;
@@ -24,7 +25,7 @@ use super::plot::{self, PlotArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::svg::{self, SvgArguments};
 use super::zoom::ZoomArguments;
-use super::{Failure, chaos, format, help, output, steps, text};
+use super::{Failure, chaos, format, help, light, output, steps, text};
 
 /// Grows a rule and draws it, or lists its elements
 ///
@@ -38,7 +39,8 @@ pub(super) struct Arguments {
     /// How often fertile elements are replaced [default: what the rule says]
     ///
     /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
-    /// elements.
+    /// elements. Without --steps, --detail and --max-elements, an SVG has no more than 50,000 elements and
+    /// 2 MB: where that would be more, it has fewer steps or a coarser detail, and says so.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     /// Elements smaller than so many pixels are not replaced
@@ -170,7 +172,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let color_by = arguments.style(&loaded).color_by;
     let graph = loaded.compile_for(goal.steps(), color_by)?;
-    arguments.check(goal, format, &graph, &loaded)?;
+    let stays_light = arguments.stays_light(format);
+    if !stays_light {
+        arguments.check(goal, format, &graph, &loaded)?;
+    }
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     if look.is_some()
@@ -180,21 +185,21 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         text::say("note: drawn in one colour, for elements far from the window are not counted");
     }
     arguments.tell_of_bands(&loaded, goal, format, &graph);
-    let (wrote, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
-        match format {
+    arguments.tell_of_no_lines(&loaded, format, &graph);
+    let ((wrote, drawn), bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
+        let wrote = match format {
             Format::Picture(format) => {
-                let options = arguments.options(&loaded, goal, format);
-                goal.come_to(&loaded, graph, |graph, steps| {
-                    let growth = arguments.growth.drawn_as(&options, steps, progress);
-                    let written = match &look {
-                        None => render::write(graph, &growth, &options, out),
-                        Some(look) => {
-                            let source = loaded.source();
-                            render::write_zoomed(&source, graph, &growth, &options, look, out)
-                        }
-                    };
-                    written.map(Wrote::from)
-                })
+                let pictured = Pictured {
+                    arguments,
+                    loaded: &loaded,
+                    format,
+                    look: look.as_ref(),
+                    path,
+                };
+                if stays_light {
+                    return pictured.draw_light(goal, graph, progress, out);
+                }
+                pictured.draw(goal, graph, None, progress, out)
             }
             Format::Table(format) => {
                 let growth = arguments.growth.to(goal.steps(), progress);
@@ -203,8 +208,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                     .map(|walked| Wrote::table(walked, growth.steps))
                     .map_err(RenderError::from)
             }
-        }
-        .map_err(|error| arguments.growth.explain(error, &loaded, path))
+        };
+        let wrote = wrote.map_err(|error| arguments.growth.explain(error, &loaded, path))?;
+        Ok((wrote, goal))
     })?;
     if !arguments.growth.quiet {
         if let Some(instanced) = &wrote.instanced {
@@ -216,10 +222,13 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         if let Some(empty) = &wrote.empty {
             text::say(&super::zoom::nothing(&loaded.name, empty));
         }
+        if drawn != goal {
+            goal.tell_of_lighter(drawn);
+        }
         text::say(&format!(
             "{}: {}, {}, {}, {:.2} s",
             output::called(path),
-            goal.reached(&loaded.name, wrote.steps),
+            drawn.reached(&loaded.name, wrote.steps),
             wrote.summary(arguments.size.unit),
             wording::bytes(bytes),
             start.elapsed().as_secs_f64(),
@@ -261,6 +270,13 @@ impl Arguments {
     fn is_of_numbers(&self, style: &Style) -> bool {
         let numbers = matches!(style.color_by, ColorBy::Index | ColorBy::Fractal);
         numbers && self.picture.asked_color_by().is_none()
+    }
+
+    /// Whether nobody says how far growth goes, and a browser is to show what comes of it.
+    fn stays_light(&self, format: Format) -> bool {
+        let is_asked =
+            self.steps.is_some() || self.detail.is_some() || self.growth.says_most_elements();
+        format == Format::Picture(render::Format::Svg) && !is_asked && !self.svg.is_instanced()
     }
 
     /// Refuses what nested instances cannot be.
@@ -307,6 +323,24 @@ impl Arguments {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Says that widths, ends and corners of lines are asked for where there are none.
+    fn tell_of_no_lines(&self, loaded: &Loaded, format: Format, graph: &Graph) {
+        let is_filled = |object: &Object| graph.base_elements()[object.base_element].is_closed();
+        let mut drawn = graph.objects().iter().filter(|object| object.visible);
+        let has_lines = self.plot.is_asked()
+            || format == Format::Picture(render::Format::Dxf)
+            || self.style(loaded).outlines_polygons()
+            || drawn.any(|object| !is_filled(object));
+        if self.growth.quiet || !self.picture.asks_lines() || has_lines {
+            return;
+        }
+        text::say(&format!(
+            "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join are of lines; \
+             --stroke and --fill together give shapes outlines",
+            loaded.name
+        ));
     }
 
     /// Says how long a picture takes that is larger than memory, and how large its file is.
@@ -439,6 +473,89 @@ impl Arguments {
             ));
         }
         Ok(())
+    }
+}
+
+/// What is drawn, and how.
+struct Pictured<'a> {
+    arguments: &'a Arguments,
+    loaded: &'a Loaded,
+    format: render::Format,
+    look: Option<&'a Look>,
+    path: &'a Path,
+}
+
+impl Pictured<'_> {
+    /// Draws to a goal, with no more elements than `most` or those that are allowed.
+    fn draw(
+        &self,
+        goal: Goal,
+        graph: Graph,
+        most: Option<u64>,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+    ) -> Result<Wrote, RenderError> {
+        let Self {
+            arguments, loaded, ..
+        } = self;
+        let options = arguments.options(loaded, goal, self.format);
+        goal.come_to(loaded, graph, |graph, steps| {
+            let mut growth = arguments.growth.drawn_as(&options, steps, progress);
+            growth.most_elements = most.unwrap_or(growth.most_elements);
+            let written = match self.look {
+                None => render::write(graph, &growth, &options, &mut out),
+                Some(look) => {
+                    let source = loaded.source();
+                    render::write_zoomed(&source, graph, &growth, &options, look, &mut out)
+                }
+            };
+            written.map(Wrote::from)
+        })
+    }
+
+    /// Draws what is light and comes nearest to a goal; returns the goal that it is drawn to.
+    fn draw_light(
+        &self,
+        goal: Goal,
+        graph: Graph,
+        progress: Option<&Progress>,
+        out: &mut dyn Write,
+    ) -> Result<(Wrote, Goal), Failure> {
+        let Self {
+            arguments, loaded, ..
+        } = self;
+        let explain = |error| arguments.growth.explain(error, loaded, self.path);
+        let options = arguments.options(loaded, goal, self.format);
+        let is_part = self.look.is_some() || options.view.window.is_some();
+        let color_by = options.style.color_by;
+        let by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);
+        let nearest = light::nearest(goal, &graph, is_part, by_steps, |goal| {
+            let graph = loaded.compile_for(goal.steps(), color_by)?;
+            let drafted = light::draft(|out| {
+                let most = Some(light::MOST_ELEMENTS);
+                let wrote = self.draw(goal, graph, most, None, out)?;
+                let elements = wrote.elements;
+                Ok((wrote, elements))
+            });
+            drafted.map_err(explain)
+        })?;
+        match nearest {
+            Some((drawn, (wrote, draft))) => {
+                out.write_all(&draft.bytes)
+                    .map_err(|error| output::failed(error, self.path))?;
+                Ok((wrote, drawn))
+            }
+            None => {
+                let least = if self.look.is_some() {
+                    goal
+                } else {
+                    Goal::Steps(0, None)
+                };
+                let graph = loaded.compile_for(least.steps(), color_by)?;
+                let wrote = self.draw(least, graph, None, progress, out);
+                Ok((wrote.map_err(explain)?, least))
+            }
+        }
     }
 }
 

@@ -62,6 +62,11 @@ impl GrowthArguments {
         self.threads.unwrap_or_else(all_cores)
     }
 
+    /// Whether the most elements are said on the command line.
+    pub(super) fn says_most_elements(&self) -> bool {
+        self.max_elements.is_some()
+    }
+
     pub(super) fn most_elements(&self) -> u64 {
         self.max_elements.unwrap_or(Model::MOST_ELEMENTS)
     }

@@ -20,6 +20,7 @@ mod info;
 mod input;
 mod labels;
 mod length;
+mod light;
 mod list;
 mod man;
 mod number;

@@ -22,6 +22,9 @@ pub(super) struct PictureArguments {
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
     /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161); or none
+    ///
+    /// Closed shapes are filled with it or, where --fill, --color-by or the file fills them with something
+    /// else, outlined.
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     stroke: Option<Ink>,
     /// The width of strokes in pixels, or in millimetres as 0.3mm, or, with a % sign, relative to
@@ -108,9 +111,27 @@ impl PictureArguments {
         self.color_by
     }
 
-    /// Whether colours that tell elements apart are asked for.
+    /// Whether colours that distinguish elements are asked for.
     pub(super) fn asks_for_colours(&self) -> bool {
         self.color_by.is_some() || self.palette.is_some()
+    }
+
+    /// Whether a palette is asked for.
+    pub(super) fn asks_palette(&self) -> bool {
+        self.palette.is_some()
+    }
+
+    /// The one colour of points: what is asked for comes before what the file has.
+    pub(super) fn ink(&self, heading: &Heading) -> Option<Colour> {
+        let own = &heading.style;
+        let asked = self.fill.and_then(Ink::colour);
+        let asked = asked.or(self.stroke.and_then(Ink::colour));
+        asked.or(own.fill).or(own.stroke)
+    }
+
+    /// Whether anything is asked for that only lines have.
+    pub(super) fn asks_lines(&self) -> bool {
+        self.stroke_width.is_some() || self.cap.is_some() || self.join.is_some()
     }
 
     /// Refuses colours that only random iteration has.

@@ -1,5 +1,6 @@
 //! `kfrac sheet`: approximants side by side.
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -8,6 +9,8 @@ use clap::ValueHint;
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 use crate::figure::sheet;
+use crate::graph::Graph;
+use crate::grow::{Growth, Progress};
 use crate::render::{self, Size};
 use crate::style::{Named, Style, Width};
 use crate::wording;
@@ -17,7 +20,7 @@ use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, Member, RuleArguments};
 use super::steps::Several;
-use super::{Failure, format, help, length, number, output, steps, text};
+use super::{Failure, format, help, length, light, number, output, steps, text};
 
 /// Draws approximants side by side, or a family of fractals
 ///
@@ -30,6 +33,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
     /// Which steps, as 0..6 or 0,2,4 [default: 0 to what the rule says, no more than 12]
+    ///
+    /// Without --steps and --max-elements, an SVG has no more than 50,000 elements and 2 MB: where that would
+    /// be more, it shows fewer steps, and says so.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
     /// The file to write, or - for standard output [default: NAME-sheet.svg]
@@ -85,30 +91,55 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         Some(steps) => steps.clone(),
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
     };
-    let graph = loaded.compile_for(steps.largest(), arguments.style(&loaded).color_by)?;
-    for &step in steps.as_slice() {
-        arguments.growth.check(step, &graph, &loaded, None)?;
-    }
     let default = arguments.rule.file("-sheet", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let shown = format!("Steps {steps}");
-    let options = arguments.options(&loaded, &shown, vec![("steps", steps.to_string())], format);
-    let (written, bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
-        let cells = steps.as_slice().iter().map(|&step| sheet::Cell {
-            name: format!("step {step}"),
-            graph: &graph,
-            growth: arguments.growth.to(step, progress),
-        });
-        let cells: Vec<_> = cells.collect();
-        sheet::write(&cells, arguments.columns, &options, out)
-            .map_err(|error| arguments.growth.explain(error, &loaded, path))
-    })?;
+    let stays_light = arguments.stays_light(format);
+    let ((written, drawn), bytes) =
+        output::write(path, arguments.growth.quiet, |out, progress| {
+            let explain = |error| arguments.growth.explain(error, &loaded, path);
+            if stays_light {
+                let last = steps.largest();
+                let fewer = last as usize + 1;
+                let light = light::first_that_is_light(fewer, |fewer| {
+                    let fewer = u32::try_from(fewer).unwrap_or(0);
+                    let steps = Several::up_to(last - fewer);
+                    let graph = arguments.compile(&loaded, steps.largest())?;
+                    let most = Some(light::MOST_ELEMENTS);
+                    let drafted = light::draft(|out| {
+                        let options = arguments.of_steps(&loaded, &steps, format);
+                        let cells = arguments.cells(&graph, &steps, most, None);
+                        let written = sheet::write(&cells, arguments.columns, &options, out)?;
+                        Ok((written, written.elements))
+                    });
+                    Ok(drafted.map_err(explain)?.map(|drafted| (drafted, steps)))
+                })?;
+                if let Some(((written, draft), steps)) = light {
+                    out.write_all(&draft.bytes)
+                        .map_err(|error| output::failed(error, path))?;
+                    return Ok((written, steps));
+                }
+            }
+            let graph = arguments.compile(&loaded, steps.largest())?;
+            for &step in steps.as_slice() {
+                arguments.growth.check(step, &graph, &loaded, None)?;
+            }
+            let options = arguments.of_steps(&loaded, &steps, format);
+            let cells = arguments.cells(&graph, &steps, None, progress);
+            let written = sheet::write(&cells, arguments.columns, &options, out);
+            Ok((written.map_err(explain)?, steps.clone()))
+        })?;
+    if !arguments.growth.quiet && drawn != steps {
+        light::tell(
+            &format!("steps {drawn} are drawn and not {steps}"),
+            &format!("--steps {steps} draws them"),
+        );
+    }
     if !arguments.growth.quiet {
         let [width, height] = written.size;
         text::say(&format!(
             "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
             output::called(path),
-            wording::counted(&steps.as_slice().len().into(), "approximant"),
+            wording::counted(&drawn.as_slice().len().into(), "approximant"),
             loaded.name,
             wording::counted(&written.elements.into(), "element"),
             wording::bytes(bytes),
@@ -119,6 +150,49 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    /// Whether nobody says how far growth goes, and a browser is to show what comes of it.
+    fn stays_light(&self, format: render::Format) -> bool {
+        let is_asked = self.steps.is_some() || self.growth.says_most_elements();
+        format == render::Format::Svg && !is_asked
+    }
+
+    fn compile(&self, loaded: &Loaded, steps: u32) -> Result<Graph, Failure> {
+        loaded.compile_for(steps, self.style(loaded).color_by)
+    }
+
+    /// The pictures of some steps, with no more elements each than `most` or those that are allowed.
+    fn cells<'a>(
+        &self,
+        graph: &'a Graph,
+        steps: &Several,
+        most: Option<u64>,
+        progress: Option<&'a Progress>,
+    ) -> Vec<sheet::Cell<'a>> {
+        let cells = steps.as_slice().iter().map(|&step| {
+            let growth = self.growth.to(step, progress);
+            sheet::Cell {
+                name: format!("step {step}"),
+                graph,
+                growth: Growth {
+                    most_elements: most.unwrap_or(growth.most_elements),
+                    ..growth
+                },
+            }
+        });
+        cells.collect()
+    }
+
+    /// How a sheet of steps is drawn.
+    fn of_steps(
+        &self,
+        loaded: &Loaded,
+        steps: &Several,
+        format: render::Format,
+    ) -> render::Options {
+        let which = vec![("steps", steps.to_string())];
+        self.options(loaded, &format!("Steps {steps}"), which, format)
+    }
+
     /// The rule's style, with strokes that suit small pictures unless their width is asked for.
     fn style(&self, loaded: &Loaded) -> Style {
         let mut style = self.picture.style(loaded.model.heading());
@@ -145,13 +219,6 @@ impl Arguments {
                 return Err(Failure::Usage(message.into()));
             }
         };
-        let color_by = self.style(loaded).color_by;
-        let mut graphs = Vec::new();
-        for (_, member) in family {
-            let graph = member.compile_for(step, color_by)?;
-            self.growth.check(step, &graph, member, None)?;
-            graphs.push(graph);
-        }
         let default = self.rule.file("-sheet", format.name());
         let path = self.output.as_ref().unwrap_or(&default);
         let sweep = |(number, first): (usize, &Setting)| {
@@ -159,29 +226,58 @@ impl Arguments {
             let values: Vec<_> = values.collect();
             ("set", format!("{}={}", first.name, values.join(",")))
         };
-        let mut which: Vec<_> = swept.iter().enumerate().map(sweep).collect();
-        which.push(("steps", step.to_string()));
+        let sets: Vec<_> = swept.iter().enumerate().map(sweep).collect();
         let names: Vec<_> = swept.iter().map(|setting| setting.name.as_str()).collect();
         let names = names.join(" and ");
-        let shown = format!("Step {step} for values of {names}");
-        let options = self.options(loaded, &shown, which, format);
-        let (written, bytes) = output::write(path, self.growth.quiet, |out, progress| {
-            let cells = family
-                .iter()
-                .zip(&graphs)
-                .map(|((settings, _), graph)| sheet::Cell {
-                    name: caption(settings),
-                    graph,
-                    growth: self.growth.to(step, progress),
-                });
-            let cells: Vec<_> = cells.collect();
-            sheet::write(&cells, self.columns, &options, out)
-                .map_err(|error| self.growth.explain(error, loaded, path))
+        let options = |step: u32| {
+            let mut which = sets.clone();
+            which.push(("steps", step.to_string()));
+            let shown = format!("Step {step} for values of {names}");
+            self.options(loaded, &shown, which, format)
+        };
+        let compile = |step: u32| -> Result<Vec<Graph>, Failure> {
+            let members = family.iter();
+            let graphs = members.map(|(_, member)| self.compile(member, step));
+            graphs.collect()
+        };
+        let ((written, drawn), bytes) = output::write(path, self.growth.quiet, |out, progress| {
+            let explain = |error| self.growth.explain(error, loaded, path);
+            if self.stays_light(format) {
+                let light = light::first_that_is_light(step as usize + 1, |fewer| {
+                    let step = step - u32::try_from(fewer).unwrap_or(0);
+                    let graphs = compile(step)?;
+                    let most = Some(light::MOST_ELEMENTS);
+                    let drafted = light::draft(|out| {
+                        let cells = self.members(family, &graphs, step, most, None);
+                        let written = sheet::write(&cells, self.columns, &options(step), out)?;
+                        Ok((written, written.elements))
+                    });
+                    Ok(drafted.map_err(explain)?.map(|drafted| (drafted, step)))
+                })?;
+                if let Some(((written, draft), step)) = light {
+                    out.write_all(&draft.bytes)
+                        .map_err(|error| output::failed(error, path))?;
+                    return Ok((written, step));
+                }
+            }
+            let graphs = compile(step)?;
+            for ((_, member), graph) in family.iter().zip(&graphs) {
+                self.growth.check(step, graph, member, None)?;
+            }
+            let cells = self.members(family, &graphs, step, None, progress);
+            let written = sheet::write(&cells, self.columns, &options(step), out);
+            Ok((written.map_err(explain)?, step))
         })?;
+        if !self.growth.quiet && drawn != step {
+            light::tell(
+                &format!("step {drawn} is drawn and not {step}"),
+                &format!("--steps {step} draws that"),
+            );
+        }
         if !self.growth.quiet {
             let [width, height] = written.size;
             text::say(&format!(
-                "{}: {} of {} at step {step}, {}, {width} x {height} pixels, {}, {:.2} s",
+                "{}: {} of {} at step {drawn}, {}, {width} x {height} pixels, {}, {:.2} s",
                 output::called(path),
                 wording::counted(&family.len().into(), "value"),
                 names,
@@ -191,6 +287,30 @@ impl Arguments {
             ));
         }
         Ok(())
+    }
+
+    /// The pictures of the members of a family, with no more elements each than `most` or those that are
+    /// allowed.
+    fn members<'a>(
+        &self,
+        family: &[Member],
+        graphs: &'a [Graph],
+        step: u32,
+        most: Option<u64>,
+        progress: Option<&'a Progress>,
+    ) -> Vec<sheet::Cell<'a>> {
+        let members = family.iter().zip(graphs).map(|((settings, _), graph)| {
+            let growth = self.growth.to(step, progress);
+            sheet::Cell {
+                name: caption(settings),
+                graph,
+                growth: Growth {
+                    most_elements: most.unwrap_or(growth.most_elements),
+                    ..growth
+                },
+            }
+        });
+        members.collect()
     }
 
     fn options(

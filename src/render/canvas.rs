@@ -32,6 +32,11 @@ const MOST_PIXELS: f64 = 1e9;
 /// pixel, which leaves room for the errors of many levels.
 const FINEST: f64 = 1e12;
 
+/// What has no extent across is shown on a strip of this part of its length, but no narrower than so many
+/// pixels.
+const STRIP: f64 = 1.0 / 40.0;
+const NARROWEST_STRIP: f64 = 16.0;
+
 /// How the plane is laid on a picture: pixels run right and down from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canvas {
@@ -70,12 +75,17 @@ pub enum NoRoom {
 }
 
 impl Canvas {
-    /// The canvas that shows `bounds` with `pad` pixels free on every side.
+    /// The canvas that shows `bounds` with `pad` pixels free on every side; of what is less than a pixel
+    /// wide or high, a strip that can be seen.
     ///
     /// # Errors
     ///
     /// If the box is empty or not finite, or if the padding leaves no room.
     pub fn fit(bounds: &Bounds, size: Size, pad: f64) -> Result<Self, NoRoom> {
+        Self::fit_on(bounds, size, pad, true)
+    }
+
+    fn fit_on(bounds: &Bounds, size: Size, pad: f64, has_strips: bool) -> Result<Self, NoRoom> {
         if bounds.is_empty() {
             return Err(NoRoom::Nothing);
         }
@@ -96,7 +106,16 @@ impl Canvas {
             Size::Long(side) => {
                 let scale = room(side)? / extent.max_element();
                 let scale = if scale.is_finite() { scale } else { 1.0 };
-                let short = |extent: f64| whole_pixels(extent * scale + 2.0 * pad).min(side);
+                let strip = (f64::from(side) * STRIP).max(NARROWEST_STRIP);
+                let short = |extent: f64| {
+                    let extent = extent * scale;
+                    let least = if has_strips && extent < 1.0 {
+                        strip
+                    } else {
+                        0.0
+                    };
+                    whole_pixels((extent + 2.0 * pad).max(least)).min(side)
+                };
                 let size = if extent.x >= extent.y {
                     [side, short(extent.y)]
                 } else {
@@ -147,7 +166,7 @@ impl Canvas {
     ) -> Result<Self, NoRoom> {
         let corner = DVec2::new(x, y);
         let shown = Bounds::new(corner, corner + DVec2::new(width, height));
-        Self::fit(&shown, size, view.margin)
+        Self::fit_on(&shown, size, view.margin, false)
     }
 
     /// What part of the plane is shown, with so many pixels more on every side.

@@ -1,6 +1,6 @@
 use std::ops::{Range, RangeInclusive};
 
-use crate::graph::{Graph, Object};
+use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Element, Fractal, Run};
 use crate::style::{ColorBy, Colour, Style};
 
@@ -21,6 +21,9 @@ pub struct Classes {
     by: ColorBy,
     /// The largest value that is told apart; values start at 0.
     largest: u128,
+    /// Where generators or maps are told, how many values come before those of the first: one if something
+    /// is drawn that none has made, as the initiator.
+    before: u128,
 }
 
 impl Classes {
@@ -41,13 +44,20 @@ impl Classes {
 
     /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
+        let before = u128::from(draws_unmade(by, graph, steps));
         let largest = match by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Fractal | ColorBy::Index => 0,
             ColorBy::Step | ColorBy::Age => u128::from(steps),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => graph.origins() as u128,
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+                (graph.origins() as u128 + before).saturating_sub(1)
+            }
             ColorBy::Direction => 3,
         };
-        Self { by, largest }
+        Self {
+            by,
+            largest,
+            before,
+        }
     }
 
     /// The number of classes, 64 at most.
@@ -73,13 +83,10 @@ impl Classes {
             .map(|value| self.of_value(value))
     }
 
-    fn value_of_object(&self, object: &Object) -> Option<u128> {
-        let number = match self.by {
-            ColorBy::Generator | ColorBy::FirstMap => object.origin,
-            ColorBy::LastMap => object.last_map,
-            _ => return None,
-        };
-        Some(number.map_or(0, |number| number as u128 + 1))
+    /// The value of all elements that are an object, likewise.
+    pub(super) fn value_of_object(&self, object: &Object) -> Option<u128> {
+        let maker = maker(self.by, object)?;
+        Some(maker.map_or(0, |number| number as u128 + self.before))
     }
 
     /// The value of what the colours tell.
@@ -164,7 +171,7 @@ impl Classes {
     /// The colour of a class.
     #[must_use]
     pub fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
-        if matches!(self.by, ColorBy::None | ColorBy::Hits | ColorBy::Tint) {
+        if !self.by.takes_palette() {
             return None;
         }
         let last = self.count().saturating_sub(1).max(1);
@@ -196,4 +203,26 @@ impl Classes {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Age | ColorBy::Fractal
         )
     }
+}
+
+/// The generator or map that has made an object, by number, where colours tell it.
+fn maker(by: ColorBy, object: &Object) -> Option<Option<usize>> {
+    match by {
+        ColorBy::Generator | ColorBy::FirstMap => Some(object.origin),
+        ColorBy::LastMap => Some(object.last_map),
+        _ => None,
+    }
+}
+
+/// Whether approximant `steps` of a graph shows something that no generator or map has made: an infertile
+/// part of the initiator, or a condensation set.
+fn draws_unmade(by: ColorBy, graph: &Graph, steps: u32) -> bool {
+    let is_unmade = |object: &Object| object.visible && maker(by, object) == Some(None);
+    let start = || graph.initiator(steps).instances.iter();
+    let mut kept = graph
+        .objects()
+        .iter()
+        .filter(|object| steps > 0 && matches!(object.replacement, Replacement::Kept));
+    kept.any(is_unmade)
+        || (steps == 0 && start().any(|instance| is_unmade(&graph.objects()[instance.object])))
 }

@@ -15,6 +15,10 @@ use super::survey::overhang;
 /// Longer and longer descendants are looked for so many times.
 const MOST_SWEEPS: usize = 64;
 
+/// Filled shapes that are narrower than a pixel are drawn as wide, which is less than so many pixels beyond
+/// their outlines.
+const BROADENED: f64 = 0.75;
+
 /// Tells what need not be drawn, since it lies where all is covered already.
 ///
 /// The law: a picture is the same to the bit whether anything is hidden or not. So it does not matter
@@ -69,7 +73,8 @@ impl Hidden {
             overhang: match style.width {
                 Width::Pixels(width) => width * graph.widest().unwrap_or(1.0) * overhang(style),
                 Width::Relative(_) => 0.0,
-            },
+            }
+            .max(BROADENED),
             widths: match style.width {
                 Width::Pixels(_) => Vec::new(),
                 Width::Relative(width) => {

@@ -7,7 +7,7 @@ use crate::graph::{Evaluated, Graph, Object, Replacement};
 use crate::grow::{Census, Growth};
 use crate::style::{ColorBy, Style};
 
-use super::Survey;
+use super::{Classes, Survey};
 
 /// What is smaller than this multiple of the whole is left to the walk.
 const SPECK: f64 = 1e-6;
@@ -53,13 +53,11 @@ impl<'g> Survey<'g> {
             ColorBy::Age => vec![growth.steps.into()],
             ColorBy::Fractal | ColorBy::Index => Vec::new(),
             ColorBy::Step => stands.values(|stands| stands.born.into()),
-            ColorBy::Generator | ColorBy::FirstMap => {
-                stands.values(|stands| stands.origin(graph).map_or(0, |origin| origin as u128 + 1))
+            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+                let classes = Classes::before_survey(style.color_by, graph, steps);
+                let value = |object: usize| classes.value_of_object(&graph.objects()[object]);
+                stands.values(|stands| value(stands.object).unwrap_or(0))
             }
-            ColorBy::LastMap => stands.values(|stands| {
-                let object = &graph.objects()[stands.object];
-                object.last_map.map_or(0, |map| map as u128 + 1)
-            }),
             ColorBy::Direction => stands.values(|stands| u128::from(stands.direction.number()) - 1),
         };
         for value in used {
@@ -117,12 +115,6 @@ struct Kind {
     object: usize,
     direction: Direction,
     born: u32,
-}
-
-impl Kind {
-    fn origin(&self, graph: &Graph) -> Option<usize> {
-        graph.objects()[self.object].origin
-    }
 }
 
 /// All kinds that stand in an approximant.

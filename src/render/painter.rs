@@ -3,16 +3,16 @@ use std::io;
 use std::sync::Arc;
 
 use crate::grow::Seam;
-use crate::style::{Colour, Width};
+use crate::style::{Cap, Colour, Join, Width};
 
 use super::coarse::Coarse;
 use super::comb::Comb;
 use super::hidden::Hidden;
 use super::pen;
 use super::scene::{Pass, Scene};
-use super::sketch::{Kind, Line, Look, Mark, Sketch, class_width};
+use super::sketch::{Kind, Line, Look, Mark, SPECK_WIDTHS, Sketch, class_width};
 use super::stamps::Stamps;
-use super::surface::{FINE, Paint, Position, Stencil, Stroke, Surface};
+use super::surface::{FINE, Paint, Pen, Position, Stencil, Stroke, Surface};
 use super::tracer::Tracer;
 
 /// Vertices between two chances of the surface to hand on what it has.
@@ -71,6 +71,15 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let grain = self.tracer.grain()?;
         let coarse = || Coarse::of(self.scene.graph, grain);
         self.scene.coarse.get_or_init(coarse).as_ref()
+    }
+
+    /// Whether closed base elements that are narrower than a pixel are stroked.
+    pub(super) fn broadens(&self) -> bool {
+        let paint = self.paint(Look {
+            kind: Kind::Polygon,
+            ..Look::TUFTS
+        });
+        paint.stroke.is_none() && self.tracer.broadens(&paint)
     }
 
     /// What makes tufts, if they may be drawn.
@@ -284,7 +293,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Goes on with the open path if it looks alike, or begins a new one.
     fn begin_path(&mut self, look: Look) -> io::Result<()> {
-        if self.look == Some(look) {
+        if self.look.is_some_and(|open| open.serves(look)) {
             return Ok(());
         }
         self.end_path()?;
@@ -309,6 +318,16 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             Kind::Line => (None, stroke(colour)),
             Kind::Ring => (style.fill, stroke(colour)),
             Kind::Area => (style.fill, None),
+            Kind::Speck => {
+                let colour = own.unwrap_or(style.polygons());
+                let pen = Pen {
+                    width: f64::from(look.width) / SPECK_WIDTHS,
+                    cap: Cap::Round,
+                    join: Join::Round,
+                    dash: 0.0,
+                };
+                (Some(colour), Some(Stroke { colour, pen }))
+            }
             Kind::Polygon => (
                 Some(own.unwrap_or(style.polygons())),
                 style
@@ -373,7 +392,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Gives the surface a chance to hand on what it has; a polygon stays in one piece.
     fn hand_on(&mut self) -> io::Result<()> {
-        if self.look.is_some_and(|look| look.kind == Kind::Polygon) {
+        if self.look.is_some_and(Look::is_of_polygons) {
             return Ok(());
         }
         self.tracer.hand_on()
@@ -395,7 +414,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             self.tracer.close(meets_start && previous.meets_frame);
         }
         // Polygons of different fractals stay in one path; lines begin a new one.
-        if self.look.is_some_and(|look| look.kind != Kind::Polygon) {
+        if self.look.is_some_and(|look| !look.is_of_polygons()) {
             self.end_path()?;
         }
         Ok(())

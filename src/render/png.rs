@@ -415,6 +415,11 @@ impl Surface for Png<'_, '_> {
         Ok(())
     }
 
+    fn broadens(&self, paint: &Paint) -> bool {
+        // What is opaque is covered no narrower.
+        paint.fill.is_some_and(|fill| fill != fill.opaque())
+    }
+
     fn tufts_below(&self, stroke: &Stroke) -> f64 {
         let is_plain = stroke.pen.dash == 0.0 && stroke.colour == stroke.colour.opaque();
         if is_plain && self.part.may_cover() {

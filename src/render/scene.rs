@@ -119,6 +119,7 @@ impl Drawing for Scene<'_> {
             let means = Means {
                 comb: painter.comb().map(Arc::new),
                 coarse: painter.coarse(),
+                broadens: painter.broadens(),
                 stamps: painter.stamps(pass, hidden.as_ref()).map(Arc::new),
                 hidden,
                 aim: Arc::new(Aim::of(self, pass)),
@@ -259,6 +260,7 @@ mod tests {
             let means = Means {
                 comb: None,
                 coarse: None,
+                broadens: false,
                 hidden: None,
                 stamps: None,
                 aim,

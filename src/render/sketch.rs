@@ -5,8 +5,10 @@
 
 mod mark;
 mod runs;
+mod speck;
 
 pub(super) use mark::{Kind, Line, Look, Mark, Sketch, class_width, width_class};
+pub(super) use speck::SPECK_WIDTHS;
 
 use std::io;
 use std::ops::Range;
@@ -61,6 +63,8 @@ pub(super) struct Means<'a> {
     pub(super) comb: Option<Arc<Comb>>,
     /// outlines without what is too fine,
     pub(super) coarse: Option<&'a Coarse>,
+    /// whether closed base elements that are narrower than a pixel are stroked,
+    pub(super) broadens: bool,
     /// what need not be drawn,
     pub(super) hidden: Option<Arc<Hidden>>,
     /// what many runs cover, drawn once,
@@ -189,12 +193,20 @@ impl<'a> Sketcher<'a> {
         } else {
             0
         };
+        let map = element.frame.map;
+        let narrow = self.means.broadens.then(|| {
+            let map = self.scene.canvas.map(&map);
+            speck::width(base_element, &map)
+        });
+        let (kind, width) = match narrow.flatten() {
+            Some(width) => (Kind::Speck, width),
+            None => (Kind::Polygon, width),
+        };
         let look = Look {
-            kind: Kind::Polygon,
+            kind,
             width,
             colour: self.colour(element, self.scene.style.polygons()),
         };
-        let map = element.frame.map;
         // One orientation for all, so that what overlaps stays filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
         if let Some(corners) = self.corners(element) {

@@ -143,6 +143,12 @@ pub(crate) trait Surface {
         None
     }
 
+    /// Whether areas that are painted so and narrower than a pixel are to be stroked, so that they are as wide
+    /// and can be seen; not where the surface sees to that, or draws no areas.
+    fn broadens(&self, _: &Paint) -> bool {
+        false
+    }
+
     /// Strokes that are thinner than this, in pixels, may come as tufts where they are short; none
     /// unless said otherwise.
     fn tufts_below(&self, _: &Stroke) -> f64 {

@@ -182,6 +182,10 @@ impl<W: Write> Surface for Svg<'_, '_, W> {
         Ok(())
     }
 
+    fn broadens(&self, _: &Paint) -> bool {
+        true
+    }
+
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         self.close_group();
         let ([x, y], [width, height]) = (fine(corner), fine(size));

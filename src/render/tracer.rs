@@ -133,6 +133,11 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.grain()
     }
 
+    /// As [`Surface::broadens`].
+    pub(crate) fn broadens(&self, paint: &Paint) -> bool {
+        self.surface.broadens(paint)
+    }
+
     /// As [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)

@@ -12,6 +12,8 @@ pub struct Palette {
     /// Those that it was made of; empty for a palette of the field.
     colours: Vec<Colour>,
     gradient: Arc<dyn Gradient + Send + Sync>,
+    /// Whether the scale runs from its end to its beginning.
+    is_reversed: bool,
 }
 
 /// A palette of a name that does not exist.
@@ -83,6 +85,7 @@ impl Palette {
             name: (*name).into(),
             colours: Vec::new(),
             gradient: preset(),
+            is_reversed: false,
         })
     }
 
@@ -110,6 +113,7 @@ impl Palette {
             name: name.into(),
             colours,
             gradient: Arc::new(gradient),
+            is_reversed: false,
         }
     }
 
@@ -151,9 +155,19 @@ impl Palette {
         }
     }
 
+    /// The same scale from its end to its beginning; numbers of colours stay.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self {
+            is_reversed: !self.is_reversed,
+            ..self
+        }
+    }
+
     /// The colour at a place from 0 to 1.
     #[must_use]
     pub fn at(&self, place: f64) -> Colour {
+        let place = if self.is_reversed { 1.0 - place } else { place };
         #[expect(
             clippy::cast_possible_truncation,
             reason = "colours need no more than f32"
@@ -169,6 +183,7 @@ impl Default for Palette {
             name: "viridis".into(),
             colours: Vec::new(),
             gradient: Arc::new(preset::viridis()),
+            is_reversed: false,
         }
     }
 }

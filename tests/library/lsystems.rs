@@ -56,6 +56,19 @@ fn the_promised_systems_exist() {
     }
 }
 
+/// Hart 1992, equations (5) to (8): 2·3ⁿ − 1 lines, a stem and three branches for every apex.
+#[test]
+fn ternary_trees_have_the_lines_of_the_paper() {
+    for name in ["ternary-tree-lsystem", "ternary-tree-apices"] {
+        let system = system(&document(name).to_yaml());
+        for (steps, lines) in (0..).zip([1, 5, 17, 53, 161]) {
+            let graph = Model::LSystem(Arc::clone(&system)).compile(steps).unwrap();
+            let elements = grown(&graph, &Growth::steps(steps)).remove(0).elements;
+            assert_eq!(elements.len(), lines, "{name}, step {steps}");
+        }
+    }
+}
+
 #[test]
 fn every_system_is_drawn_within_its_picture() {
     for (name, system) in systems() {

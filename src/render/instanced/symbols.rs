@@ -121,13 +121,7 @@ impl<'g> Symbols<'g> {
             Part::All | Part::Own => true,
             Part::Seeded(_) => false,
             Part::Born(steps) => born == steps,
-            Part::Class(class) => {
-                let map = match self.by {
-                    ColorBy::LastMap => object.last_map,
-                    _ => object.origin,
-                };
-                self.classes.of_value(map.map_or(0, |map| map as u128 + 1)) == class
-            }
+            Part::Class(class) => self.classes.of_object(object).unwrap_or(0) == class,
             Part::Heading(heading) => direction == heading,
         }
     }

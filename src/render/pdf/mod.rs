@@ -233,6 +233,10 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
         self.hand_on()
     }
 
+    fn broadens(&self, _: &Paint) -> bool {
+        true
+    }
+
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
         let [x, y] = corner.map(|side| u64::from(side) * 100);
         let [wide, high] = size.map(|side| u64::from(side) * 100);

@@ -177,7 +177,11 @@ impl Chunk {
                     let over = over.filter(|_| *of_strokes);
                     let plane = over.unwrap_or(&mut *plane);
                     for polygon in next(vertices * count).chunks_exact(*vertices) {
-                        plane.polygon(polygon);
+                        if *of_strokes {
+                            plane.polygon(polygon);
+                        } else {
+                            plane.shape(polygon);
+                        }
                     }
                 }
                 Command::Tufts(count) => {

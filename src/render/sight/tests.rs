@@ -427,6 +427,7 @@ fn colours_by_step_leave_out_nothing() {
                 style: Style {
                     color_by,
                     fill: None,
+                    stroke: None,
                     ..rule.style().clone()
                 },
                 ..Options::default()

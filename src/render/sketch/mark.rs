@@ -8,13 +8,28 @@ use crate::style::Colour;
 #[derive(Clone, Copy, PartialEq)]
 pub(in crate::render) struct Look {
     pub(in crate::render) kind: Kind,
-    /// The width of a stroke where widths differ, in steps of an eighth of an octave.
+    /// The width of a stroke where widths differ, in steps of an eighth of an octave; of specks, in eighths
+    /// of a pixel.
     pub(in crate::render) width: i32,
     /// Its colour, where what is drawn is tinted.
     pub(in crate::render) colour: Option<Colour>,
 }
 
 impl Look {
+    /// Whether what looks like `other` may go on in an open path of this look. Specks whose strokes differ
+    /// by a quarter of a pixel or less share one, so that squares of two sizes in turn do not need a path each.
+    pub(in crate::render) fn serves(self, other: Self) -> bool {
+        const ALIKE: u32 = 2;
+        let is_alike = self.kind == Kind::Speck && self.width.abs_diff(other.width) <= ALIKE;
+        let width = if is_alike { self.width } else { other.width };
+        self == Self { width, ..other }
+    }
+
+    /// Whether it is of closed base elements.
+    pub(in crate::render) fn is_of_polygons(self) -> bool {
+        matches!(self.kind, Kind::Polygon | Kind::Speck)
+    }
+
     /// Of tufts: a stroke as thin as there are.
     pub(in crate::render) const TUFTS: Self = Self {
         kind: Kind::Line,
@@ -41,6 +56,8 @@ pub(in crate::render) enum Kind {
     Area,
     /// Closed base elements.
     Polygon,
+    /// Closed base elements that are narrower than a pixel, stroked so that they can be seen.
+    Speck,
 }
 
 /// Elements in a row, each joined to the one before, that look alike.

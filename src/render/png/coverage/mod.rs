@@ -8,6 +8,7 @@
 mod area;
 mod curve;
 mod hair;
+mod least;
 mod pen;
 mod polygon;
 mod stamp;

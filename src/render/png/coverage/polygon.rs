@@ -6,14 +6,14 @@ use super::has_room;
 use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
 /// The most vertices of a polygon that is drawn here.
-const MOST_VERTICES: usize = 32;
+pub(super) const MOST_VERTICES: usize = 32;
 
 /// Most polygons have no more vertices than this, and of the others most no more than that.
 const FEW_VERTICES: usize = 4;
-const SOME_VERTICES: usize = 12;
+pub(super) const SOME_VERTICES: usize = 12;
 
 /// The most pixels of its width and height.
-const MOST_PIXELS: i64 = 8;
+pub(super) const MOST_PIXELS: i64 = 8;
 
 /// Half planes are off by some hundredths of a pixel, which adds up where many meet: of what is no wider
 /// than this, in hundredths, the samples are found one by one; not of triangles and quadrangles that are
@@ -32,14 +32,16 @@ const FARTHEST: usize = 48;
 
 /// A half plane: what lies left of an edge, on the picture where y points down.
 #[derive(Clone, Copy, Default)]
-struct HalfPlane {
+pub(super) struct HalfPlane {
     /// The twofold areas that a pixel right and one down take from that of edge and pixel's centre.
     right: i64,
     down: i64,
     /// The area at the first pixel.
     area: i64,
-    /// Areas become distances.
+    /// Areas become distances,
     scale: f64,
+    /// counted from this one.
+    from: f64,
     /// The first mask of its direction in the table.
     masks: usize,
     /// All bits where the table holds the other side of the edge.
@@ -73,7 +75,7 @@ static HALF_PLANES: LazyLock<Vec<u64>> = LazyLock::new(|| {
 impl HalfPlane {
     /// One side of the edge through a point along a vector; the centre of the first pixel.
     #[inline]
-    fn of(point: Position, [x, y]: [i64; 2], centre: Position) -> Self {
+    pub(super) fn of(point: Position, [x, y]: [i64; 2], centre: Position) -> Self {
         let turned = y < 0 || (y == 0 && x < 0);
         // One direction of every edge, so that the two sides are exact complements.
         let [x, y] = if turned { [-x, -y] } else { [x, y] };
@@ -92,16 +94,24 @@ impl HalfPlane {
             down: x * FINE,
             area,
             scale: DISTANCES / FINE as f64 / (across * across + down * down).sqrt(),
+            from: FARTHEST as f64,
             masks: (octant * (DIRECTIONS + 1) + direction) * 2 * FARTHEST,
             other: if turned { u64::MAX } else { 0 },
         }
     }
 
+    /// The same with its edge moved outwards by so many hundredths of a pixel.
+    pub(super) fn moved(self, by: f64) -> Self {
+        let by = by * DISTANCES / FINE as f64;
+        let from = self.from + if self.other == 0 { by } else { -by };
+        Self { from, ..self }
+    }
+
     /// What it covers of a pixel.
     #[inline]
     fn mask(&self, table: &[u64], area: i64) -> u64 {
-        let farthest = FARTHEST as f64;
-        let distance = (area as f64 * self.scale + farthest).clamp(0.0, 2.0 * farthest - 1.0);
+        const MOST: f64 = 2.0 * FARTHEST as f64 - 1.0;
+        let distance = (area as f64 * self.scale + self.from).clamp(0.0, MOST);
         table[self.masks + number(distance)] ^ self.other
     }
 }
@@ -136,7 +146,7 @@ fn is_small([least, most]: &[Position; 2]) -> bool {
 
 /// The sides of a polygon, that to the first vertex first.
 #[inline]
-fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
+pub(super) fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
     let mut sides = [[0; 2]; MOST];
     let mut before = vertices.last().copied().unwrap_or_default();
     for (side, &vertex) in sides.iter_mut().zip(vertices) {
@@ -241,7 +251,12 @@ impl Plane {
     }
 
     /// Covers what all half planes cover in a rectangle.
-    fn intersection(&mut self, edges: &mut [HalfPlane], columns: [i64; 2], rows: [i64; 2]) {
+    pub(super) fn intersection(
+        &mut self,
+        edges: &mut [HalfPlane],
+        columns: [i64; 2],
+        rows: [i64; 2],
+    ) {
         let table = HALF_PLANES.as_slice();
         let width = index(columns[1] - columns[0] + 1);
         for row in rows[0]..=rows[1] {
@@ -274,7 +289,7 @@ fn is_narrow(vertices: &[Position], longest: i64) -> bool {
 /// Which way round a convex polygon with these sides runs: 1 if its inside is left of them on the
 /// picture where y points down, -1 if right, 0 if it has none. None of one that is not convex.
 #[inline]
-fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
+pub(super) fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
     let (mut lefts, mut rights) = (false, false);
     // How often they turn back right and left, and up and down.
     let (mut backs, mut signs) = ([0; 2], [0; 2]);
@@ -298,7 +313,7 @@ fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
 /// The vertices of the hull of a small polygon whose area is less than that of the hull by no more than
 /// rounding makes it, as is that of one that would be convex if its positions were not rounded. Where
 /// sides cross it may be another polygon.
-fn rounded<'h>(
+pub(super) fn rounded<'h>(
     vertices: &[Position],
     hull: &'h mut [Position; SOME_VERTICES],
 ) -> Option<&'h [Position]> {

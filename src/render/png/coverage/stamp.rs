@@ -35,7 +35,7 @@ impl Sheet {
 
     /// Covers what a closed outline encircles.
     pub(crate) fn polygon(&mut self, vertices: &[Position]) {
-        self.is_whole &= self.plane.polygon(vertices);
+        self.is_whole &= self.plane.shape(vertices);
     }
 
     /// Covers a line through points.
@@ -149,7 +149,7 @@ mod tests {
             stamped.stamp(&stamp, pixel);
             let moved = |point: [i64; 2]| [0, 1].map(|a| point[a] + (pixel[a] - 2) * FINE);
             let mut drawn = Plane::new([12, 12]);
-            drawn.polygon(&square.map(moved));
+            drawn.shape(&square.map(moved));
             let line = line.map(moved);
             drawn.dot(&pen, line[0]);
             drawn.line(&pen, line[0], line[1]);

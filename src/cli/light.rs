@@ -1,0 +1,175 @@
+//! SVGs that stay light where nobody says how far growth goes: browsers show them at once.
+
+use std::io::{self, Write};
+
+use crate::graph::Graph;
+use crate::grow::WalkError;
+use crate::render::RenderError;
+use crate::wording::{bytes, grouped};
+
+use super::goal::Goal;
+use super::{Failure, text};
+
+/// The most elements of an SVG, and of the approximants of a sheet together, that nobody has asked for.
+pub(super) const MOST_ELEMENTS: u64 = 50_000;
+
+/// The most bytes of its file.
+const MOST_BYTES: u64 = 2_000_000;
+
+/// Sizes of elements in pixels, from the smallest up, of which the first that is light enough is taken.
+const DETAILS: [f64; 36] = [
+    0.5, 0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0,
+    30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0, 250.0, 300.0, 400.0, 500.0, 600.0,
+    800.0, 1000.0, 1200.0, 1500.0,
+];
+
+/// A file in memory, as long as it is light.
+#[derive(Default)]
+pub(super) struct Draft {
+    pub(super) bytes: Vec<u8>,
+    is_too_long: bool,
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if (self.bytes.len() + bytes.len()) as u64 > MOST_BYTES {
+            self.is_too_long = true;
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Writes a file that is to be light; `None` if it has more elements or bytes than that.
+///
+/// `write` is to grow no more than [`MOST_ELEMENTS`] and returns how many there are.
+pub(super) fn draft<T>(
+    write: impl FnOnce(&mut Draft) -> Result<(T, u64), RenderError>,
+) -> Result<Option<(T, Draft)>, RenderError> {
+    let mut draft = Draft::default();
+    match write(&mut draft) {
+        Ok((written, elements)) => {
+            Ok((elements <= MOST_ELEMENTS && !draft.is_too_long).then_some((written, draft)))
+        }
+        Err(_) if draft.is_too_long => Ok(None),
+        Err(RenderError::Walk(WalkError::TooManyElements { .. } | WalkError::TooLong { .. })) => {
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The goal itself if what comes of it is light, or else what comes nearest to it: a coarser detail where
+/// elements are not equally long, or only a part is shown, or fewer steps. Where colours tell steps,
+/// `by_steps`, it is fewer steps if the goal says how many. `None` if not even the initiator is light.
+pub(super) fn nearest<T>(
+    goal: Goal,
+    graph: &Graph,
+    is_part: bool,
+    by_steps: bool,
+    mut draft: impl FnMut(Goal) -> Result<Option<T>, Failure>,
+) -> Result<Option<(Goal, T)>, Failure> {
+    if let Some(drafted) = draft(goal)? {
+        return Ok(Some((goal, drafted)));
+    }
+    // A lighter goal that cannot be drawn is none.
+    let mut attempt = |goal: Goal| {
+        let drafted = draft(goal).ok().flatten();
+        Ok(drafted.map(|drafted| (goal, drafted)))
+    };
+    let is_even = graph.even_lengths().is_some();
+    let by_steps = by_steps && matches!(goal, Goal::Steps(_, None));
+    let has_no_detail = graph.counts_index() || graph.is_levelled();
+    if !has_no_detail && (is_part || !(is_even || by_steps)) {
+        let finer = DETAILS.partition_point(|&pixels| !goal.is_finer_than(pixels));
+        let coarser = &DETAILS[finer..];
+        let drafted = first_that_is_light(coarser.len(), |number| {
+            attempt(goal.with_detail(coarser[number]))
+        })?;
+        if drafted.is_some() {
+            return Ok(drafted);
+        }
+    }
+    let too_large = graph.check_size(goal.steps(), MOST_ELEMENTS).err();
+    let deepest = too_large.filter(|_| !is_part).map(|error| error.deepest);
+    let fewer = match deepest {
+        Some(deepest) => deepest.map_or(0, |deepest| deepest + 1).min(goal.steps()),
+        None => goal.steps(),
+    };
+    first_that_is_light(fewer as usize, |number| {
+        let steps = (0..fewer).nth_back(number).unwrap_or(0);
+        attempt(Goal::Steps(steps, None))
+    })
+}
+
+/// The first of some drafts, each lighter than the one before, that is light enough; the first one is taken
+/// if it is.
+pub(super) fn first_that_is_light<T>(
+    count: usize,
+    mut draft: impl FnMut(usize) -> Result<Option<T>, Failure>,
+) -> Result<Option<T>, Failure> {
+    let (mut heavy, mut light) = (0, count);
+    let mut lightest = None;
+    // Most are light as they are.
+    let mut middle = 0;
+    while heavy < light {
+        match draft(middle)? {
+            Some(drafted) => {
+                lightest = Some(drafted);
+                light = middle;
+            }
+            None => heavy = middle + 1,
+        }
+        middle = heavy + light.saturating_sub(heavy) / 2;
+    }
+    Ok(lightest)
+}
+
+/// Says what is drawn in place of something heavier, and how to get that.
+pub(super) fn tell(drawn: &str, more: &str) {
+    text::say(&format!(
+        "note: {drawn}, so that the SVG has no more than {} elements and {}; {more}",
+        grouped(&MOST_ELEMENTS.into()),
+        bytes(MOST_BYTES),
+    ));
+}
+
+impl Goal {
+    /// Whether it has elements of less than so many pixels replaced.
+    fn is_finer_than(self, pixels: f64) -> bool {
+        match self {
+            Self::Steps(_, None) => true,
+            Self::Steps(_, Some(own)) | Self::Detail(own) => own < pixels,
+        }
+    }
+
+    fn with_detail(self, pixels: f64) -> Self {
+        match self {
+            Self::Steps(steps, _) => Self::Steps(steps, Some(pixels)),
+            Self::Detail(_) => Self::Detail(pixels),
+        }
+    }
+
+    /// Says that something lighter is drawn in its place.
+    pub(super) fn tell_of_lighter(self, lighter: Self) {
+        let drawn = match (self, lighter) {
+            (Self::Steps(own, _), Self::Steps(steps, None)) => {
+                format!("step {steps} is drawn and not {own}")
+            }
+            (_, Self::Steps(steps, None)) => format!("step {steps} is drawn"),
+            (_, Self::Steps(_, Some(pixels)) | Self::Detail(pixels)) => {
+                format!("elements below {pixels} pixels are not replaced")
+            }
+        };
+        let more = match self {
+            Self::Steps(steps, _) => format!("--steps {steps} draws all of the step"),
+            Self::Detail(pixels) => format!("--detail {pixels} draws all that can be seen"),
+        };
+        tell(&drawn, &format!("{more}, and so does a .png"));
+    }
+}

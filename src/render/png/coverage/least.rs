@@ -1,0 +1,240 @@
+//! Filled shapes that are narrower than a pixel, drawn a pixel wide: however small the pieces of a set
+//! become, they leave ink.
+//!
+//! A convex shape of width w, the least distance of two parallels that it lies between, has its sides
+//! moved outwards by (1 − w) / 2 pixels. It is drawn as it is from a pixel on, and tends to the dot, or the
+//! line, of a round pen of a pixel.
+
+use std::sync::LazyLock;
+
+use super::polygon::{HalfPlane, MOST_PIXELS, MOST_VERTICES, SOME_VERTICES};
+use super::polygon::{bounds, orientation, rounded, sides};
+use super::{FINE, Plane, Position, RoundPen};
+
+/// No filled shape is drawn narrower than this, in hundredths of a pixel.
+const NARROWEST: i64 = FINE;
+
+/// Shapes that are no longer than this are drawn as dots.
+const LONGEST_DOT: i64 = 25;
+
+/// Shapes that are narrower than this have lost their sides by rounding.
+const LINE: f64 = 1.0;
+
+/// What draws dots and lines.
+static PEN: LazyLock<RoundPen> = LazyLock::new(|| RoundPen::new(NARROWEST as f64 / FINE as f64));
+
+impl Plane {
+    /// Covers a polygon as [`Plane::polygon`] does, but no narrower than a pixel if it is convex, or lies
+    /// within a pixel.
+    #[inline]
+    pub(crate) fn shape(&mut self, vertices: &[Position]) -> bool {
+        let [least, most] = bounds(vertices);
+        let longest = (most[0] - least[0]).max(most[1] - least[1]);
+        if is_broad(vertices, longest) {
+            return self.polygon(vertices);
+        }
+        self.narrow_shape(vertices, longest)
+    }
+
+    fn narrow_shape(&mut self, vertices: &[Position], longest: i64) -> bool {
+        if longest <= LONGEST_DOT {
+            if let Some(middle) = middle(vertices) {
+                self.dot(&PEN, middle);
+            }
+            return true;
+        }
+        let mut hull = [[0; 2]; SOME_VERTICES];
+        let is_convex = vertices.len() <= MOST_VERTICES
+            && orientation(&sides::<MOST_VERTICES>(vertices)[..vertices.len()]).is_some();
+        let convex = if is_convex {
+            Some(vertices)
+        } else {
+            rounded(vertices, &mut hull)
+        };
+        match (convex, middle(vertices)) {
+            (Some(convex), _) => self.narrow_convex(convex, longest),
+            (None, Some(middle)) if longest <= NARROWEST => {
+                self.dot(&PEN, middle);
+                self.polygon(vertices)
+            }
+            _ => self.polygon(vertices),
+        }
+    }
+
+    /// Covers a convex polygon that may be narrower than a pixel.
+    fn narrow_convex(&mut self, vertices: &[Position], longest: i64) -> bool {
+        let width = width(vertices);
+        let missing = NARROWEST as f64 - width;
+        if missing <= 0.0 {
+            return self.polygon(vertices);
+        }
+        let ends = farthest(vertices);
+        if width >= LINE && longest <= MOST_PIXELS * FINE {
+            self.moved(vertices, missing / 2.0, ends);
+            return true;
+        }
+        let [from, to] = ends;
+        self.dot(&PEN, from);
+        self.line(&PEN, from, to);
+        width < LINE || self.polygon(vertices)
+    }
+
+    /// Covers a small convex polygon whose sides are moved outwards by so many hundredths of a pixel, up to
+    /// as far beyond its ends.
+    fn moved(&mut self, vertices: &[Position], by: f64, ends: [Position; 2]) {
+        let [least, most] = bounds(vertices);
+        let reach = NARROWEST / 2;
+        let around = [least.map(|low| low - reach), most.map(|high| high + reach)];
+        let Some([columns, rows]) = self.pixels(around) else {
+            return;
+        };
+        if self.is_full(columns, rows) {
+            return;
+        }
+        let sides = sides::<MOST_VERTICES>(vertices);
+        let sides = &sides[..vertices.len()];
+        let Some(orientation) = orientation(sides) else {
+            return;
+        };
+        let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
+        let mut edges = [HalfPlane::default(); MOST_VERTICES + 6];
+        let mut count = 0;
+        let mut add = |point: Position, vector: [i64; 2]| {
+            edges[count] = HalfPlane::of(point, vector, centre).moved(by);
+            count += 1;
+        };
+        for (&side, &to) in sides.iter().zip(vertices) {
+            if side != [0, 0] {
+                add(to, side.map(|along| along * orientation));
+            }
+        }
+        // Acute corners would reach far.
+        let [from, to] = ends;
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        add(from, [y, -x]);
+        add(to, [-y, x]);
+        add(least, [0, -1]);
+        add(least, [1, 0]);
+        add(most, [0, 1]);
+        add(most, [-1, 0]);
+        self.intersection(&mut edges[..count], columns, rows);
+        self.touched.add(columns, rows);
+    }
+}
+
+/// Whether a polygon is surely as wide as a pixel, or so long and of so many corners that it is not looked
+/// at.
+#[inline]
+fn is_broad(vertices: &[Position], longest: i64) -> bool {
+    if longest > NARROWEST && vertices.len() > MOST_VERTICES {
+        return true;
+    }
+    let Some(&from) = vertices.first() else {
+        return true;
+    };
+    let mut twice = 0;
+    let mut before = from;
+    for &vertex in vertices {
+        twice += (before[0] - from[0]) * (vertex[1] - from[1])
+            - (before[1] - from[1]) * (vertex[0] - from[0]);
+        before = vertex;
+    }
+    // The area of a convex shape is no more than its width times its diameter, which is less than 3/2 of
+    // the longer side of its box.
+    twice.abs() > 3 * NARROWEST * longest
+}
+
+/// The middle of the box of some vertices, if there are any.
+fn middle(vertices: &[Position]) -> Option<Position> {
+    let [least, most] = bounds(vertices);
+    let middle = [0, 1].map(|axis| i64::midpoint(least[axis], most[axis]));
+    (!vertices.is_empty()).then_some(middle)
+}
+
+/// The least distance of two parallels that a convex polygon lies between; 0 where it has no area.
+fn width(vertices: &[Position]) -> f64 {
+    let mut width = f64::INFINITY;
+    let mut before = vertices.last().copied().unwrap_or_default();
+    for &vertex in vertices {
+        let [x, y] = [vertex[0] - before[0], vertex[1] - before[1]];
+        if [x, y] != [0, 0] {
+            let across = vertices.iter().map(|other| {
+                let area = x * (other[1] - before[1]) - y * (other[0] - before[0]);
+                area.abs()
+            });
+            let [x, y] = [x as f64, y as f64];
+            let farthest = across.max().unwrap_or(0) as f64;
+            width = width.min(farthest / (x * x + y * y).sqrt());
+        }
+        before = vertex;
+    }
+    if width.is_finite() { width } else { 0.0 }
+}
+
+/// Two vertices that are as far apart as any.
+fn farthest(vertices: &[Position]) -> [Position; 2] {
+    let first = vertices.first().copied().unwrap_or_default();
+    let mut farthest = (0, [first; 2]);
+    for (number, &a) in vertices.iter().enumerate() {
+        for &b in &vertices[number + 1..] {
+            let [x, y] = [b[0] - a[0], b[1] - a[1]];
+            let apart = x * x + y * y;
+            if apart > farthest.0 {
+                farthest = (apart, [a, b]);
+            }
+        }
+    }
+    farthest.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Plane, WHOLE};
+
+    /// The ink of a shape, in pixels.
+    fn ink(vertices: &[[i64; 2]]) -> f64 {
+        let mut plane = Plane::new([30, 30]);
+        assert!(plane.shape(vertices));
+        let mut ink = 0;
+        plane.drain(|_, covered| ink += covered);
+        f64::from(ink) / f64::from(WHOLE)
+    }
+
+    #[test]
+    fn shapes_shrink_to_dots() {
+        let mut before = f64::INFINITY;
+        for side in (0..=300).rev().step_by(3) {
+            let square = [
+                [1013, 1027],
+                [1013 + side, 1027],
+                [1013 + side, 1027 + side],
+                [1013, 1027 + side],
+            ];
+            let ink = ink(&square);
+            let exact = (side as f64 / 100.0).powi(2);
+            assert!(ink > 0.7 && ink > exact - 0.1, "{side}: {ink}");
+            assert!(
+                ink < before + 0.1 && ink < exact.max(1.0) + 0.15,
+                "{side}: {ink}"
+            );
+            before = ink;
+        }
+    }
+
+    #[test]
+    fn slivers_are_a_pixel_wide() {
+        for [x, y] in [[1000, 0], [0, 1000], [600, 800], [-960, 280], [300, -400]] {
+            let [a, b] = [[1500, 1500], [1500 + x, 1500 + y]];
+            let long = ((x * x + y * y) as f64).sqrt() / 100.0;
+            for width in [0, 1, 20, 60] {
+                let across = [y, -x].map(|along| along * width / 1000);
+                let [c, d] = [b, a].map(|[x, y]| [x + across[0], y + across[1]]);
+                let ink = ink(&[a, b, c, d]);
+                assert!(
+                    (long..1.25 * (long + 1.0)).contains(&ink),
+                    "{x}, {y}, {width}: {ink} of {long}"
+                );
+            }
+        }
+    }
+}
