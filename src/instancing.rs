@@ -7,7 +7,7 @@ mod coat;
 
 pub use coat::{Coat, Thickness};
 
-use crate::geometry::DAffine2;
+use crate::geometry::{DAffine2, Homothety};
 use crate::heading::Heading;
 use crate::ifs::Shape;
 use crate::style::Colour;
@@ -134,6 +134,28 @@ impl Instancing {
             Master::Object(number) => instance.map * self.objects[number].map,
             Master::Shape(_) => instance.map,
         }
+    }
+
+    /// The same structure in the coordinates from which a homothety leads to its own; `None` where a shape
+    /// has no extent in them.
+    pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
+        let mut within = self.clone();
+        let back = place.backwards();
+        let objects = within.objects.iter_mut();
+        let instances = objects.flat_map(|object| {
+            object.map = place.within(&object.map);
+            &mut object.instances
+        });
+        for instance in instances.chain(&mut within.scene) {
+            instance.map = place.within(&instance.map);
+            if let Master::Shape(shape) = &mut instance.master {
+                *shape = shape.transformed(&back)?;
+            }
+        }
+        if let Some(initial) = &mut within.initial {
+            *initial = initial.transformed(&back)?;
+        }
+        Some(within)
     }
 
     /// Whether there are shapes, or an initial set.

@@ -1,5 +1,9 @@
 //! What a file comes to: a validated model of one of the kinds of linear fractals.
 
+mod place;
+
+pub use place::OutOfRange;
+
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;

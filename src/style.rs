@@ -4,6 +4,8 @@ mod palette;
 
 use std::fmt;
 
+use crate::geometry::Homothety;
+
 pub use palette::{Palette, UnknownPalette};
 
 /// A colour: red, green, blue and opacity, 0 to 255 each.
@@ -274,4 +276,15 @@ pub struct View {
     pub window: Option<[f64; 4]>,
     /// Pixels left free around what is drawn, strokes included.
     pub margin: f64,
+}
+
+impl View {
+    /// The same view in coordinates from which a homothety leads to its own.
+    #[must_use]
+    pub fn within(self, place: &Homothety) -> Self {
+        Self {
+            window: self.window.map(|window| place.origin_of_window(window)),
+            ..self
+        }
+    }
 }

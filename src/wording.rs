@@ -19,6 +19,49 @@ pub(crate) fn grouped(number: &Count) -> String {
     text
 }
 
+/// A number to twelve decimals of a unit, without zeros at the end; as 1.2e300 where it would be long.
+pub(crate) fn decimal(value: f64, unit: f64) -> String {
+    if is_plain(value, unit) {
+        return trimmed(&format!("{value:.12}")).into();
+    }
+    scientific(value, unit, 12)
+}
+
+/// A number to six decimals of a unit; as 1.2e300 where it would be long.
+pub(crate) fn measure(value: f64, unit: f64) -> String {
+    if is_plain(value, unit) {
+        return format!("{value:.6}");
+    }
+    scientific(value, unit, 6)
+}
+
+/// Whether the digits before the point, and some behind it, are those that a double has.
+fn is_plain(value: f64, unit: f64) -> bool {
+    const LONG: f64 = 1e15;
+    (1e-3..1e3).contains(&unit) && value.abs() < LONG
+}
+
+fn scientific(value: f64, unit: f64, digits: usize) -> String {
+    const NOTHING: f64 = 1e-12;
+    if value.abs() < NOTHING * unit {
+        return "0".into();
+    }
+    let text = format!("{value:.digits$e}");
+    match text.split_once('e') {
+        Some((mantissa, "0")) => trimmed(mantissa).into(),
+        Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+        None => text,
+    }
+}
+
+/// A decimal without zeros at the end.
+fn trimmed(text: &str) -> &str {
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0",
+        text => text,
+    }
+}
+
 /// A number of bytes in powers of a thousand, to two digits or three.
 #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
 pub(crate) fn bytes(count: u64) -> String {
@@ -113,6 +156,23 @@ pub(crate) fn counted(number: &Count, noun: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_numbers_have_exponents() {
+        for (value, unit, expected) in [
+            (0.5, 1.0, "0.5"),
+            (-1e-15, 1.0, "0"),
+            (4.213_991_769_547_3, 1.0, "4.213991769547"),
+            (1.2e300, 1.0, "1.2e300"),
+            (-4.25e14, 1.0, "-425000000000000"),
+            (f64::INFINITY, 1.0, "inf"),
+            (1.25e-299, 1e-300, "1.25e-299"),
+            (1e-320, 1e-300, "0"),
+            (1.0, 1e-300, "1"),
+        ] {
+            assert_eq!(decimal(value, unit), expected);
+        }
+    }
 
     #[test]
     fn bytes_have_units() {

@@ -4,6 +4,8 @@
 
 #[path = "laws/lists.rs"]
 mod lists;
+#[path = "laws/places.rs"]
+mod places;
 #[path = "laws/rules.rs"]
 mod rules;
 

@@ -2,12 +2,13 @@
 
 use std::io::Write;
 use std::num::NonZero;
+use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use crate::chaos::{ClassBy, Game, GameError, Points, Start, System, Window, play};
+use crate::chaos::{ClassBy, Game, GameError, Point, Points, Start, System, Window, play};
 use crate::export;
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::graph::Graph;
 use crate::grow::Progress;
 use crate::ifs;
@@ -124,13 +125,17 @@ impl ChaosArguments {
         steps: Option<u32>,
         picture: &PictureArguments,
     ) -> Result<ChaosGame<'a>, Failure> {
-        let Model::Ifs(source) = &loaded.model else {
+        let Model::Ifs(_) = &loaded.model else {
             return Err(Failure::Usage(format!(
                 "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}; \
                  without --method it is grown step by step",
                 loaded.name,
                 loaded.model.kind().name()
             )));
+        };
+        let place = loaded.place()?;
+        let Model::Ifs(source) = loaded.model.within(&place) else {
+            unreachable!("a system stays one");
         };
         let system = System::of(source.ifs()).map_err(|error| {
             let error = anyhow::Error::new(error);
@@ -139,7 +144,7 @@ impl ChaosArguments {
                 loaded.name
             ))
         })?;
-        let color_by = color_by(picture, source)?;
+        let color_by = color_by(picture, &source)?;
         if steps.is_some() && color_by != ColorBy::FirstMap {
             let message = "--steps is of deterministic iteration; with --method chaos, --points says \
                            how much is drawn";
@@ -149,14 +154,13 @@ impl ChaosArguments {
         let start = match &self.start[..] {
             [] => Start::Attractor,
             points => Start::Points {
-                points: points.to_vec(),
+                points: points.iter().map(|&point| place.origin_of(point)).collect(),
                 steps: walks,
             },
         };
         Ok(ChaosGame {
             arguments: self,
             loaded,
-            source,
             system,
             start,
             color_by,
@@ -165,6 +169,8 @@ impl ChaosArguments {
                 && !picture.asks_palette()
                 && source.heading().style.color_by == ColorBy::Step,
             steps: steps.or(source.heading().steps).unwrap_or(8),
+            source,
+            place,
         })
     }
 }
@@ -188,7 +194,9 @@ fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy,
 pub(super) struct ChaosGame<'a> {
     arguments: &'a ChaosArguments,
     loaded: &'a Loaded,
-    source: &'a ifs::System,
+    /// The system in the coordinates from which the place leads to those of its file.
+    source: Arc<ifs::System>,
+    place: Homothety,
     system: System,
     start: Start,
     color_by: ColorBy,
@@ -221,11 +229,11 @@ const EDGE: f64 = 1.0 / 32.0;
 impl ChaosGame<'_> {
     /// The canvas that shows the attractor, and the ways to it, or the window.
     fn canvas(&self, picture: &PictureArguments, size: Size) -> Result<Canvas, RenderError> {
-        let view = picture.view(self.source.heading());
+        let view = picture.view(self.source.heading()).within(&self.place);
         if let Some(window) = view.window {
             return Ok(Canvas::of_window(window, &view, size)?);
         }
-        let limit = Graph::of_system(self.source).limit_bounds();
+        let limit = Graph::of_system(&self.source).limit_bounds();
         let mut bounds = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() || self.start != Start::Attractor {
             for point in Points::new(&self.system, &self.start, 0).take(PILOT) {
@@ -316,6 +324,10 @@ impl ChaosGame<'_> {
         }
         let all = Points::new(&self.system, &self.start, growth.seed);
         let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
+        let all = all.map(|point| Point {
+            place: self.place.point(point.place),
+            ..point
+        });
         export::write_points(all, format, None, progress, out).map_err(RenderError::from)?;
         let described = counted(&points.into(), "point");
         Ok(format!("{}, {described}", self.loaded.name))
@@ -361,8 +373,8 @@ impl ChaosGame<'_> {
         if let Some(tone) = self.arguments.tone {
             options.push(("tone", tone.name().into()));
         }
-        if let Start::Points { points, steps } = &self.start {
-            let starts = points.iter();
+        if let Start::Points { steps, .. } = &self.start {
+            let starts = self.arguments.start.iter();
             options.extend(starts.map(|start| ("start", format!("{},{}", start.x, start.y))));
             options.push(("walk", steps.to_string()));
         }

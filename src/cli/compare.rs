@@ -149,12 +149,19 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         Side {
             name: &loaded.name,
             kind: loaded.model.kind().name(),
-            bounds: corners(subjects[which].bounds()),
+            bounds: corners(&graph.place().bounds(subjects[which].bounds())),
             dimension: Dimension {
                 similarity: value,
                 note,
             },
         }
+    };
+    let unit = both[0].graph.place().ratio();
+    let distance = Distance {
+        there: distance.there * unit,
+        back: distance.back * unit,
+        error: distance.error * unit,
+        ..distance
     };
     let comparison = Comparison {
         a: side(0),
@@ -200,7 +207,7 @@ impl Arguments {
         let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
         let settings = settings?.concat();
         let lost: Vec<_> = settings.iter().filter(nobody).cloned().collect();
-        let mut both = Vec::new();
+        let mut both: Vec<One> = Vec::new();
         for (path, document) in paths.into_iter().zip(documents) {
             let own = settings.iter().filter(|setting| has(&document, setting));
             let arguments = RuleArguments {
@@ -211,6 +218,14 @@ impl Arguments {
             // What is no parameter of either is told as that of the first.
             let settings = own.chain(&lost).cloned().collect();
             let loaded = arguments.resolve(document, settings, self.quiet || self.json)?;
+            // Both in coordinates that suit the first.
+            let loaded = match both.first() {
+                Some(One { graph, .. }) => loaded.within(*graph.place()),
+                None => {
+                    let place = loaded.place()?;
+                    loaded.within(place)
+                }
+            };
             let graph = loaded.compile(self.steps.unwrap_or(STEPS))?;
             both.push(One { loaded, graph });
         }

@@ -6,11 +6,12 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
+use crate::geometry::BEYOND;
 use crate::grow::{Counted, count};
-use crate::wording::grouped;
+use crate::wording::{decimal, grouped};
 
 use super::growth::GrowthArguments;
-use super::info::{Corners, corners, decimal};
+use super::info::{Corners, corners};
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output, progress, steps};
 
@@ -77,13 +78,23 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         count(&graph, &limits, growth.threads())
     });
     let found = found.map_err(|error| growth.explain(error.into(), &loaded, Path::new("-")))?;
+    if !found.length.is_finite() {
+        let message = format!("step {steps} of {}: {BEYOND}", loaded.name);
+        return Err(anyhow::anyhow!(message).into());
+    }
+    let place = graph.place();
+    let found = Counted {
+        length: found.length * place.ratio(),
+        bounds: place.bounds(&found.bounds),
+        ..found
+    };
     let text = if arguments.json {
         let mut text = serde_json::to_string_pretty(&json(&found, &loaded, steps))
             .map_err(anyhow::Error::new)?;
         text.push('\n');
         text
     } else {
-        text(&found)
+        text(&found, place.ratio())
     };
     Ok(output::print(&text)?)
 }
@@ -101,7 +112,7 @@ fn json<'a>(found: &Counted, loaded: &'a Loaded, steps: u32) -> Found<'a> {
     }
 }
 
-fn text(found: &Counted) -> String {
+fn text(found: &Counted, unit: f64) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: &str| {
         // Writing to a string cannot fail.
@@ -110,9 +121,9 @@ fn text(found: &Counted) -> String {
     line("elements", &grouped(&found.walked.elements.into()));
     line("fertile", &grouped(&found.fertile.into()));
     line("fractals", &grouped(&found.walked.fractals.into()));
-    line("length", &decimal(found.length));
+    line("length", &decimal(found.length, unit));
     if !found.bounds.is_empty() {
-        line("bounds", &corners(&found.bounds).to_string());
+        line("bounds", &corners(&found.bounds).told(unit));
     }
     text
 }

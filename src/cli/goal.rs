@@ -155,7 +155,7 @@ fn goes_on_to_a_detail(loaded: &Loaded) -> bool {
         Model::Instancing(structure) => {
             structure.heading().steps.is_none()
                 && structure.depth().is_none()
-                && Graph::of_structure(structure).limit_bounds().is_some()
+                && (loaded.graph(0)).is_ok_and(|graph| graph.limit_bounds().is_some())
         }
         Model::Rule(_) | Model::LSystem(_) => false,
     }

@@ -8,6 +8,7 @@ use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
 use crate::export;
+use crate::geometry::Homothety;
 use crate::graph::{Graph, Object};
 use crate::grow::{Progress, Walked};
 use crate::render::{self, Canvas, Empty, Instanced, Look, Plotted, RenderError, Size, Unit};
@@ -162,9 +163,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
-    if look.is_some() {
-        zoom::check_model(&loaded.model).map_err(anyhow::Error::from)?;
-    }
+    let loaded = match look {
+        Some(_) => {
+            zoom::check_model(&loaded.model).map_err(anyhow::Error::from)?;
+            // Windows of any size are found in numbers as long as that takes, in the file's coordinates.
+            loaded.within(Homothety::IDENTITY)
+        }
+        None => loaded,
+    };
     let goal = match look {
         None if arguments.svg.is_instanced() => Goal::whole(arguments.steps, &loaded)?,
         None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
@@ -309,7 +315,7 @@ impl Arguments {
         loaded: &Loaded,
     ) -> Result<(), Failure> {
         let picture = match format {
-            Format::Picture(format) => Some(self.options(loaded, goal, format)),
+            Format::Picture(format) => Some(self.options(loaded, goal, format, graph.place())),
             Format::Table(_) => None,
         };
         let shows_a_part = picture
@@ -348,7 +354,7 @@ impl Arguments {
         let Format::Picture(render::Format::Png) = format else {
             return;
         };
-        let options = self.options(loaded, goal, render::Format::Png);
+        let options = self.options(loaded, goal, render::Format::Png, graph.place());
         let most = match options.size {
             Size::Long(side) => u64::from(side).pow(2),
             Size::Exactly(width, height) => u64::from(width) * u64::from(height),
@@ -378,8 +384,15 @@ impl Arguments {
         }
     }
 
-    /// How the picture is drawn, and what its file says of itself.
-    fn options(&self, loaded: &Loaded, goal: Goal, format: render::Format) -> render::Options {
+    /// How the picture is drawn, and what its file says of itself. The graph's coordinates are those from
+    /// which `place` leads to the rule's.
+    fn options(
+        &self,
+        loaded: &Loaded,
+        goal: Goal,
+        format: render::Format,
+        place: &Homothety,
+    ) -> render::Options {
         let mut options = goal.options();
         options.extend(self.growth.options());
         if format != render::Format::Svg {
@@ -395,7 +408,7 @@ impl Arguments {
         render::Options {
             format,
             style: self.style(loaded),
-            view: self.picture.view_in(heading, unit),
+            view: self.picture.view_in(heading, unit).within(place),
             size,
             unit,
             plot: self.plot.is_asked(),
@@ -498,7 +511,7 @@ impl Pictured<'_> {
         let Self {
             arguments, loaded, ..
         } = self;
-        let options = arguments.options(loaded, goal, self.format);
+        let options = arguments.options(loaded, goal, self.format, graph.place());
         goal.come_to(loaded, graph, |graph, steps| {
             let mut growth = arguments.growth.drawn_as(&options, steps, progress);
             growth.most_elements = most.unwrap_or(growth.most_elements);
@@ -525,7 +538,7 @@ impl Pictured<'_> {
             arguments, loaded, ..
         } = self;
         let explain = |error| arguments.growth.explain(error, loaded, self.path);
-        let options = arguments.options(loaded, goal, self.format);
+        let options = arguments.options(loaded, goal, self.format, graph.place());
         let is_part = self.look.is_some() || options.view.window.is_some();
         let color_by = options.style.color_by;
         let by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);

@@ -1,6 +1,6 @@
 //! `kfrac info`: what a rule is, and how large its steps are.
 
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ use crate::measure::similarity_dimension;
 use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
-use crate::wording;
+use crate::wording::{self, decimal};
 
 use super::dim::hausdorff;
 use super::growth::{bounds, rough_bounds};
@@ -100,11 +100,12 @@ pub(super) struct Corners {
     pub(super) max: [f64; 2],
 }
 
-/// To twelve decimals.
-impl fmt::Display for Corners {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [[a, b], [c, d]] = [self.min, self.max].map(|corner| corner.map(decimal));
-        write!(f, "[{a}, {b}] to [{c}, {d}]")
+impl Corners {
+    /// To twelve decimals of a unit.
+    pub(super) fn told(&self, unit: f64) -> String {
+        let told = |corner: [f64; 2]| corner.map(|value| decimal(value, unit));
+        let [[a, b], [c, d]] = [self.min, self.max].map(told);
+        format!("[{a}, {b}] to [{c}, {d}]")
     }
 }
 
@@ -124,13 +125,15 @@ impl Dimension {
         let similarity = self.similarity.map(|value| {
             let note = self.note.as_ref();
             let note = note.map(|note| format!(" ({note})")).unwrap_or_default();
-            format!("similarity dimension {}{note}", decimal(value))
+            format!("similarity dimension {}{note}", decimal(value, 1.0))
         });
         let similarity = similarity.or_else(|| self.note.clone());
         let own = self.exact.as_ref().and_then(|known| {
             let told = match (known.value, known.upper_bound) {
-                (Some(value), _) => decimal(value),
-                (None, Some(bound)) => format!("at most {} ({})", decimal(bound), known.method),
+                (Some(value), _) => decimal(value, 1.0),
+                (None, Some(bound)) => {
+                    format!("at most {} ({})", decimal(bound, 1.0), known.method)
+                }
                 (None, None) => return None,
             };
             let form = known.closed_form.as_ref();
@@ -205,7 +208,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if arguments.json {
         output::print_json(&info)?;
     } else {
-        output::print(&described(&loaded, &info))?;
+        output::print(&described(&loaded, &info, graph.place().ratio()))?;
     }
     Ok(())
 }
@@ -233,7 +236,9 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
                 .collect(),
         )
     };
-    let (length, area) = (measures(|level| level.length), measures(|level| level.area));
+    let place = graph.place();
+    let length = in_units(measures(|level| level.length), &[place.ratio()]);
+    let area = in_units(measures(|level| level.area), &[place.ratio(); 2]);
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
     let options = Options::of(loaded.model.heading());
@@ -272,8 +277,8 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         svg_bytes,
         seconds,
         instanced_svg_bytes,
-        bounds: bounds.as_ref().map(corners),
-        limit_bounds: graph.limit_bounds().as_ref().map(corners),
+        bounds: bounds.map(|bounds| corners(&place.bounds(&bounds))),
+        limit_bounds: (graph.limit_bounds()).map(|bounds| corners(&place.bounds(&bounds))),
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,
@@ -281,7 +286,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
             exact: exact.map(|known| known.hausdorff),
         },
         system: match &loaded.model {
-            Model::Ifs(system) => Some(SystemInfo::of(system)),
+            Model::Ifs(system) => Some(SystemInfo::of(system, place)),
             Model::Rule(_) | Model::Instancing(_) | Model::LSystem(_) => None,
         },
         structure: match &loaded.model {
@@ -289,6 +294,15 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
             Model::Rule(_) | Model::Ifs(_) | Model::LSystem(_) => None,
         },
     }
+}
+
+/// Measures in units that are some factors as large; what leaves the range of doubles is not told.
+fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<Option<f64>>> {
+    let told = |value: f64| {
+        let value = factors.iter().fold(value, |value, factor| value * factor);
+        Some(value).filter(|value| value.is_finite())
+    };
+    Some(measures?.into_iter().map(|it| it.and_then(told)).collect())
 }
 
 /// An approximant before it is grown.
@@ -330,7 +344,7 @@ pub(super) fn corners(bounds: &Bounds) -> Corners {
 }
 
 /// For people.
-fn described(loaded: &Loaded, info: &Info<'_>) -> String {
+fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     let mut text = String::new();
     let heading = loaded.model.heading();
     let description = &heading.description;
@@ -362,7 +376,7 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
     if names.len() > 1 {
         line("generators", &names.join(", "));
     }
-    for (label, value) in info.system.iter().flat_map(|system| system.lines(decimal)) {
+    for (label, value) in info.system.iter().flat_map(|system| system.lines(unit)) {
         line(label, &value);
     }
     for (label, value) in info.structure.iter().flat_map(StructureInfo::lines) {
@@ -389,26 +403,20 @@ fn described(loaded: &Loaded, info: &Info<'_>) -> String {
         );
     }
     if let Some(bounds) = &info.bounds {
-        line("bounds", &format!("{bounds} at step {}", info.steps));
+        line(
+            "bounds",
+            &format!("{} at step {}", bounds.told(unit), info.steps),
+        );
     }
     if let Some(bounds) = &info.limit_bounds {
-        line("", &format!("{bounds} in the limit"));
+        line("", &format!("{} in the limit", bounds.told(unit)));
     }
     text.push('\n');
     match &info.elements {
-        Some(elements) => text.push_str(&table(info, elements)),
+        Some(elements) => text.push_str(&table(info, elements, unit)),
         None => text.push_str("How large its steps are is not known before they are grown.\n"),
     }
     text
-}
-
-/// Twelve decimals, without zeros at the end.
-pub(super) fn decimal(value: f64) -> String {
-    let text = format!("{value:.12}");
-    match text.trim_end_matches('0').trim_end_matches('.') {
-        "-0" => "0".into(),
-        text => text.into(),
-    }
 }
 
 fn parameter_line(parameter: &Parameter) -> String {
@@ -426,7 +434,7 @@ fn parameter_line(parameter: &Parameter) -> String {
 }
 
 /// The forecast, a row a step; long numbers are given by their size.
-fn table(info: &Info<'_>, elements: &[Count]) -> String {
+fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
     let mut rows = vec![
         [
             "step",
@@ -453,7 +461,7 @@ fn table(info: &Info<'_>, elements: &[Count]) -> String {
             wording::grouped(&elements[step]),
             at(&info.fertile),
             at(&info.fractals),
-            of(&info.length).map_or("-".into(), |length| format!("{length:.6}")),
+            of(&info.length).map_or("-".into(), |length| wording::measure(length, unit)),
             estimated(of(&info.svg_bytes), wording::rough_bytes),
             estimated(of(&info.seconds), wording::duration),
         ]);

@@ -10,6 +10,7 @@ use etcetera::BaseStrategy;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Severity, Source};
 use crate::document::{Document, Setting};
+use crate::geometry::Homothety;
 use crate::graph::{CompileError, Graph};
 use crate::lsystem::RewriteError;
 use crate::model::Model;
@@ -68,6 +69,9 @@ pub(super) struct Loaded {
     pub(super) omitted: Vec<u32>,
     /// What draws depend on, and how many elements are allowed, where that is known.
     growth: (u64, u64),
+    /// What leads to its coordinates from those that graphs are compiled in; those that suit it unless it
+    /// is given.
+    place: Option<Homothety>,
 }
 
 impl Loaded {
@@ -77,10 +81,28 @@ impl Loaded {
         self
     }
 
-    /// The graph, resolved for a number of steps.
+    /// The same with graphs in given coordinates.
+    pub(super) fn within(self, place: Homothety) -> Self {
+        Self {
+            place: Some(place),
+            ..self
+        }
+    }
+
+    /// What leads to its coordinates from those that suit it.
+    pub(super) fn place(&self) -> Result<Homothety, Failure> {
+        let place = self.model.place().map_err(CompileError::from);
+        place.map_err(|error| self.model.diagnostic(&error).into())
+    }
+
+    /// The graph, resolved for a number of steps, near the unit box around the origin: [`Graph::place`]
+    /// leads from its coordinates to those of the rule.
     pub(super) fn graph(&self, steps: u32) -> Result<Graph, CompileError> {
         let (seed, most_elements) = self.growth;
-        self.model.compile_for(steps, seed, most_elements)
+        match &self.place {
+            Some(place) => (self.model).compile_within(place, steps, seed, most_elements),
+            None => self.model.compile_near(steps, seed, most_elements),
+        }
     }
 
     /// The same, with what is wrong as a mistake in the file.
@@ -99,8 +121,10 @@ impl Loaded {
     /// The same for pictures whose colours tell something.
     pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
         match (&self.model, color_by) {
-            (Model::Ifs(system), ColorBy::LastMap) => {
-                Graph::telling_last_maps(system).ok_or_else(|| {
+            (Model::Ifs(_), ColorBy::LastMap) => {
+                let graph = self.model.telling_last_maps_near();
+                let graph = graph.map_err(|error| self.model.diagnostic(&error.into()))?;
+                graph.ok_or_else(|| {
                     let message = format!(
                         "{} has too many maps and sets to tell the map that is applied last",
                         self.name
@@ -225,6 +249,7 @@ impl RuleArguments {
             settings,
             omitted: self.omit.clone(),
             growth: (0, Model::MOST_ELEMENTS),
+            place: None,
         })
     }
 

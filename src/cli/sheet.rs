@@ -9,6 +9,7 @@ use clap::ValueHint;
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 use crate::figure::sheet;
+use crate::geometry::Homothety;
 use crate::graph::Graph;
 use crate::grow::{Growth, Progress};
 use crate::render::{self, Size};
@@ -83,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if !family.is_empty() {
         let grown = |(settings, loaded): Member| (settings, loaded.grown(&arguments.growth));
         let family: Vec<_> = family.into_iter().map(grown).collect();
-        return arguments.draw_family(&family, format, start);
+        return arguments.draw_family(family, format, start);
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     let loaded = loaded.grown(&arguments.growth);
@@ -106,7 +107,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                     let graph = arguments.compile(&loaded, steps.largest())?;
                     let most = Some(light::MOST_ELEMENTS);
                     let drafted = light::draft(|out| {
-                        let options = arguments.of_steps(&loaded, &steps, format);
+                        let options = arguments.of_steps(&loaded, &steps, format, graph.place());
                         let cells = arguments.cells(&graph, &steps, most, None);
                         let written = sheet::write(&cells, arguments.columns, &options, out)?;
                         Ok((written, written.elements))
@@ -123,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             for &step in steps.as_slice() {
                 arguments.growth.check(step, &graph, &loaded, None)?;
             }
-            let options = arguments.of_steps(&loaded, &steps, format);
+            let options = arguments.of_steps(&loaded, &steps, format, graph.place());
             let cells = arguments.cells(&graph, &steps, None, progress);
             let written = sheet::write(&cells, arguments.columns, &options, out);
             Ok((written.map_err(explain)?, steps.clone()))
@@ -188,9 +189,10 @@ impl Arguments {
         loaded: &Loaded,
         steps: &Several,
         format: render::Format,
+        place: &Homothety,
     ) -> render::Options {
         let which = vec![("steps", steps.to_string())];
-        self.options(loaded, &format!("Steps {steps}"), which, format)
+        self.options(loaded, &format!("Steps {steps}"), which, format, place)
     }
 
     /// The rule's style, with strokes that suit small pictures unless their width is asked for.
@@ -206,10 +208,14 @@ impl Arguments {
     /// Draws one step for every value of a parameter, or of some together.
     fn draw_family(
         &self,
-        family: &[Member],
+        family: Vec<Member>,
         format: render::Format,
         start: Instant,
     ) -> Result<(), Failure> {
+        // All are shown on the same scale.
+        let place = family[0].1.place()?;
+        let within = |(settings, loaded): Member| (settings, loaded.within(place));
+        let family: Vec<_> = family.into_iter().map(within).collect();
         let (swept, loaded) = &family[0];
         let step = match self.steps.as_ref().map(Several::as_slice) {
             None => steps::choose(None, loaded)?,
@@ -233,7 +239,7 @@ impl Arguments {
             let mut which = sets.clone();
             which.push(("steps", step.to_string()));
             let shown = format!("Step {step} for values of {names}");
-            self.options(loaded, &shown, which, format)
+            self.options(loaded, &shown, which, format, &place)
         };
         let compile = |step: u32| -> Result<Vec<Graph>, Failure> {
             let members = family.iter();
@@ -248,7 +254,7 @@ impl Arguments {
                     let graphs = compile(step)?;
                     let most = Some(light::MOST_ELEMENTS);
                     let drafted = light::draft(|out| {
-                        let cells = self.members(family, &graphs, step, most, None);
+                        let cells = self.members(&family, &graphs, step, most, None);
                         let written = sheet::write(&cells, self.columns, &options(step), out)?;
                         Ok((written, written.elements))
                     });
@@ -264,7 +270,7 @@ impl Arguments {
             for ((_, member), graph) in family.iter().zip(&graphs) {
                 self.growth.check(step, graph, member, None)?;
             }
-            let cells = self.members(family, &graphs, step, None, progress);
+            let cells = self.members(&family, &graphs, step, None, progress);
             let written = sheet::write(&cells, self.columns, &options(step), out);
             Ok((written.map_err(explain)?, step))
         })?;
@@ -319,6 +325,7 @@ impl Arguments {
         shown: &str,
         which: Vec<(&'static str, String)>,
         format: render::Format,
+        place: &Homothety,
     ) -> render::Options {
         let mut options = which;
         options.extend(self.growth.options());
@@ -331,7 +338,7 @@ impl Arguments {
         render::Options {
             format,
             style: self.style(loaded),
-            view: self.picture.view(loaded.model.heading()),
+            view: self.picture.view(loaded.model.heading()).within(place),
             size: self.size,
             threads: self.growth.threads(),
             labels: labels(loaded, shown, "sheet", options),

@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, Homothety};
 use crate::ifs::{System, Verdict};
+use crate::model::Model;
+use crate::wording::decimal;
 
 /// The maps, whether they contract, and the measure that random iteration draws.
 #[derive(Serialize)]
@@ -48,10 +50,16 @@ struct MeasureInfo {
 }
 
 impl SystemInfo {
-    pub(super) fn of(system: &System) -> Self {
-        let ifs = system.ifs();
+    /// `place` leads to the coordinates of the system from such in which it is near the unit box around the
+    /// origin, in which all is worked out.
+    pub(super) fn of(system: &System, place: &Homothety) -> Self {
+        let within = Model::Ifs(system.clone().into()).within(place);
+        let ifs = match &within {
+            Model::Ifs(within) => within.ifs(),
+            _ => system.ifs(),
+        };
         let contraction = system.contraction();
-        let point = |point: DVec2| (point + DVec2::ZERO).to_array();
+        let point = |point: DVec2| (place.point(point) + DVec2::ZERO).to_array();
         let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
         let maps = maps.map(|((map, &weight), fixed)| MapInfo {
             name: map.name.clone(),
@@ -60,7 +68,8 @@ impl SystemInfo {
         });
         let measure = ifs.measure().map(|measure| MeasureInfo {
             mean: point(measure.moments.mean),
-            covariance: measure.moments.covariance.to_cols_array_2d(),
+            covariance: (measure.moments.covariance.to_cols_array_2d())
+                .map(|row| row.map(|value| value * place.ratio() * place.ratio())),
         });
         let weights_by = if system.is_interpolation() {
             Some(Weights::Widths)
@@ -86,20 +95,20 @@ impl SystemInfo {
     }
 
     /// The same in lines, each with its label.
-    pub(super) fn lines(&self, decimal: fn(f64) -> String) -> Vec<(&'static str, String)> {
+    pub(super) fn lines(&self, unit: f64) -> Vec<(&'static str, String)> {
         let mut lines = Vec::new();
         for (number, map) in self.maps.iter().enumerate() {
             let name = map.name.clone().unwrap_or_else(|| (number + 1).to_string());
             let fixed = map.fixed_point.map_or_else(
                 || "no single fixed point".into(),
                 |point| {
-                    let [x, y] = point.map(decimal);
+                    let [x, y] = point.map(|value| decimal(value, unit));
                     format!("fixed point [{x}, {y}]")
                 },
             );
             lines.push((
                 "map",
-                format!("{name}: weight {}, {fixed}", decimal(map.weight)),
+                format!("{name}: weight {}, {fixed}", decimal(map.weight, 1.0)),
             ));
         }
         if let Some(weights) = self.weights_by {
@@ -131,9 +140,19 @@ impl SystemInfo {
             ),
         ));
         if let Some(measure) = &self.measure {
-            let [x, y] = measure.mean.map(decimal);
+            let [x, y] = measure.mean.map(|value| decimal(value, unit));
             lines.push(("mean", format!("[{x}, {y}]")));
-            let [[xx, xy], [yx, yy]] = measure.covariance.map(|row| row.map(decimal));
+            let is_finite = measure
+                .covariance
+                .as_flattened()
+                .iter()
+                .all(|it| it.is_finite());
+            if !is_finite {
+                return lines;
+            }
+            let [[xx, xy], [yx, yy]] = measure
+                .covariance
+                .map(|row| row.map(|value| decimal(value, unit * unit)));
             lines.push(("covariance", format!("[[{xx}, {xy}], [{yx}, {yy}]]")));
         }
         lines

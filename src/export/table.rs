@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 use std::num::NonZero;
 
-use crate::geometry::{DVec2, Direction};
+use crate::geometry::{BEYOND, DVec2, Direction};
 use crate::graph::Graph;
 use crate::grow::{
     Division, Element, Fractal, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
@@ -18,7 +18,7 @@ pub enum Format {
 }
 
 /// The columns: the fractal's number and age; the element's rank in it, its first and last point
-/// of traversal in the rule's units, whether it is fertile, its direction, whether it is visible.
+/// of traversal in the model's units, whether it is fertile, its direction, whether it is visible.
 ///
 /// Where maps may be any affine ones, six columns follow: x' = a x + c y + e, y' = b x + d y + f.
 const COLUMNS: [&str; 16] = [
@@ -225,13 +225,21 @@ impl Visitor for Collector<'_> {
     }
 
     fn element(&mut self, element: &Element) -> io::Result<()> {
-        let ends = element.frame.ends();
         let affine = self.graph.is_affine();
-        let map = affine.then(|| element.frame.map.to_cols_array());
-        if !ends.iter().all(|end| end.is_finite()) || !element.frame.map.is_finite() {
-            let message = "an element lies beyond the range of numbers";
-            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        let place = self.graph.place();
+        let mut frame = element.frame;
+        let is_in_range = frame.is_in_range();
+        if affine && !place.is_identity() {
+            frame.map = place.around(&frame.map);
         }
+        let mut ends = frame.ends();
+        if !affine && !place.is_identity() {
+            ends = ends.map(|end| place.point(end));
+        }
+        if !is_in_range || !ends.iter().all(|end| end.is_finite()) || !frame.map.is_finite() {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
+        }
+        let map = affine.then(|| frame.map.to_cols_array());
         self.rows.push(Row {
             fractal: self.fractal,
             index: element.index,

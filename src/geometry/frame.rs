@@ -2,6 +2,9 @@ use glam::{DAffine2, DMat2, DVec2};
 
 use super::Direction;
 
+/// What is said of elements whose frames are not [in range](Frame::is_in_range).
+pub const BEYOND: &str = "an element lies beyond the range of numbers";
+
 /// Where an element stands: the map from the unit frame, and the direction along the element's path.
 ///
 /// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of
@@ -53,11 +56,30 @@ impl Frame {
         }
     }
 
+    /// Whether squares of its numbers are within the range of doubles: lengths and areas can be told.
+    #[inline]
+    #[must_use]
+    pub fn is_in_range(&self) -> bool {
+        const LARGEST: f64 = 1e150;
+        let largest = self.map.translation.abs().max_element();
+        let linear = self.map.matrix2;
+        let largest = largest.max(linear.x_axis.abs().max(linear.y_axis.abs()).max_element());
+        // Minima and maxima pass over what is not a number.
+        largest < LARGEST && self.map.is_finite()
+    }
+
     /// |p1 − p0|.
     #[inline]
     #[must_use]
     pub fn length(&self) -> f64 {
-        self.map.matrix2.x_axis.length()
+        let axis = self.map.matrix2.x_axis;
+        let length = axis.length();
+        if length.is_finite() {
+            length
+        } else {
+            // The square alone may be beyond the range of doubles.
+            libm::hypot(axis.x, axis.y)
+        }
     }
 
     /// The most that the map makes anything longer: its larger singular value. For a similarity it

@@ -7,12 +7,14 @@
 mod bounds;
 mod direction;
 mod frame;
+mod homothety;
 mod hull;
 
 pub use bounds::Bounds;
 pub use direction::Direction;
-pub use frame::{Frame, placement};
+pub use frame::{BEYOND, Frame, placement};
 pub use glam::{DAffine2, DMat2, DVec2};
+pub use homothety::Homothety;
 
 pub(crate) use frame::stretch;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

@@ -412,8 +412,14 @@ fn key(vector: DVec2) -> ([i64; 2], u64) {
     /// The bits of a double that are left out; what is on an edge, as powers of two are, is rounded
     /// to it from both sides.
     const ROUNDED: u32 = 19;
-    let length = vector.length();
-    let unit = vector / length;
+    let (unit, length) = match vector.length() {
+        length if length > 0.0 && length.is_finite() => (vector / length, length),
+        // Of large and small ones, squares leave the range of doubles.
+        _ => {
+            let unit = (vector / vector.abs().max_element()).normalize_or_zero();
+            (unit, vector.dot(unit))
+        }
+    };
     let direction = [unit.x, unit.y].map(|value| (value * 1e10).round() as i64);
     (
         direction,

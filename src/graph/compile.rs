@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::expression::Dependence;
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, Homothety};
 use crate::mix::MixMap;
 use crate::rule::draw::Path;
 use crate::rule::{Moment, Part, Placement, Rule, Selection};
@@ -179,6 +179,7 @@ impl<'r> Compiler<'r> {
             affine: false,
             unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
+            place: Homothety::IDENTITY,
         })
     }
 

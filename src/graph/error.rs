@@ -1,5 +1,6 @@
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
+use crate::model::OutOfRange;
 use crate::rule::{Moment, Rule};
 
 /// A model that cannot be grown.
@@ -28,6 +29,9 @@ pub enum CompileError {
     /// A turtle goes farther than a double can say.
     #[error("the turtle goes too far: a coordinate is not finite")]
     TooFar,
+    /// The model is too large, too small, or too far from the origin.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
 }
 
 impl CompileError {

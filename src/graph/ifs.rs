@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Homothety};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
@@ -248,6 +248,7 @@ impl<'s> Compiler<'s> {
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
+            place: Homothety::IDENTITY,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame, Homothety};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
@@ -213,6 +213,7 @@ impl<'s> Compiler<'s> {
             affine: true,
             unit: 1.0,
             middle: DVec2::ZERO,
+            place: Homothety::IDENTITY,
         }
     }
 

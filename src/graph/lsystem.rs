@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::instancing::Thickness;
 use crate::lsystem::{LSystem, Placed, RewriteError, Turtle};
 use crate::rule::BaseElement;
@@ -110,6 +110,7 @@ impl Graph {
             affine: false,
             unit: 1.0,
             middle: DVec2::ZERO,
+            place: Homothety::IDENTITY,
         };
         graph.find_widths();
         if !bounds.is_empty() {

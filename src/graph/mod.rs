@@ -13,6 +13,9 @@
 //!
 //! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
 //! ([`Placement::SeedsAsInitiator`]) keeps the position only.
+//!
+//! A graph's coordinates are those of the model unless it is [compiled near](crate::model::Model::compile_near)
+//! the unit box around the origin: [`Graph::place`] leads from them to the model's.
 
 mod bounds;
 mod compile;
@@ -28,6 +31,7 @@ mod limit;
 mod lines;
 mod lsystem;
 mod no_limit;
+mod place;
 mod reach;
 mod roots;
 mod state;
@@ -42,11 +46,12 @@ pub use no_limit::NoLimit;
 
 pub(crate) use ifs::{filling, outline as base_element};
 pub(crate) use lsystem::{Chords, Words};
+pub(crate) use place::exponent_of;
 pub(crate) use roots::{Root, Roots, Sown};
 
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame};
+use crate::geometry::{DVec2, Frame, Homothety};
 use crate::instancing::{Coat, Thickness, Tint};
 use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
@@ -184,6 +189,8 @@ pub struct Graph {
     pub(crate) unit: f64,
     /// A point of the unit frame about which lies what becomes of an element.
     pub(crate) middle: DVec2,
+    /// What leads from its coordinates to those of the model.
+    pub(crate) place: Homothety,
 }
 
 impl Graph {

@@ -57,7 +57,7 @@ pub use system::System;
 pub(crate) use system::hull;
 pub use walk::{Choice, Step, Walk};
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::{DAffine2, DVec2, Homothety};
 use error::check;
 
 /// An edge of the digraph of a recurrent system: map `to` may be applied after map `from`.
@@ -196,6 +196,23 @@ impl Ifs {
     #[must_use]
     pub fn initial(&self) -> Option<&Shape> {
         self.definition.initial.as_ref()
+    }
+
+    /// The same system in the coordinates from which a homothety leads to its own; `None` where a set has
+    /// no extent in them.
+    pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
+        let mut within = self.clone();
+        let (definition, back) = (&mut within.definition, place.backwards());
+        for map in &mut definition.maps {
+            map.affine = place.within(&map.affine);
+        }
+        for set in &mut definition.condensation {
+            set.shape = set.shape.transformed(&back)?;
+        }
+        if let Some(initial) = &mut definition.initial {
+            *initial = initial.transformed(&back)?;
+        }
+        Some(within)
     }
 
     /// About how many instances its graph has: of every map inside every map, and of all outlines there.

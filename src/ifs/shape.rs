@@ -3,7 +3,8 @@ use std::sync::Arc;
 use super::Moments;
 use super::moments::square;
 use crate::expression::degrees;
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
+use crate::graph::exponent_of;
 use crate::rule::{BaseElement, Piece, arc};
 
 /// A condensation set or an initial set, in the coordinates of the plane.
@@ -88,6 +89,31 @@ impl Shape {
         }
     }
 
+    /// The image under a map; `None` if a part of it has no extent left.
+    #[must_use]
+    pub fn transformed(&self, map: &DAffine2) -> Option<Self> {
+        Some(match self {
+            Self::Point(point) => Self::Point(map.transform_point2(*point)),
+            Self::Outline(outline) => Self::Outline(outline.transformed(map)?),
+            Self::Union(outlines) => {
+                let outlines = outlines.iter().map(|outline| outline.transformed(map));
+                Self::Union(outlines.collect::<Option<_>>()?)
+            }
+        })
+    }
+
+    /// The points between which it lies: see [`BaseElement::control_points`].
+    pub(crate) fn control_points(&self) -> Vec<DVec2> {
+        match self {
+            Self::Point(point) => vec![*point],
+            Self::Outline(outline) => outline.control_points().collect(),
+            Self::Union(outlines) => {
+                let outlines = outlines.iter();
+                outlines.flat_map(BaseElement::control_points).collect()
+            }
+        }
+    }
+
     /// The number of outlines, or points.
     pub(crate) fn count(&self) -> usize {
         match self {
@@ -124,6 +150,15 @@ struct Measured {
 impl Measured {
     /// `None` if something is not finite, or a closed outline has no area.
     fn of(outline: &BaseElement) -> Option<Self> {
+        // In units of its own, lest squares leave the range of doubles.
+        let mut bounds = Bounds::EMPTY;
+        outline.control_points().for_each(|point| bounds.add(point));
+        let size = bounds.size().max_element();
+        // A smaller one is that of a point, rounded.
+        if !size.is_normal() {
+            return None;
+        }
+        let unit = libm::ldexp(1.0, exponent_of(size));
         let (mut length, mut around) = (Sums::NONE, Sums::NONE);
         let mut from = outline.start();
         for piece in outline.pieces() {
@@ -137,7 +172,7 @@ impl Measured {
                 for (node, weight) in GAUSS {
                     let (point, velocity) = at(from, piece, (f64::from(part) + node) * share);
                     // From the start, lest distant shapes lose digits.
-                    let point = point - outline.start();
+                    let (point, velocity) = ((point - outline.start()) / unit, velocity / unit);
                     length.add(point, weight * share * velocity.length());
                     around.add_around(point, weight * share * velocity);
                 }
@@ -155,11 +190,14 @@ impl Measured {
         };
         let mean = sums.first / sums.total;
         let covariance = sums.second * (1.0 / sums.total) - square(mean);
-        let mean = mean + outline.start();
-        (mean.is_finite() && covariance.is_finite()).then_some(Self {
-            length: length.total,
-            area: outline.is_closed().then_some(around.total.abs()),
-            moments: Moments { mean, covariance },
+        let is_finite = mean.is_finite() && covariance.is_finite();
+        is_finite.then(|| Self {
+            length: length.total * unit,
+            area: { outline.is_closed() }.then_some(around.total.abs() * unit * unit),
+            moments: Moments {
+                mean: mean * unit + outline.start(),
+                covariance: covariance * unit * unit,
+            },
         })
     }
 

@@ -1,7 +1,7 @@
 //! A system as a file has it.
 
 use super::{Contraction, Ifs, IfsError, Shape};
-use crate::geometry::{DVec2, convex_hull};
+use crate::geometry::{DVec2, Homothety, convex_hull};
 use crate::heading::Heading;
 
 /// A system, and what its file says beside its mathematics.
@@ -46,6 +46,15 @@ impl System {
 }
 
 impl System {
+    /// The same system in the coordinates from which a homothety leads to its own; `None` where a set has
+    /// no extent in them.
+    pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
+        Some(Self {
+            ifs: self.ifs.within(place)?,
+            ..self.clone()
+        })
+    }
+
     /// The system without some maps, and without the edges from and to them. What approximant 0 draws
     /// stays.
     ///

@@ -37,6 +37,7 @@ mod sample;
 mod similarity;
 mod spectrum;
 mod trend;
+mod units;
 
 pub use bits::Bits;
 pub use box_counting::{BoxCounting, Boxes, Window};

@@ -1,7 +1,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
+use crate::geometry::{BEYOND, Bounds, DAffine2, DMat2, DVec2};
 use crate::style::View;
 
 use super::Survey;
@@ -72,6 +72,9 @@ pub enum NoRoom {
     /// What is drawn is larger than numbers can tell.
     #[error("what is to be drawn has no finite size")]
     Infinite,
+    /// A part of what is drawn is.
+    #[error("{BEYOND}")]
+    Beyond,
 }
 
 impl Canvas {
@@ -142,6 +145,9 @@ impl Canvas {
         let mut all = Bounds::EMPTY;
         for survey in surveys {
             all.add_all(&survey.bounds);
+        }
+        if view.window.is_none() && surveys.iter().any(|survey| survey.is_beyond) {
+            return Err(NoRoom::Beyond);
         }
         let overhang = surveys.iter().map(Survey::overhang).fold(0.0, f64::max);
         let canvas = match view.window {

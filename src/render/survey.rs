@@ -82,6 +82,8 @@ pub struct Survey<'g> {
     pub elements: u64,
     /// Whether there are more elements than have been counted.
     pub(super) has_more: bool,
+    /// Whether a visible element lies beyond the range of numbers.
+    pub(super) is_beyond: bool,
     /// The number of fractals.
     pub fractals: u64,
     /// The largest rank of an element in its fractal.
@@ -122,6 +124,7 @@ impl<'g> Survey<'g> {
             strokes: false,
             elements: 0,
             has_more: false,
+            is_beyond: false,
             fractals: 0,
             largest_index: 0,
             walked: false,
@@ -331,6 +334,7 @@ impl<'g> Survey<'g> {
         self.bounds.add_all(&span.bounds);
         self.strokes |= span.strokes;
         self.is_met |= span.is_met;
+        self.is_beyond |= span.is_beyond;
         self.elements += span.elements;
         self.fractals += span.fractals;
         let last_index = span
@@ -463,6 +467,7 @@ impl Visitor for Survey<'_> {
             let fractal = self.fractal;
             self.use_value_of(element, &fractal);
             self.strokes |= self.is_stroked(object);
+            self.is_beyond |= !element.frame.is_in_range();
             if !self.is_bounded {
                 let base_element = &self.graph.base_elements()[object.base_element];
                 let pad = self.pad(object) * element.frame.stretch();

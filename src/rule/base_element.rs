@@ -83,6 +83,17 @@ impl BaseElement {
         })
     }
 
+    /// The image under a map; `None` if it has no extent left.
+    #[must_use]
+    pub fn transformed(&self, map: &DAffine2) -> Option<Self> {
+        let pieces = self.pieces.iter().map(|piece| piece.transformed(map));
+        Self::new(
+            map.transform_point2(self.start),
+            pieces.collect(),
+            self.closed,
+        )
+    }
+
     /// The line from (0, 0) to (1, 0): the base element of a rule that names none.
     #[must_use]
     pub fn line() -> Self {

@@ -168,7 +168,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     let mut masses = FINENESS.into_iter();
     let masses = masses.find_map(|boxes| Masses::of_limit(&set, &Grid::ALONG, boxes));
     measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
-    Ok(measured)
+    Ok(measured.enlarged(graph.place().ratio()))
 }
 
 /// What has to be grown to be known, by the draws of a seed.
@@ -190,7 +190,7 @@ fn of_growth(
     measured.set = format!(
         "{} fertile elements of lengths below {:.3e}, grown with seed {}",
         grown.points.len(),
-        grown.detail,
+        grown.detail * graph.place().ratio(),
         arguments.seed
     );
     let points = match Points::new(grown.points) {
@@ -199,7 +199,7 @@ fn of_growth(
     };
     let base = whole(arguments.base, "points")?;
     measured.sampled(&points, base, 4.0 * grown.detail, arguments);
-    Ok(measured)
+    Ok(measured.enlarged(graph.place().ratio()))
 }
 
 fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Measured, Failure> {
@@ -299,6 +299,19 @@ fn of_points(
 }
 
 impl Measured {
+    /// The same of a set that is so many times as large.
+    fn enlarged(mut self, ratio: f64) -> Self {
+        if ratio == 1.0 {
+            return self;
+        }
+        self.counting = self.counting.enlarged(ratio);
+        let spectrum = self.spectrum.into_iter().map(|it| it.enlarged(ratio));
+        self.spectrum = spectrum.collect();
+        let lacunarity = self.lacunarity.into_iter().map(|it| it.enlarged(ratio));
+        self.lacunarity = lacunarity.collect();
+        self
+    }
+
     /// Tells a spectrum; of order 0, what boxes have told.
     fn tell(&mut self, spectrum: Vec<Generalised>) {
         let told = |it: Generalised| match it.order {

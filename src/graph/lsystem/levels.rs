@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame};
+use crate::geometry::{DVec2, Frame, Homothety};
 use crate::instancing::Thickness;
 use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Piece};
@@ -354,6 +354,7 @@ impl Leveller<'_> {
             affine: false,
             unit: 1.0,
             middle: DVec2::ZERO,
+            place: Homothety::IDENTITY,
         };
         graph.find_widths();
         (graph, self.written)

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::geometry::{DVec2, Direction, Frame, Homothety};
 use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
 use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
@@ -425,6 +425,7 @@ impl Edges {
             affine: false,
             unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
+            place: Homothety::IDENTITY,
         })
     }
 }

@@ -1,0 +1,172 @@
+use super::{Bounds, DAffine2, DMat2, DVec2};
+
+/// A homothety whose ratio is a power of two: x → 2ⁿ x + c.
+///
+/// Multiplying by a power of two is exact in doubles, and so is the difference of numbers that are near
+/// each other: what is moved to the origin from afar loses nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Homothety {
+    exponent: i32,
+    shift: DVec2,
+}
+
+impl Homothety {
+    /// The map that leaves everything where it is.
+    pub const IDENTITY: Self = Self {
+        exponent: 0,
+        shift: DVec2::ZERO,
+    };
+
+    /// The largest exponent of a ratio, and the negative of the smallest: ratios and what they are the
+    /// inverse of are normal doubles.
+    pub const MOST_EXPONENT: i32 = 1021;
+
+    /// The map x → 2ⁿ x + c; exponents are clamped to ± [`MOST_EXPONENT`](Self::MOST_EXPONENT).
+    #[must_use]
+    pub fn new(exponent: i32, shift: DVec2) -> Self {
+        Self {
+            exponent: exponent.clamp(-Self::MOST_EXPONENT, Self::MOST_EXPONENT),
+            shift,
+        }
+    }
+
+    /// Whether it leaves everything where it is.
+    #[must_use]
+    pub fn is_identity(&self) -> bool {
+        *self == Self::IDENTITY
+    }
+
+    /// The exponent of the ratio.
+    #[must_use]
+    pub fn exponent(&self) -> i32 {
+        self.exponent
+    }
+
+    /// The ratio: the factor by which lengths grow.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        libm::ldexp(1.0, self.exponent)
+    }
+
+    /// Where a point goes.
+    #[inline]
+    #[must_use]
+    pub fn point(&self, point: DVec2) -> DVec2 {
+        point * self.ratio() + self.shift
+    }
+
+    /// Where a box goes.
+    #[must_use]
+    pub fn bounds(&self, bounds: &Bounds) -> Bounds {
+        if bounds.is_empty() {
+            return Bounds::EMPTY;
+        }
+        Bounds::new(self.point(bounds.min()), self.point(bounds.max()))
+    }
+
+    /// Where a point comes from.
+    #[must_use]
+    pub fn origin_of(&self, point: DVec2) -> DVec2 {
+        // Both are small enough by then for their difference not to overflow.
+        (point - self.shift) / self.ratio()
+    }
+
+    /// Where a window comes from: lower left corner, width and height.
+    #[must_use]
+    pub fn origin_of_window(&self, [x, y, width, height]: [f64; 4]) -> [f64; 4] {
+        let corner = self.origin_of(DVec2::new(x, y));
+        let size = DVec2::new(width, height) / self.ratio();
+        [corner.x, corner.y, size.x, size.y]
+    }
+
+    /// The map backwards, as an affine one.
+    #[must_use]
+    pub fn backwards(&self) -> DAffine2 {
+        let ratio = self.ratio();
+        DAffine2::from_mat2_translation(
+            DMat2::from_diagonal(DVec2::splat(1.0 / ratio)),
+            -self.shift / ratio,
+        )
+    }
+
+    /// What a map f of the plane becomes where the plane is mapped by this one: h f h⁻¹.
+    ///
+    /// Like [`within`](Self::within), it is worked out in twice the digits of a double.
+    #[must_use]
+    pub fn around(&self, map: &DAffine2) -> DAffine2 {
+        let ratio = self.ratio();
+        let shift = self.shift / ratio;
+        let moved = moved(&map.matrix2, shift, -map.translation);
+        DAffine2::from_mat2_translation(map.matrix2, -moved * ratio)
+    }
+
+    /// The map that becomes a given one where the plane is mapped by this one: h⁻¹ f h.
+    #[must_use]
+    pub fn within(&self, map: &DAffine2) -> DAffine2 {
+        let ratio = self.ratio();
+        let (shift, translation) = (self.shift / ratio, map.translation / ratio);
+        DAffine2::from_mat2_translation(map.matrix2, moved(&map.matrix2, shift, translation))
+    }
+}
+
+/// A c + b − c, rounded once: the sums of large numbers cancel.
+fn moved(linear: &DMat2, c: DVec2, b: DVec2) -> DVec2 {
+    let rows = linear.transpose();
+    let along = |row: DVec2, c_along: f64, b: f64| {
+        let products = [(row.x, c.x), (row.y, c.y)];
+        let terms = products.into_iter().flat_map(|(factor, c)| {
+            let product = factor * c;
+            [product, libm::fma(factor, c, -product)]
+        });
+        sum(terms.chain([b, -c_along]))
+    };
+    DVec2::new(along(rows.x_axis, c.x, b.x), along(rows.y_axis, c.y, b.y))
+}
+
+/// The sum of some numbers, as if in twice the digits (Neumaier 1974).
+fn sum(terms: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut lost) = (0.0, 0.0);
+    for term in terms {
+        // Knuth's exact sum of two doubles (TwoSum).
+        let next: f64 = sum + term;
+        let rounded = next - sum;
+        lost += (sum - (next - rounded)) + (term - rounded);
+        sum = next;
+    }
+    sum + lost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_mapped_comes_from_where_it_was() {
+        let far = Homothety::new(-700, DVec2::new(3e-202, -7e-201));
+        for point in [DVec2::new(0.25, 1.0), DVec2::new(-3.0, 0.0)] {
+            assert!((far.origin_of(far.point(point)) - point).length() < 1e-6);
+        }
+        assert_eq!(Homothety::IDENTITY.point(DVec2::X), DVec2::X);
+    }
+
+    #[test]
+    fn maps_about_a_far_point_are_maps_about_the_origin() {
+        // Of a third, the double is wrong by 1e-17, and its shift by as much of 10¹².
+        let at = DVec2::new(1e12, -3e11);
+        for part in [0.5, 0.3, -0.7] {
+            let linear = DMat2::from_cols(DVec2::new(part, 0.1), DVec2::new(-0.1, part));
+            let far = DAffine2::from_mat2_translation(linear, at - linear * at + DVec2::X);
+            let place = Homothety::new(3, at);
+            let near = place.within(&far);
+            assert!(
+                (near.translation - DVec2::X / 8.0).length() < 1e-4,
+                "{near}"
+            );
+            let back = place.around(&near).translation;
+            assert!((back - far.translation).length() < 1e-3, "{back}");
+        }
+        let half = DAffine2::from_scale_angle_translation(DVec2::splat(0.5), 0.0, at / 2.0);
+        let near = Homothety::new(0, at).within(&half);
+        assert_eq!(near.translation, DVec2::ZERO);
+    }
+}

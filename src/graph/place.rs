@@ -1,0 +1,116 @@
+//! Where a graph stands in its model's plane.
+
+use crate::geometry::{Bounds, DVec2, Homothety};
+use crate::rule::Placement;
+
+use super::{Chain, Graph};
+
+/// Sides that become longer than 2 to this power are told in larger units.
+const TALL: f64 = 64.0;
+
+/// Beyond 2 to this power, nothing is left for the sums of what stands one beside the other.
+const MOST_GROWTH: f64 = 1010.0;
+
+impl Graph {
+    /// What leads from the coordinates of the graph, of its walks and of its bounds, to those of the model:
+    /// mostly nothing. Lengths are its ratio longer there.
+    #[must_use]
+    pub fn place(&self) -> &Homothety {
+        &self.place
+    }
+
+    /// The same graph, if the plane of its initiators is that of the model, in coordinates from which a
+    /// homothety leads to these.
+    pub(crate) fn started_within(mut self, place: &Homothety) -> Self {
+        if place.is_identity() {
+            return self;
+        }
+        let back = place.backwards();
+        let within = |chain: &mut Chain| {
+            for instance in &mut chain.instances {
+                let map = &mut instance.frame.map;
+                map.matrix2 = back.matrix2 * map.matrix2;
+                map.translation = place.origin_of(map.translation);
+                instance.length = instance.frame.length();
+            }
+        };
+        self.initiators.iter_mut().for_each(within);
+        self.place = Homothety::new(
+            self.place.exponent() + place.exponent(),
+            self.place.point(place.point(DVec2::ZERO)),
+        );
+        self
+    }
+
+    /// The same graph in units that suit a step, where elements that are longer than what they replace
+    /// make it much larger than the initiator; `None` where doubles do not hold it.
+    pub(crate) fn in_units_of(self, steps: u32) -> Option<Self> {
+        let growth = f64::from(steps) * libm::log2(self.longest_ratio());
+        if growth.is_nan() || growth <= TALL || !self.is_plain() {
+            return Some(self);
+        }
+        let growth = libm::log2(self.longest_within(steps));
+        if growth <= TALL {
+            return Some(self);
+        }
+        if growth > MOST_GROWTH {
+            return None;
+        }
+        // No more than elements may grow, if not all of it.
+        let most = in_powers_of_two(growth);
+        let (before, shift) = (self.place.exponent(), self.place.point(DVec2::ZERO));
+        let small = self.started_within(&Homothety::new(most, DVec2::ZERO));
+        let size = small.bounds(steps).as_ref().map(Bounds::size);
+        let size = size.map_or(1.0, |size| size.max_element());
+        let back = if size > 0.0 { exponent_of(size) } else { 0 };
+        let exponent = before + most + back;
+        let fits = exponent <= Homothety::MOST_EXPONENT;
+        fits.then(|| Self {
+            place: Homothety::new(exponent, shift),
+            ..small.started_within(&Homothety::new(back, DVec2::ZERO))
+        })
+    }
+}
+
+impl Graph {
+    /// The length of the longest element within some steps, as a multiple of that of the initiator's.
+    fn longest_within(&self, steps: u32) -> f64 {
+        let mut lengths = vec![0.0; self.objects.len()];
+        for start in self.starts().flat_map(|start| &start.instances) {
+            lengths[start.object] = 1.0;
+        }
+        let mut longest: f64 = 1.0;
+        for _ in 0..steps {
+            let mut next = vec![0.0; lengths.len()];
+            for (object, &length) in lengths.iter().enumerate().filter(|(_, it)| **it > 0.0) {
+                for (placement, instance) in self.children(object) {
+                    let length = match placement {
+                        Placement::SeedsAsInitiator => 1.0,
+                        _ => length * instance.length,
+                    };
+                    let known: &mut f64 = &mut next[instance.object];
+                    *known = known.max(length);
+                    longest = longest.max(length);
+                }
+            }
+            if !longest.is_finite() {
+                break;
+            }
+            lengths = next;
+        }
+        longest
+    }
+}
+
+/// The exponent of the power of two that a positive number is no less than and less than twice of.
+pub(crate) fn exponent_of(size: f64) -> i32 {
+    libm::frexp(size).1 - 1
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the number is that of an exponent"
+)]
+fn in_powers_of_two(exponent: f64) -> i32 {
+    exponent.ceil() as i32
+}
