@@ -8,10 +8,9 @@ mod rules;
 
 use std::convert::Infallible;
 use std::num::NonZero;
-use std::sync::Arc;
 
 use common::{document, document_of};
-use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::catalogue::{Catalogue, Entry, Shelf};
 use kfrac::export;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
@@ -19,13 +18,13 @@ use kfrac::grow::{
     Element, Enter, Fractal, Growth, Seam, Subtree, Visitor, WalkError, count, extent, walk,
     walk_in_spans,
 };
+use kfrac::model::Model;
 use kfrac::render::{self, Options, Size};
-use kfrac::rule::Rule;
 use kfrac::style::ColorBy;
 use proptest::prelude::*;
 use rules::Features;
 
-const THREADS: [usize; 4] = [1, 2, 3, 5];
+const THREADS: [usize; 4] = [1, 2, 3, 8];
 
 fn threads(number: usize) -> NonZero<usize> {
     NonZero::new(number).unwrap()
@@ -205,27 +204,34 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
     }
 }
 
-/// Every rule of the library, and a step of no more than so many elements.
-fn library(most_elements: u64) -> impl Iterator<Item = (String, Arc<Rule>, u32)> {
+/// All of the library that can be grown, for a step of no more than so many elements.
+fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
     let catalogue = Catalogue::embedded();
-    let entries = catalogue.entries().into_iter();
-    let names = entries.filter(|entry| entry.shelf == Shelf::Rules);
-    names.map(|entry| entry.name).map(move |name| {
-        let rule = document(&name).resolve(&[]).unwrap().0.into_rule().unwrap();
-        let graph = Graph::compile(&rule, 14).unwrap();
-        let most = match graph.check_size(14, most_elements) {
-            Ok(None) => rule.steps().unwrap_or(4),
-            Ok(Some(_)) => 14,
-            Err(error) => error.deepest.unwrap(),
+    let mut entries = catalogue.entries();
+    entries.retain(|entry| Shelf::grown().contains(&entry.shelf));
+    entries.into_iter().map(move |Entry { name, .. }| {
+        let model = document(&name).resolve(&[]).unwrap().0;
+        let compile = |steps| model.compile_for(steps, 0, most_elements).ok();
+        let fits = |steps| {
+            let graph = compile(steps)?;
+            match graph.check_size(steps, most_elements) {
+                Ok(Some(_)) => Some((graph, steps)),
+                // Draws decide.
+                Ok(None) => {
+                    let steps = model.heading().steps.unwrap_or(4);
+                    Some((compile(steps)?, steps))
+                }
+                Err(_) => None,
+            }
         };
-        (name, rule, most)
+        let (graph, steps) = (0..=14).rev().find_map(fits).unwrap();
+        (name, model, graph, steps)
     })
 }
 
 #[test]
 fn spans_of_the_library_are_the_whole_walk() {
-    for (_, rule, steps) in library(12_000) {
-        let graph = Graph::compile(&rule, steps).unwrap();
+    for (_, _, graph, steps) in library(6_000) {
         let growth = Growth {
             seed: 3,
             ..Growth::steps(steps)
@@ -237,12 +243,18 @@ fn spans_of_the_library_are_the_whole_walk() {
 
 #[test]
 fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
+    const PICTURES: [render::Format; 4] = [
+        render::Format::Svg,
+        render::Format::Png,
+        render::Format::Pdf,
+        render::Format::Dxf,
+    ];
     // More than one span of a table; pictures have longer ones, and tests of their own below.
-    for ((name, rule, steps), number) in library(5_000).zip(0..) {
-        let graph = Graph::compile(&rule, steps).unwrap();
+    for ((name, model, graph, steps), number) in library(5_000).zip(0..) {
         let growth = Growth::steps(steps);
         let one_and_others = |write: &dyn Fn(NonZero<usize>) -> Vec<u8>, what: &str| {
             let one = write(threads(1));
+            assert!(!one.is_empty());
             for number in &THREADS[1..] {
                 let many = write(threads(*number));
                 assert!(many == one, "{name} as {what} on {number} threads");
@@ -256,10 +268,10 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
             };
             one_and_others(&write, &format!("{format:?}"));
         }
-        let own = Options::of(rule.heading());
+        let own = Options::of(model.heading());
         let mut by_index = own.clone();
         by_index.style.color_by = ColorBy::Index;
-        let mut pictures = vec![(render::Format::Svg, &own), (render::Format::Png, &own)];
+        let mut pictures = PICTURES.map(|format| (format, &own)).to_vec();
         // A walk for every colour: some rules will do.
         if number % 5 == 0 {
             pictures.push((render::Format::Svg, &by_index));

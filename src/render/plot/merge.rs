@@ -128,7 +128,10 @@ impl Junctions {
         while let Some(&Part { number, backwards }) = trail.last() {
             self.used[number] = true;
             let [from, to] = ends(strokes, number);
-            [from, to].into_iter().for_each(|end| self.leave(end));
+            // Ends of closed strokes do not count.
+            if !is_closed(strokes.get(number)) {
+                [from, to].into_iter().for_each(|end| self.leave(end));
+            }
             let at = if backwards { from } else { to };
             let Some(next) = self.next(at) else { break };
             trail.push(Part {
