@@ -136,8 +136,8 @@ impl Instancing {
         }
     }
 
-    /// The same structure in the coordinates from which a homothety leads to its own; `None` where a shape
-    /// has no extent in them.
+    /// Returns the structure in the coordinates that a homothety maps to its own; `None` if a shape has no
+    /// extent there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         let mut within = self.clone();
         let back = place.backwards();

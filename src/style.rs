@@ -279,7 +279,7 @@ pub struct View {
 }
 
 impl View {
-    /// The same view in coordinates from which a homothety leads to its own.
+    /// Returns the view in the coordinates that a homothety maps to its own.
     #[must_use]
     pub fn within(self, place: &Homothety) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! SVGs that stay light where nobody says how far growth goes: browsers show them at once.
+//! Light SVGs, which browsers show at once, where the depth of growth is not given.
 
 use std::io::{self, Write};
 
@@ -64,9 +64,9 @@ pub(super) fn draft<T>(
     }
 }
 
-/// The goal itself if what comes of it is light, or else what comes nearest to it: a coarser detail where
-/// elements are not equally long, or only a part is shown, or fewer steps. Where colours tell steps,
-/// `by_steps`, it is fewer steps if the goal says how many. `None` if not even the initiator is light.
+/// Returns the goal itself if its picture is light, or else the nearest lighter one: a coarser detail where
+/// elements differ in length, or only a part is shown, or fewer steps. Where colours are by steps
+/// (`by_steps`), it is fewer steps if the goal gives their number. `None` if not even the initiator is light.
 pub(super) fn nearest<T>(
     goal: Goal,
     graph: &Graph,
@@ -130,7 +130,7 @@ pub(super) fn first_that_is_light<T>(
     Ok(lightest)
 }
 
-/// Says what is drawn in place of something heavier, and how to get that.
+/// Reports the lighter picture that is drawn, and the option for the heavier one.
 pub(super) fn tell(drawn: &str, more: &str) {
     text::say(&format!(
         "note: {drawn}, so that the SVG has no more than {} elements and {}; {more}",

@@ -2,7 +2,7 @@ use glam::{DAffine2, DMat2, DVec2};
 
 use super::Direction;
 
-/// What is said of elements whose frames are not [in range](Frame::is_in_range).
+/// The message about elements whose frames are not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
 
 /// Where an element stands: the map from the unit frame, and the direction along the element's path.
@@ -56,7 +56,8 @@ impl Frame {
         }
     }
 
-    /// Whether squares of its numbers are within the range of doubles: lengths and areas can be told.
+    /// Returns `true` if the squares of all entries are within the range of doubles, as lengths and areas
+    /// need.
     #[inline]
     #[must_use]
     pub fn is_in_range(&self) -> bool {

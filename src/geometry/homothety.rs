@@ -3,7 +3,7 @@ use super::{Bounds, DAffine2, DMat2, DVec2};
 /// A homothety whose ratio is a power of two: x → 2ⁿ x + c.
 ///
 /// Multiplying by a power of two is exact in doubles, and so is the difference of numbers that are near
-/// each other: what is moved to the origin from afar loses nothing.
+/// each other: moving a distant model to the origin loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Homothety {
     exponent: i32,
@@ -11,17 +11,16 @@ pub struct Homothety {
 }
 
 impl Homothety {
-    /// The map that leaves everything where it is.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         exponent: 0,
         shift: DVec2::ZERO,
     };
 
-    /// The largest exponent of a ratio, and the negative of the smallest: ratios and what they are the
-    /// inverse of are normal doubles.
+    /// The largest absolute value of an exponent: ratios and their inverses are normal doubles.
     pub const MOST_EXPONENT: i32 = 1021;
 
-    /// The map x → 2ⁿ x + c; exponents are clamped to ± [`MOST_EXPONENT`](Self::MOST_EXPONENT).
+    /// Creates the map x → 2ⁿ x + c; exponents are clamped to ± [`MOST_EXPONENT`](Self::MOST_EXPONENT).
     #[must_use]
     pub fn new(exponent: i32, shift: DVec2) -> Self {
         Self {
@@ -30,32 +29,32 @@ impl Homothety {
         }
     }
 
-    /// Whether it leaves everything where it is.
+    /// Returns `true` for the identity.
     #[must_use]
     pub fn is_identity(&self) -> bool {
         *self == Self::IDENTITY
     }
 
-    /// The exponent of the ratio.
+    /// Returns n, the exponent of the ratio.
     #[must_use]
     pub fn exponent(&self) -> i32 {
         self.exponent
     }
 
-    /// The ratio: the factor by which lengths grow.
+    /// Returns the ratio 2ⁿ: the factor from lengths to lengths of images.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         libm::ldexp(1.0, self.exponent)
     }
 
-    /// Where a point goes.
+    /// Returns the image of a point.
     #[inline]
     #[must_use]
     pub fn point(&self, point: DVec2) -> DVec2 {
         point * self.ratio() + self.shift
     }
 
-    /// Where a box goes.
+    /// Returns the image of a box; that of the empty box is empty.
     #[must_use]
     pub fn bounds(&self, bounds: &Bounds) -> Bounds {
         if bounds.is_empty() {
@@ -64,14 +63,14 @@ impl Homothety {
         Bounds::new(self.point(bounds.min()), self.point(bounds.max()))
     }
 
-    /// Where a point comes from.
+    /// Returns the preimage of a point.
     #[must_use]
     pub fn origin_of(&self, point: DVec2) -> DVec2 {
         // Both are small enough by then for their difference not to overflow.
         (point - self.shift) / self.ratio()
     }
 
-    /// Where a window comes from: lower left corner, width and height.
+    /// Returns the preimage of a window: lower left corner, width and height.
     #[must_use]
     pub fn origin_of_window(&self, [x, y, width, height]: [f64; 4]) -> [f64; 4] {
         let corner = self.origin_of(DVec2::new(x, y));
@@ -79,7 +78,7 @@ impl Homothety {
         [corner.x, corner.y, size.x, size.y]
     }
 
-    /// The map backwards, as an affine one.
+    /// Returns the inverse as an affine map.
     #[must_use]
     pub fn backwards(&self) -> DAffine2 {
         let ratio = self.ratio();
@@ -89,9 +88,9 @@ impl Homothety {
         )
     }
 
-    /// What a map f of the plane becomes where the plane is mapped by this one: h f h⁻¹.
+    /// Returns the conjugate h f h⁻¹ of a map f, where h is this homothety.
     ///
-    /// Like [`within`](Self::within), it is worked out in twice the digits of a double.
+    /// The translation is accumulated in twice the precision of a double, as in [`within`](Self::within).
     #[must_use]
     pub fn around(&self, map: &DAffine2) -> DAffine2 {
         let ratio = self.ratio();
@@ -100,7 +99,7 @@ impl Homothety {
         DAffine2::from_mat2_translation(map.matrix2, -moved * ratio)
     }
 
-    /// The map that becomes a given one where the plane is mapped by this one: h⁻¹ f h.
+    /// Returns the conjugate h⁻¹ f h of a map f, where h is this homothety.
     #[must_use]
     pub fn within(&self, map: &DAffine2) -> DAffine2 {
         let ratio = self.ratio();
@@ -109,7 +108,7 @@ impl Homothety {
     }
 }
 
-/// A c + b − c, rounded once: the sums of large numbers cancel.
+/// Computes A c + b − c in twice the precision of a double, for its large terms cancel.
 fn moved(linear: &DMat2, c: DVec2, b: DVec2) -> DVec2 {
     let rows = linear.transpose();
     let along = |row: DVec2, c_along: f64, b: f64| {
@@ -123,7 +122,7 @@ fn moved(linear: &DMat2, c: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(along(rows.x_axis, c.x, b.x), along(rows.y_axis, c.y, b.y))
 }
 
-/// The sum of some numbers, as if in twice the digits (Neumaier 1974).
+/// Sums numbers in twice the precision of a double (Neumaier 1974).
 fn sum(terms: impl Iterator<Item = f64>) -> f64 {
     let (mut sum, mut lost) = (0.0, 0.0);
     for term in terms {

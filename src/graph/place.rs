@@ -1,4 +1,4 @@
-//! Where a graph stands in its model's plane.
+//! The coordinates of a graph and those of its model.
 
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::rule::Placement;
@@ -12,15 +12,14 @@ const TALL: f64 = 64.0;
 const MOST_GROWTH: f64 = 1010.0;
 
 impl Graph {
-    /// What leads from the coordinates of the graph, of its walks and of its bounds, to those of the model:
-    /// mostly nothing. Lengths are its ratio longer there.
+    /// Returns the homothety from the coordinates of the graph, its walks and its bounds to those of the
+    /// model. It is the identity for most models.
     #[must_use]
     pub fn place(&self) -> &Homothety {
         &self.place
     }
 
-    /// The same graph, if the plane of its initiators is that of the model, in coordinates from which a
-    /// homothety leads to these.
+    /// Moves the initiators into the coordinates that a homothety maps to the present ones.
     pub(crate) fn started_within(mut self, place: &Homothety) -> Self {
         if place.is_identity() {
             return self;
@@ -42,8 +41,8 @@ impl Graph {
         self
     }
 
-    /// The same graph in units that suit a step, where elements that are longer than what they replace
-    /// make it much larger than the initiator; `None` where doubles do not hold it.
+    /// Scales the graph to an approximant that is much larger than the initiator, where generators have
+    /// parts longer than the element that they replace; `None` if it leaves the range of doubles.
     pub(crate) fn in_units_of(self, steps: u32) -> Option<Self> {
         let growth = f64::from(steps) * libm::log2(self.longest_ratio());
         if growth.is_nan() || growth <= TALL || !self.is_plain() {

@@ -198,8 +198,8 @@ impl Ifs {
         self.definition.initial.as_ref()
     }
 
-    /// The same system in the coordinates from which a homothety leads to its own; `None` where a set has
-    /// no extent in them.
+    /// Returns the system in the coordinates that a homothety maps to its own; `None` if a set has no extent
+    /// there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         let mut within = self.clone();
         let (definition, back) = (&mut within.definition, place.backwards());

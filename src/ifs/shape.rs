@@ -89,7 +89,7 @@ impl Shape {
         }
     }
 
-    /// The image under a map; `None` if a part of it has no extent left.
+    /// Returns the image under a map; `None` if a part of it has no extent left.
     #[must_use]
     pub fn transformed(&self, map: &DAffine2) -> Option<Self> {
         Some(match self {
@@ -102,7 +102,7 @@ impl Shape {
         })
     }
 
-    /// The points between which it lies: see [`BaseElement::control_points`].
+    /// Returns points whose convex hull contains the shape: see [`BaseElement::control_points`].
     pub(crate) fn control_points(&self) -> Vec<DVec2> {
         match self {
             Self::Point(point) => vec![*point],

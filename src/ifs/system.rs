@@ -46,8 +46,8 @@ impl System {
 }
 
 impl System {
-    /// The same system in the coordinates from which a homothety leads to its own; `None` where a set has
-    /// no extent in them.
+    /// Returns the system in the coordinates that a homothety maps to its own; `None` if a set has no extent
+    /// there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         Some(Self {
             ifs: self.ifs.within(place)?,

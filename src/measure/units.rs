@@ -1,4 +1,4 @@
-//! What has been measured, in units of another size.
+//! Results of measurements in other units of length.
 
 use super::box_counting::BoxCounting;
 use super::mass::Lacunarity;
@@ -6,7 +6,7 @@ use super::regression::Estimate;
 use super::spectrum::Generalised;
 
 impl Estimate {
-    /// The same for a set that is so many times as large.
+    /// Returns the result for the set enlarged by `ratio`.
     #[must_use]
     pub fn enlarged(self, ratio: f64) -> Self {
         Self {
@@ -18,7 +18,7 @@ impl Estimate {
 }
 
 impl BoxCounting {
-    /// The same for a set that is so many times as large.
+    /// Returns the result for the set enlarged by `ratio`.
     #[must_use]
     pub fn enlarged(mut self, ratio: f64) -> Self {
         self.estimate = self.estimate.map(|estimate| estimate.enlarged(ratio));
@@ -30,7 +30,7 @@ impl BoxCounting {
 }
 
 impl Generalised {
-    /// The same for a set that is so many times as large.
+    /// Returns the result for the set enlarged by `ratio`.
     #[must_use]
     pub fn enlarged(mut self, ratio: f64) -> Self {
         self.estimate = self.estimate.map(|estimate| estimate.enlarged(ratio));
@@ -42,7 +42,7 @@ impl Generalised {
 }
 
 impl Lacunarity {
-    /// The same for a set that is so many times as large.
+    /// Returns the result for the set enlarged by `ratio`.
     #[must_use]
     pub fn enlarged(self, ratio: f64) -> Self {
         Self {

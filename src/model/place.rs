@@ -1,14 +1,13 @@
-//! Where models lie in the plane: coordinates near the unit box around the origin for all of them.
+//! Normalisation: coordinates in which a model has about the extent 1 and lies near the origin.
 //!
-//! Neither scale nor place changes what a fractal is, but doubles have a range, and digits. So a model
-//! that is large, small or far from the origin is compiled in other coordinates, in which it is about as
-//! large as 1 and about where the origin is. They are a [`Homothety`] by a power of two away from its own,
-//! so that getting there is exact as far as numbers in doubles are. All that is worked out on the graph
-//! sees numbers of order 1; [`Graph::place`] leads back where coordinates are told.
+//! A fractal does not depend on scale and place, but doubles have a limited range and precision. A model
+//! that is large, small or far from the origin is therefore compiled in normalised coordinates, which a
+//! [`Homothety`] by a power of two maps to its own; the ratio is exact in doubles. Computations on the graph
+//! see numbers of order 1, and [`Graph::place`] maps results back where coordinates are reported.
 //!
 //! A rule is moved by its initiator alone, for generators live in the unit frames of elements. In a system
 //! and in a structure every map f becomes h⁻¹ f h, and every set its image under h⁻¹. An L-system starts at
-//! the origin and knows lengths of any exponent by itself.
+//! the origin and keeps lengths of any exponent itself.
 
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::graph::{CompileError, Graph, exponent_of};
@@ -18,22 +17,22 @@ use crate::rule::Rule;
 
 use super::Model;
 
-/// What is longer than this, or shorter than its inverse, is told in other units.
+/// Extents beyond this, or below its inverse, are normalised.
 const ORDINARY: f64 = (1u64 << 20) as f64;
 
-/// What lies farther from the origin than so many times its extent is told from a nearer one.
+/// Models at more than this multiple of their extent from the origin are normalised.
 const NEAR: f64 = 1000.0;
 
-/// Beyond this, doubles do not tell the points of a picture apart.
+/// The largest distance from the origin as a multiple of the extent; beyond, doubles do not resolve pixels.
 const FARTHEST: f64 = 1e12;
 
-/// Extents that a model may have: what is grown must not leave the range of doubles.
+/// The smallest and the largest extent of a model: approximants must stay in the range of doubles.
 const EXTENTS: [f64; 2] = [1e-300, 1e300];
 
-/// Why a model cannot be drawn or measured: doubles do not hold it.
+/// An error: a model beyond the range or the precision of doubles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OutOfRange {
-    /// It is too large or too small.
+    /// The model is too large or too small.
     #[error(
         "it is {size:.3e} across: what is drawn and measured is from {least:e} to {most:e}; numbers \
          in other units are right",
@@ -41,22 +40,22 @@ pub enum OutOfRange {
         most = EXTENTS[1]
     )]
     Size {
-        /// About its longer side.
+        /// The longer side of its box, approximately.
         size: f64,
     },
-    /// It is too far from the origin.
+    /// The model is too far from the origin.
     #[error(
         "it lies {distance:.3e} from the origin, {ratio:.1e} times its extent of {size:.3e}: numbers do not \
          tell its points apart, and less than {FARTHEST:e} times is right, such as a place at the origin",
         ratio = distance / size
     )]
     Distance {
-        /// How far.
+        /// The distance from the origin.
         distance: f64,
-        /// About its longer side.
+        /// The longer side of its box, approximately.
         size: f64,
     },
-    /// It becomes too large.
+    /// An approximant leaves the range of doubles.
     #[error(
         "by step {step} it becomes larger than the range of numbers, 1.8e308: fewer steps are right"
     )]
@@ -157,13 +156,13 @@ impl Extent {
 }
 
 impl Model {
-    /// The homothety that leads to the model's coordinates from such in which it is about as large as 1 and
-    /// near the origin: the identity, unless it is more than a million times larger or smaller than 1, or a
-    /// thousand times its extent away from the origin.
+    /// Returns the homothety from normalised coordinates to those of the model: the identity, unless the
+    /// model is more than about a million times larger or smaller than 1, or more than a thousand times its
+    /// extent away from the origin.
     ///
     /// # Errors
     ///
-    /// If it is larger than 1e300, smaller than 1e-300, or 1e12 times its extent away from the origin.
+    /// If the model is larger than 1e300, smaller than 1e-300, or 1e12 times its extent away from the origin.
     pub fn place(&self) -> Result<Homothety, OutOfRange> {
         let extent = match self {
             Self::Rule(rule) => Extent::of_rule(rule),
@@ -181,9 +180,9 @@ impl Model {
         Ok(if stays { place } else { Homothety::IDENTITY })
     }
 
-    /// The model in the coordinates from which a homothety leads to its own, if its maps are those of the
-    /// whole plane: a system or a structure. Any other stays as it is, and so does one that has no extent
-    /// in them.
+    /// Returns the model in the coordinates that a homothety maps to its own, if its maps are those of the
+    /// whole plane (a system or a structure). Other models are returned unchanged, and so are those without
+    /// an extent in these coordinates.
     #[must_use]
     pub fn within(&self, place: &Homothety) -> Self {
         self.moved(place).unwrap_or_else(|| self.clone())
@@ -198,8 +197,8 @@ impl Model {
         }
     }
 
-    /// The model's graph as for [`Model::compile_for`], in coordinates in which it is about as large as 1
-    /// and near the origin: see [`Model::place`] and [`Graph::place`].
+    /// Compiles the model as [`Model::compile_for`] does, in normalised coordinates: see [`Model::place`]
+    /// and [`Graph::place`].
     ///
     /// # Errors
     ///
@@ -218,7 +217,7 @@ impl Model {
         graph.ok_or_else(|| OutOfRange::Growth { step: steps }.into())
     }
 
-    /// The same in given coordinates, as far as the model can be moved there.
+    /// Compiles the model as [`Model::compile_for`] does, in the coordinates that `place` maps to its own.
     ///
     /// # Errors
     ///
@@ -242,8 +241,8 @@ impl Model {
         })
     }
 
-    /// [`Graph::telling_last_maps`] of a system, in coordinates as for [`Model::compile_near`]. `None` if
-    /// there are too many of them, or if it is no system.
+    /// Returns [`Graph::telling_last_maps`] of a system in normalised coordinates. `None` if there are too
+    /// many maps, or if the model is no system.
     ///
     /// # Errors
     ///

@@ -83,7 +83,7 @@ impl BaseElement {
         })
     }
 
-    /// The image under a map; `None` if it has no extent left.
+    /// Returns the image under a map; `None` if it has no extent left.
     #[must_use]
     pub fn transformed(&self, map: &DAffine2) -> Option<Self> {
         let pieces = self.pieces.iter().map(|piece| piece.transformed(map));
