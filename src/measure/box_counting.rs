@@ -123,8 +123,9 @@ impl BoxCounting {
     /// Without a base, boxes grow by the number whose powers a picture is made of, if there is one (by
     /// 3 for a carpet of 729² pixels), or by 2. With such a base, all local slopes are the same, and
     /// they are the dimension. Otherwise it is told from the mean numbers of boxes over all grids, of 3
-    /// pixels (or 1, if the set is filled) up to a quarter of its long side: these grow as powers do
-    /// whose exponents are the dimension and those of rims. The width of a pen is allowed for.
+    /// pixels (or 1, if the set is filled) up to a quarter of its long side, or to less of it where larger
+    /// boxes do not go on as the smaller ones do: these grow as powers do whose exponents are the dimension
+    /// and those of rims. The width of a pen is allowed for.
     #[must_use]
     pub fn of_pixels(
         pixels: &Bits,

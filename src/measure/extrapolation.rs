@@ -11,12 +11,18 @@
 //! from the data, but no less than some hundredth; it may be larger for coarse boxes, of which a few hold
 //! the whole set. D is the mean over all models by their likelihood, and its error their spread: where
 //! slopes drift, other powers explain them as well, and the error is large.
+//!
+//! No power stands for a length of the set itself, as the distance between turns of a spiral is: its
+//! counts are those of a curve below, and those of an area above. Models are fitted to several ranges for
+//! that reason, up to a quarter of the long side or to less of it, and D is the mean over these as well. The
+//! counts that a range leaves out are told by no model, but for some hundredths, and are the less likely for
+//! it; neighbouring ones go together, and count in part only (averages over ranges: Jay & Neil 2021).
 
 use super::raster::Mean;
 use super::regression::Estimate;
 
 /// Dimensions that are tried: so many steps from 0 to that of the plane.
-const STEPS: i32 = 400;
+const STEPS: u16 = 400;
 const STEP: f64 = 2.0 / STEPS as f64;
 
 /// Exponents d of what is added.
@@ -29,11 +35,19 @@ const APART: f64 = 0.03;
 /// What is added is at most so much of the power at the coarsest size, where it is taken away, and
 /// leaves it so much of the count at the finest size.
 const MOST_TAKEN: f64 = -0.9;
-const LEAST_SHARE: f64 = 0.5;
+const LEAST_SHARE: f64 = 0.7;
 
-/// The finest boxes in pixels, and the coarsest as a part of the long side.
+/// The finest boxes in pixels, and the coarsest of every range as a part of the long side.
 const FINEST: f64 = 3.0;
-const COARSEST: f64 = 0.25;
+const COARSEST: [f64; RANGES] = [0.015625, 0.03125, 0.0625, 0.125, LARGEST];
+const LARGEST: f64 = 0.25;
+const RANGES: usize = 5;
+
+/// The relative error with which counts that a range leaves out are taken to be known.
+const LEFT_OUT: f64 = 0.03;
+
+/// The part of the logarithm of a range's likelihood that counts: neighbouring sizes go together.
+const COUNTED: f64 = 0.3;
 
 /// Of so many sizes, a dimension can be told.
 const LEAST_SIZES: usize = 5;
@@ -83,7 +97,7 @@ impl Belief {
         Self {
             pens: NONE.into_iter().chain(pens).collect(),
             finest: FINEST,
-            left: 0.008,
+            left: 0.006,
             whole: 0.1,
         }
     }
@@ -100,7 +114,7 @@ struct Whitened {
 impl Whitened {
     fn new(sizes: &[f64], longest: f64, rough: f64) -> Self {
         let scale = |size: &f64| {
-            let coarse = rough * size / (longest * COARSEST);
+            let coarse = rough * size / (longest * LARGEST);
             libm::sqrt(1.0 + 1.0 / (size * size) + coarse * coarse)
         };
         let kept = |pair: &[f64]| libm::pow(pair[0] / pair[1], 1.0 / TOGETHER);
@@ -122,55 +136,101 @@ impl Whitened {
         entries.collect()
     }
 
-    /// The logarithm of the determinant of what is taken out, but for a constant.
-    fn volume(&self) -> f64 {
-        self.scale.iter().map(|scale| libm::log(*scale)).sum()
+    /// The logarithm of the determinant of what is taken out of so many entries, but for a constant.
+    fn volume(&self, entries: usize) -> f64 {
+        self.scale[..entries]
+            .iter()
+            .map(|scale| libm::log(*scale))
+            .sum()
     }
 }
 
 /// The dimension of a picture from mean counts, from the smallest boxes on; none if there are too few.
 pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Option<Estimate> {
     let belief = Belief::of(thickness);
-    let used = |mean: &&Mean| mean.size >= belief.finest && mean.size <= longest * COARSEST;
+    let used = |mean: &&Mean| mean.size >= belief.finest && mean.size <= longest * LARGEST;
     let means: Vec<Mean> = means.iter().filter(used).copied().collect();
-    if means.len() < LEAST_SIZES {
-        return None;
-    }
+    let up_to = |part: f64| means.partition_point(|mean| mean.size <= longest * part);
+    let ends = COARSEST.map(up_to);
     let sizes: Vec<f64> = means.iter().map(|mean| mean.size).collect();
-    let mut likelihoods: Vec<(i32, f64)> = Vec::new();
+    let mut told = ends.map(|_| Vec::new());
     for rough in ROUGH {
         let whitened = Whitened::new(&sizes, longest, rough);
         for &pen in &belief.pens {
-            let mut models = Models::new(&means, pen, &whitened, belief.left);
-            models.tell(&mut likelihoods);
+            Models::new(&means, ends, pen, &whitened, belief.left).tell(&mut told);
         }
     }
-    let best = likelihoods.iter().map(|it| it.1);
-    let best = best.fold(f64::NEG_INFINITY, f64::max);
-    let mean = |of: &dyn Fn(f64) -> f64| {
-        let (mut sum, mut all) = (0.0, 0.0);
-        for &(step, log) in &likelihoods {
-            let prior = if step == STEPS {
-                1.0 + belief.whole / STEP
-            } else {
-                1.0
-            };
-            let weight = prior * libm::exp(log - best);
-            sum += weight * of(f64::from(step) * STEP);
-            all += weight;
-        }
-        sum / all
+    let ranges: Vec<Range> = std::iter::zip(ends, &told)
+        .filter_map(|(sizes, told)| Range::of(sizes, told, belief.whole))
+        .collect();
+    #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
+    let sizes = |range: &Range| range.sizes as f64;
+    let log = |range: &Range| COUNTED * (range.log + sizes(range) * libm::log(LEFT_OUT));
+    let best = ranges.iter().map(log).fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = ranges.iter().map(|it| libm::exp(log(it) - best)).collect();
+    let all: f64 = weights.iter().sum();
+    if all <= 0.0 {
+        return None;
+    }
+    let mean = |of: &dyn Fn(&Range) -> f64| {
+        let parts = ranges.iter().zip(&weights);
+        parts.map(|(range, weight)| weight * of(range)).sum::<f64>() / all
     };
-    let value = mean(&|dimension| dimension);
-    let spread = mean(&|dimension| (dimension - value) * (dimension - value));
+    let value = mean(&|range| range.mean);
+    let spread = mean(&|range| range.variance + (range.mean - value) * (range.mean - value));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the number of sizes"
+    )]
+    let sizes = mean(&sizes).round() as usize;
     Some(Estimate {
         value: value + 0.0,
         std_error: libm::hypot(spread.sqrt(), LEAST_ERROR),
-        range: [sizes[0], sizes[sizes.len() - 1]],
+        range: [means[0].size, means[sizes - 1].size],
         r_squared: 1.0,
         intercept: 0.0,
-        sizes: sizes.len(),
+        sizes,
     })
+}
+
+/// A model of a range: the step of its dimension, and the logarithm of its likelihood.
+type Told = (u16, f64);
+
+/// What a range of sizes tells of the dimension.
+struct Range {
+    sizes: usize,
+    /// The logarithm of its likelihood.
+    log: f64,
+    mean: f64,
+    variance: f64,
+}
+
+impl Range {
+    /// From its models, and how much likelier D = 2 is than an interval; none if there is no model.
+    fn of(sizes: usize, told: &[Told], whole: f64) -> Option<Self> {
+        /// Less likely models do not count.
+        const LEAST_LOG: f64 = -40.0;
+        let best = told.iter().map(|it| it.1).max_by(f64::total_cmp)?;
+        let mut weights = vec![0.0; usize::from(STEPS) + 1];
+        for &(step, log) in told.iter().filter(|it| it.1 > best + LEAST_LOG) {
+            weights[usize::from(step)] += libm::exp(log - best);
+        }
+        weights[usize::from(STEPS)] *= 1.0 + whole / STEP;
+        let all: f64 = weights.iter().sum();
+        let mean = |of: &dyn Fn(f64) -> f64| {
+            let steps = (0..=STEPS).zip(&weights);
+            let terms = steps.map(|(step, weight)| weight * of(f64::from(step) * STEP));
+            terms.sum::<f64>() / all
+        };
+        let value = mean(&|dimension| dimension);
+        Some(Self {
+            sizes,
+            log: best + libm::log(all),
+            mean: value,
+            variance: mean(&|dimension| (dimension - value) * (dimension - value)),
+        })
+    }
 }
 
 /// All models with one pen.
@@ -181,11 +241,30 @@ struct Models<'a> {
     logs: Vec<f64>,
     counts: Vec<f64>,
     wanted: Vec<f64>,
+    /// The number of sizes of every range.
+    ends: [usize; RANGES],
     left: f64,
 }
 
+/// A second power.
+struct Added {
+    exponent: f64,
+    column: Vec<f64>,
+    norms: [f64; RANGES],
+    sums: [f64; RANGES],
+    /// At the coarsest size of every range, and at the finest.
+    coarse: [f64; RANGES],
+    fine: f64,
+}
+
 impl<'a> Models<'a> {
-    fn new(means: &[Mean], pen: f64, whitened: &'a Whitened, left: f64) -> Self {
+    fn new(
+        means: &[Mean],
+        ends: [usize; RANGES],
+        pen: f64,
+        whitened: &'a Whitened,
+        left: f64,
+    ) -> Self {
         let side = |mean: &Mean| mean.size + pen;
         let coarsest = means.last().map_or(1.0, side);
         let count = |mean: &Mean| {
@@ -202,54 +281,102 @@ impl<'a> Models<'a> {
                 .collect(),
             counts,
             wanted,
+            ends,
             left,
         }
     }
 
+    /// A power by size: without the rest, and at the ends.
     fn power(&self, exponent: f64) -> Vec<f64> {
-        self.whitened
-            .column(|number| libm::exp(-exponent * self.logs[number]) / self.counts[number])
+        self.logs
+            .iter()
+            .map(|log| libm::exp(-exponent * log))
+            .collect()
     }
 
-    /// Adds the logarithm of the likelihood of every model, with the step of its dimension.
-    fn tell(&mut self, likelihoods: &mut Vec<(i32, f64)>) {
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    fn column(&self, power: &[f64]) -> Vec<f64> {
+        self.whitened
+            .column(|number| power[number] / self.counts[number])
+    }
+
+    /// The last entry of every range that has one.
+    fn last(&self, power: &[f64]) -> [f64; RANGES] {
+        self.ends
+            .map(|end| end.checked_sub(1).map_or(1.0, |last| power[last]))
+    }
+
+    /// The inner products of two columns over every range.
+    fn products(&self, a: &[f64], b: &[f64]) -> [f64; RANGES] {
+        let (mut from, mut sum) = (0, 0.0);
+        self.ends.map(|end| {
+            let entries = a[from..end].iter().zip(&b[from..end]);
+            sum += entries.map(|(a, b)| a * b).sum::<f64>();
+            from = end;
+            sum
+        })
+    }
+
+    fn added(&self, exponent: f64) -> Added {
+        let power = self.power(exponent);
+        let column = self.column(&power);
+        Added {
+            exponent,
+            norms: self.products(&column, &column),
+            sums: self.products(&column, &self.wanted),
+            coarse: self.last(&power),
+            fine: power.first().copied().unwrap_or(1.0),
+            column,
+        }
+    }
+
+    /// Adds every model to those of its range.
+    fn tell(&self, told: &mut [Vec<Told>; RANGES]) {
+        let ranges: Vec<usize> = (0..RANGES)
+            .filter(|&it| self.ends[it] >= LEAST_SIZES)
+            .collect();
         #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
-        let sizes = self.wanted.len() as f64;
-        let volume = self.whitened.volume();
-        let log = |rest: f64| {
-            let left = rest.max(0.0) / sizes + self.left * self.left;
-            -sizes / 2.0 * libm::log(left) - volume
+        let sizes = self.ends.map(|end| end as f64);
+        let volumes = self.ends.map(|end| self.whitened.volume(end));
+        let log = |range: usize, rest: f64| {
+            let left = rest.max(0.0) / sizes[range] + self.left * self.left;
+            -sizes[range] / 2.0 * libm::log(left) - volumes[range]
         };
-        let added: Vec<(f64, Vec<f64>)> = ADDED
-            .map(|number| f64::from(number) * ADDED_STEP)
-            .map(|exponent| (exponent, self.power(exponent)))
+        let added: Vec<Added> = ADDED
+            .map(|number| self.added(f64::from(number) * ADDED_STEP))
             .collect();
         // A second power costs as much as its number of choices, and a part of its likelihood.
         let price = 3.0 + libm::log(f64::from(ADDED.end));
-        let all = dot(&self.wanted, &self.wanted);
-        let finest = -self.logs[0];
+        let all = self.products(&self.wanted, &self.wanted);
         for step in 1..=STEPS {
             let dimension = f64::from(step) * STEP;
-            let main = self.power(dimension);
-            let (norm, sum) = (dot(&main, &main), dot(&main, &self.wanted));
-            likelihoods.push((step, log(all - sum * sum / norm)));
-            for (exponent, other) in &added {
-                if dimension - exponent < APART {
+            let power = self.power(dimension);
+            let (coarse, fine) = (self.last(&power), power.first().copied().unwrap_or(1.0));
+            let main = self.column(&power);
+            let norms = self.products(&main, &main);
+            let sums = self.products(&main, &self.wanted);
+            for &range in &ranges {
+                let rest = all[range] - sums[range] * sums[range] / norms[range];
+                told[range].push((step, log(range, rest)));
+            }
+            for other in &added {
+                if dimension - other.exponent < APART {
                     break;
                 }
-                let (other_norm, both) = (dot(other, other), dot(&main, other));
-                let other_sum = dot(other, &self.wanted);
-                let determinant = norm * other_norm - both * both;
-                let part = (sum * other_norm - other_sum * both) / determinant;
-                let more = (other_sum * norm - sum * both) / determinant;
-                let share = part * libm::exp(dimension * finest);
-                let rest = more * libm::exp(exponent * finest);
-                let is_sound =
-                    part > 0.0 && more > MOST_TAKEN * part && share >= LEAST_SHARE * (share + rest);
-                if is_sound {
-                    let left = all - part * sum - more * other_sum;
-                    likelihoods.push((step, log(left) - price));
+                let both = self.products(&main, &other.column);
+                for &range in &ranges {
+                    let (norm, sum, both) = (norms[range], sums[range], both[range]);
+                    let (other_norm, other_sum) = (other.norms[range], other.sums[range]);
+                    let determinant = norm * other_norm - both * both;
+                    let part = (sum * other_norm - other_sum * both) / determinant;
+                    let more = (other_sum * norm - sum * both) / determinant;
+                    let (share, rest) = (part * fine, more * other.fine);
+                    let is_sound = part > 0.0
+                        && more * other.coarse[range] > MOST_TAKEN * part * coarse[range]
+                        && share >= LEAST_SHARE * (share + rest);
+                    if is_sound {
+                        let left = all[range] - part * sum - more * other_sum;
+                        told[range].push((step, log(range, left) - price));
+                    }
                 }
             }
         }

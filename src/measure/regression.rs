@@ -28,9 +28,9 @@ pub(super) struct Reading {
 /// A dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// The dimension. Of pictures: the slope of the finer half of the sizes, or its mean with the slope
-    /// of all of them with a correction to scaling, where that is significant. Of points, and of limit
-    /// sets that are followed to small sizes: the mean over models and ranges, by their likelihood.
+    /// The dimension: the mean over models and ranges, by their likelihood. Of pictures that the boxes of
+    /// a base fit: the mean of local slopes. Of few sizes: the slope of the finer half of them, or its mean
+    /// with the slope of all of them with a correction to scaling, where that is significant.
     pub value: f64,
     /// Its standard error: that of the regression, made larger as far as residuals of neighbouring
     /// sizes go together, and how far other ways to tell the slope lie from it.

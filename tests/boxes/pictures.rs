@@ -84,6 +84,21 @@ fn a_turned_koch_curve_has_its_dimension() {
 }
 
 #[test]
+fn a_spiral_is_a_curve_below_the_distance_of_its_turns() {
+    // To boxes that are larger than this, it is an area, and no power stands for what lies between.
+    for (side, pen) in [(1000_u16, 1), (700, 3)] {
+        let radius = f64::from(side) / 2.0 - 10.0;
+        let point = |number: i32| {
+            let part = f64::from(number) / 60_000.0;
+            let (sin, cos) = (25.0 * part).sin_cos();
+            [cos, sin].map(|it| f64::from(side) / 2.0 + radius * part * it)
+        };
+        let spiral = marked(usize::from(side), pen, (0..=60_000).map(point));
+        assert_covers(&spiral, 1.0, 0.03);
+    }
+}
+
+#[test]
 fn filled_shapes_have_dimension_2_at_any_angle() {
     for degrees in [0.0, 31.0, 77.0] {
         let back = placed(1.0, -degrees, [0.0; 2]);
