@@ -69,9 +69,11 @@ fn lines_have_dimension_1() {
 #[test]
 fn a_gasket_has_its_dimension() {
     let gasket = picture(4096, |column, row| column & row == 0);
-    assert_is(&measured(&gasket), libm::log(3.0) / libm::log(2.0), 0.01);
+    let counted = measured(&gasket);
+    assert_is(&counted, libm::log(3.0) / libm::log(2.0), 0.01);
     let orders = [1.0, 2.0, 3.5];
-    for generalised in Generalised::of_pixels(&gasket, &orders, &grids(), number(2)) {
+    for generalised in Generalised::of_pixels(&gasket, Some(counted), &orders, &grids(), number(2))
+    {
         assert_is(
             &generalised.estimate.unwrap(),
             libm::log(3.0) / libm::log(2.0),

@@ -44,10 +44,13 @@ impl Generalised {
 
     /// Those of a picture, all of whose set pixels have the same mass, for some orders.
     ///
-    /// Used are boxes of at least 8 pixels, of which at least 4 make the long side of the picture.
+    /// Used are boxes of at least 8 pixels, of which at least 4 make the long side of the picture. No
+    /// width of a pen and no rims are allowed for: how far what their number tells lies off the dimension
+    /// that was `counted`, where both are known, is part of the errors.
     #[must_use]
     pub fn of_pixels(
         pixels: &Bits,
+        counted: Option<Estimate>,
         orders: &[f64],
         grids: &[Grid],
         threads: NonZero<usize>,
@@ -56,7 +59,14 @@ impl Generalised {
         let masses = |grid: &Grid| Some(Masses::of_pixels(pixels, whole(grid.shift, largest)));
         #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
         let range = [COARSER, largest as f64];
-        of_masses(orders, grids, threads, range, masses).unwrap_or_default()
+        let orders = [orders, &[0.0]].concat();
+        let mut spectrum = of_masses(&orders, grids, threads, range, masses).unwrap_or_default();
+        let number = spectrum.pop().and_then(|it| it.estimate);
+        let off = number.zip(counted);
+        let off = off.map_or(0.0, |(number, counted)| number.value - counted.value);
+        let estimates = spectrum.iter_mut().filter_map(|it| it.estimate.as_mut());
+        estimates.for_each(|it| it.std_error = libm::hypot(it.std_error, off));
+        spectrum
     }
 
     /// Those of a measure on a limit set, for some orders, in balls about its points that are each

@@ -1,6 +1,6 @@
 //! Pictures of known sets, turned, moved and drawn with pens: their dimensions lie within their errors.
 
-use kfrac::measure::{Bits, BoxCounting, Estimate};
+use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised};
 
 use super::{grids, number, picture};
 
@@ -95,6 +95,19 @@ fn a_spiral_is_a_curve_below_the_distance_of_its_turns() {
         };
         let spiral = marked(usize::from(side), pen, (0..=60_000).map(point));
         assert_covers(&spiral, 1.0, 0.03);
+    }
+}
+
+#[test]
+fn spectra_have_the_error_that_a_pen_makes() {
+    let place = placed(580.0, 17.0, [40.0; 2]);
+    let curve = marked(640, 2, koch(6).into_iter().map(place));
+    let counted = measured(&curve).estimate;
+    for order in [1.0, 2.0] {
+        let spectrum = Generalised::of_pixels(&curve, counted, &[order], &grids(), number(2));
+        let estimate = spectrum[0].estimate.unwrap();
+        let off = (estimate.value - 4f64.ln() / 3f64.ln()).abs();
+        assert!(off <= 2.0 * estimate.std_error, "{order}: {estimate:?}");
     }
 }
 

@@ -251,7 +251,9 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Mea
         warnings,
     };
     let orders = &arguments.orders;
-    measured.tell(Generalised::of_pixels(&pixels, orders, &grids, threads));
+    let counted = measured.counting.estimate;
+    let spectrum = Generalised::of_pixels(&pixels, counted, orders, &grids, threads);
+    measured.tell(spectrum);
     Ok(measured)
 }
 
