@@ -214,7 +214,11 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
         let compile = |steps| model.compile_for(steps, 0, most_elements).ok();
         let fits = |steps| {
             let graph = compile(steps)?;
-            match graph.check_size(steps, most_elements) {
+            // An element may be a whole fractal.
+            let pieces = graph.base_elements().iter().map(|it| it.pieces().len());
+            let pieces = pieces.max().unwrap_or(1) as u64;
+            let most = (20 * most_elements / pieces).min(most_elements);
+            match graph.check_size(steps, most) {
                 Ok(Some(_)) => Some((graph, steps)),
                 // Draws decide.
                 Ok(None) => {
