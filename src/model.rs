@@ -4,6 +4,7 @@ mod place;
 
 pub use place::OutOfRange;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
@@ -129,6 +130,22 @@ impl Model {
             Self::Ifs(system) => Ok(Graph::of_system(system)),
             Self::Instancing(structure) => Ok(Graph::of_structure(structure)),
         }
+    }
+
+    /// The model whose graph has the limit set. That is the model itself, unless an L-system rewrites edges but
+    /// for widths and colours, which may differ from step to step without end: then it is the same system
+    /// [without them](LSystem::without_looks).
+    #[must_use]
+    pub fn of_limit(&self) -> Cow<'_, Self> {
+        if let Self::LSystem(system) = self
+            && !Graph::rewrites_edges(system)
+        {
+            let plain = system.without_looks();
+            if plain != **system && Graph::rewrites_edges(&plain) {
+                return Cow::Owned(Self::LSystem(plain.into()));
+            }
+        }
+        Cow::Borrowed(self)
     }
 
     /// An error of [`Model::compile`], or of a walk, as a mistake in the model's file.

@@ -7,6 +7,8 @@ mod common;
 mod contexts;
 #[path = "lsystem/laws.rs"]
 mod laws;
+#[path = "lsystem/looks.rs"]
+mod looks;
 #[path = "lsystem/rules.rs"]
 mod rules;
 #[path = "lsystem/turtle.rs"]

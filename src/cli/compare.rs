@@ -226,7 +226,10 @@ impl Arguments {
                     loaded.within(place)
                 }
             };
-            let graph = loaded.compile(self.steps.unwrap_or(STEPS))?;
+            let graph = match self.steps {
+                Some(steps) => loaded.compile(steps)?,
+                None => loaded.compile_limit(STEPS)?,
+            };
             both.push(One { loaded, graph });
         }
         both.try_into()

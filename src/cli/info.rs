@@ -41,7 +41,8 @@ pub(super) struct Arguments {
     /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two
     /// digits, by step: of the SVG in the rule's own style, 1024 pixels large, and of the time to
     /// draw it; null where the rule or a double does not hold them. instanced_svg_bytes is the size of
-    /// the last step with --svg instanced; null where that is not possible.
+    /// the last step with --svg instanced; null where that is not possible. limit_bounds is the box of the
+    /// limit set, which an L-system has where its approximants are all drawn as large as the first.
     #[arg(long)]
     json: bool,
 }
@@ -204,7 +205,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(Failure::Usage(message));
     }
     let graph = loaded.compile(steps)?;
-    let info = info(&loaded, &graph, steps);
+    let limit = loaded.other_limit(steps)?;
+    let info = info(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
     if arguments.json {
         output::print_json(&info)?;
     } else {
@@ -213,7 +215,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(())
 }
 
-fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
+/// `limit` is the graph that has the limit set.
+fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Info<'a> {
     let bounds = bounds(graph, steps);
     let rows = rows(
         loaded,
@@ -252,9 +255,9 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         }
         counts.map(Some)
     });
-    let similarity = similarity_dimension(graph);
+    let similarity = similarity_dimension(limit);
     // What is drawn by chance may take many integrals.
-    let exact = (!graph.draws()).then(|| dimensions_of_graph_within(graph, Effort::Quick));
+    let exact = (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
     let exact = exact.and_then(|known| known.dimensions);
     let heading = loaded.model.heading();
     let params = heading.parameters.iter();
@@ -278,7 +281,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, steps: u32) -> Info<'a> {
         seconds,
         instanced_svg_bytes,
         bounds: bounds.map(|bounds| corners(&place.bounds(&bounds))),
-        limit_bounds: (graph.limit_bounds()).map(|bounds| corners(&place.bounds(&bounds))),
+        limit_bounds: (limit.limit_bounds()).map(|bounds| corners(&place.bounds(&bounds))),
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,

@@ -1,5 +1,6 @@
 //! The rule that a command works on, found and resolved.
 
+use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -98,16 +99,37 @@ impl Loaded {
     /// The graph, resolved for a number of steps, near the unit box around the origin: [`Graph::place`]
     /// leads from its coordinates to those of the rule.
     pub(super) fn graph(&self, steps: u32) -> Result<Graph, CompileError> {
+        self.graph_of(&self.model, steps)
+    }
+
+    fn graph_of(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
         let (seed, most_elements) = self.growth;
         match &self.place {
-            Some(place) => (self.model).compile_within(place, steps, seed, most_elements),
-            None => self.model.compile_near(steps, seed, most_elements),
+            Some(place) => model.compile_within(place, steps, seed, most_elements),
+            None => model.compile_near(steps, seed, most_elements),
         }
     }
 
     /// The same, with what is wrong as a mistake in the file.
     pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
-        self.graph(steps).map_err(|error| {
+        self.compiled(&self.model, steps)
+    }
+
+    /// The same of [the model that has the limit set](Model::of_limit).
+    pub(super) fn compile_limit(&self, steps: u32) -> Result<Graph, Failure> {
+        self.compiled(&self.model.of_limit(), steps)
+    }
+
+    /// The same, unless that is the model itself.
+    pub(super) fn other_limit(&self, steps: u32) -> Result<Option<Graph>, Failure> {
+        match self.model.of_limit() {
+            Cow::Borrowed(_) => Ok(None),
+            Cow::Owned(model) => self.compiled(&model, steps).map(Some),
+        }
+    }
+
+    fn compiled(&self, model: &Model, steps: u32) -> Result<Graph, Failure> {
+        self.graph_of(model, steps).map_err(|error| {
             let diagnostic = self.model.diagnostic(&error);
             match error {
                 CompileError::Word(RewriteError::TooLong {

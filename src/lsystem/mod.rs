@@ -238,11 +238,32 @@ impl LSystem {
         actions.any(|action| matches!(action, Action::Swap | Action::Rotate(_)))
     }
 
+    /// The same system with lines of one width and one colour: it draws the same set.
+    #[must_use]
+    pub fn without_looks(&self) -> Self {
+        let mut plain = self.clone();
+        for symbol in &mut plain.symbols {
+            symbol.meaning.retain(|action| !action.changes_looks());
+        }
+        plain
+    }
+
     /// Whether the turtle's colour ever changes.
     #[must_use]
     pub fn has_colours(&self) -> bool {
         let mut actions = self.symbols.iter().flat_map(|symbol| &symbol.meaning);
         actions.any(|action| matches!(action, Action::SetColour(_) | Action::ShiftColour(_)))
+    }
+}
+
+impl Action {
+    /// Whether it changes widths or colours, and nothing else.
+    #[must_use]
+    pub fn changes_looks(&self) -> bool {
+        matches!(
+            self,
+            Self::Width(_) | Self::SetWidth(_) | Self::SetColour(_) | Self::ShiftColour(_)
+        )
     }
 }
 

@@ -29,7 +29,7 @@ const STEPS: [u32; 4] = [64, 20, 12, 6];
 
 /// The graph of a rule, and for how many steps it is resolved.
 pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
-    let at = |steps: u32| Ok((loaded.compile(steps)?, steps));
+    let at = |steps: u32| Ok((loaded.compile_limit(steps)?, steps));
     let [most, fewer @ ..] = STEPS;
     let fewer = fewer.into_iter();
     fewer.fold(at(most), |tried, steps| tried.or_else(|_| at(steps)))

@@ -1,10 +1,12 @@
 //! Edge rewriting: where what replaces a module is the same at every step but for its size and where it
 //! points, one object stands for a kind, whatever the number of steps, and frames are made by chords.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Direction, Frame, Homothety};
 use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
 use crate::rule::draw::Path;
@@ -13,7 +15,7 @@ use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
 use super::long::{Vector, Ways};
-use super::reader::{Of, Reader};
+use super::reader::{Of, Part, Reader};
 use super::state::{Look, Pose, State};
 
 /// So many steps are looked at, at most, until the state of all kinds comes back.
@@ -32,6 +34,8 @@ struct Shape {
 #[derive(Debug)]
 struct Link {
     kind: usize,
+    /// How it is drawn, from how the whole is.
+    look: Look,
     ends: [DVec2; 2],
     mirrored: bool,
     joined: bool,
@@ -43,7 +47,8 @@ impl Shape {
     fn is_like(&self, other: &Self) -> bool {
         let alike = |(a, b): (&Link, &Link)| {
             let near = a.ends.iter().zip(b.ends);
-            a.kind == b.kind && (a.mirrored, a.joined) == (b.mirrored, b.joined) && { near }
+            let is_alike = (a.kind, a.mirrored, a.joined) == (b.kind, b.mirrored, b.joined);
+            is_alike && a.look == b.look && { near }
                 .all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
         };
         self.meets == other.meets
@@ -51,7 +56,8 @@ impl Shape {
             && self.links.iter().zip(&other.links).all(alike)
     }
 
-    fn chain(&self, objects: &[Option<usize>]) -> Result<Chain, NotCompiled> {
+    /// The instances that it is made of, where the whole has a colour.
+    fn chain(&self, edges: &Edges, objects: &Objects, colour: i64) -> Result<Chain, NotCompiled> {
         let instance = |link: &Link| {
             let direction = if link.mirrored {
                 Direction::YReflected
@@ -64,7 +70,7 @@ impl Shape {
                 length: from.distance(to),
                 joined: link.joined,
                 position: link.position,
-                object: objects[link.kind]?,
+                object: *objects.get(&edges.key(link.kind, link.look, colour))?,
             })
         };
         let instances: Option<Vec<_>> = self.links.iter().map(instance).collect();
@@ -75,10 +81,24 @@ impl Shape {
     }
 }
 
+/// What tells objects apart: their kind, their colour, and what becomes of widths, which may be set.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Key {
+    kind: usize,
+    colour: i64,
+    thickness: (u64, bool),
+}
+
+/// The numbers of objects.
+type Objects = BTreeMap<Key, usize>;
+
+/// More objects than this are not made.
+const MOST_OBJECTS: usize = 1 << 12;
+
 /// How all kinds leave the turtle after some steps: where, as multiples of the longest way, and how.
 #[derive(Debug)]
 struct Stage {
-    kinds: Vec<(DVec2, Pose)>,
+    kinds: Vec<(DVec2, State)>,
     /// The longest way, where what is kept does not grow with it.
     size: Option<Far>,
 }
@@ -94,8 +114,10 @@ impl Stage {
         self.kinds
             .iter()
             .zip(&other.kinds)
-            .all(|((a, pose), (b, other))| {
+            .all(|((a, state), (b, others))| {
+                let (pose, other) = (&state.pose, &others.pose);
                 a.distance(*b) <= ROUNDING
+                    && state.look == others.look
                     && (pose.heading, pose.mirrored) == (other.heading, other.mirrored)
                     && (pose.scale / other.scale - 1.0).abs() <= ROUNDING
             })
@@ -144,12 +166,13 @@ impl Chords {
     pub(crate) fn of(system: &LSystem, bits: usize) -> Option<Self> {
         let effects = Effects::closed(system, 1).ok()?;
         let edges = Edges { effects };
-        let draws = edges.draws().ok()?;
+        edges.draws().ok()?;
         let effects = &edges.effects;
         let mut ways = Ways::new(effects.compass, Some(bits));
         let (initiator, _) = ways.lines(effects, &effects.kinds.axiom, edges.start().pose)?;
         let mut objects = Vec::new();
-        for (kind, _) in { effects.kinds.all.iter().zip(draws) }.filter(|(_, draws)| *draws) {
+        for key in edges.objects().ok()?.into_keys() {
+            let kind = &effects.kinds.all[key.kind];
             let word = kind.alternatives.first().map(|only| &only.word[..]);
             let (lines, chord) = ways.lines(effects, word.unwrap_or_default(), State::SAME.pose)?;
             let seen = |line: [Vector; 2]| line.map(|end| quotient(&end, &chord, bits));
@@ -202,7 +225,7 @@ impl Edges {
             }
             let stage = self.stage(left)?;
             if stages.iter().any(|before| before.is_like(&stage)) {
-                return self.graph(&draws, &shapes);
+                return self.graph(&shapes);
             }
             stages.push(stage);
         }
@@ -265,9 +288,6 @@ impl Edges {
         let mut ends = Vec::new();
         for part in &reader.parts {
             let kind = word[part.position as usize];
-            if part.look != Look::SAME {
-                return Err(NotCompiled);
-            }
             ends.push([part.pose.place, self.end(&part.of, &part.pose, kind, left)?]);
         }
         let [from, to] = match whole {
@@ -285,6 +305,7 @@ impl Edges {
         let parts = reader.parts.iter().zip(ends).zip(0..);
         let links = parts.map(|((part, ends), position)| Link {
             kind: word[part.position as usize],
+            look: part.look,
             ends: ends.map(seen),
             mirrored: part.pose.mirrored,
             joined: part.joined,
@@ -298,31 +319,29 @@ impl Edges {
 
     /// The states of all kinds that are replaced so many times.
     fn stage(&self, left: u32) -> Result<Stage, NotCompiled> {
-        let mut poses = Vec::new();
+        let mut states = Vec::new();
         let all = self.effects.kinds.all.iter().enumerate();
         for (kind, _) in all.filter(|(_, kind)| kind.is_fertile()) {
             let mut reader = Reader::new(&self.effects, State::SAME, false);
             reader.read(&[kind], left, Path::of_seed(0))?;
-            if reader.state.look != Look::SAME {
-                return Err(NotCompiled);
-            }
-            poses.push(reader.state.pose);
+            states.push(reader.state);
         }
-        let longest = poses.iter().map(|pose| pose.place.length());
+        let poses = || states.iter().map(|state| &state.pose);
+        let longest = poses().map(|pose| pose.place.length());
         let longest = longest.reduce(Far::longer).ok_or(NotCompiled)?;
         // Without reflections it does not matter where all points together.
         let turns = !self.reflects();
-        let first = poses.iter().map(|pose| pose.place.over(longest));
-        let first = first.clone().find(|place| place.length() > ROUNDING);
+        let mut first = poses().map(|pose| pose.place.over(longest));
+        let first = first.find(|place| place.length() > ROUNDING);
         let back = match first.filter(|_| turns) {
             Some(along) => DVec2::new(along.x, -along.y) / along.length(),
             None => DVec2::X,
         };
-        let states = poses
+        let kinds = states
             .iter()
-            .map(|pose| (back.rotate(pose.place.over(longest)), *pose));
+            .map(|state| (back.rotate(state.pose.place.over(longest)), *state));
         Ok(Stage {
-            kinds: states.collect(),
+            kinds: kinds.collect(),
             size: self.keeps_lengths().then_some(longest),
         })
     }
@@ -360,12 +379,56 @@ impl Edges {
         actions.any(|action| matches!(action, Action::Reflect))
     }
 
-    fn graph(&self, draws: &[bool], shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
-        let mut next = 0..;
-        let objects = draws
-            .iter()
-            .map(|draws| draws.then(|| next.next()).flatten());
-        let objects: Vec<Option<usize>> = objects.collect();
+    /// What tells an object of a kind, whose look is told from that of a whole which has a colour.
+    fn key(&self, kind: usize, look: Look, colour: i64) -> Key {
+        let system = &self.effects.system;
+        let colours = system.heading().style.palette.entries();
+        let colours = i64::try_from(colours).unwrap_or(i64::MAX);
+        let (width, sets) = match look.width {
+            Thickness::Times(width) => (width, false),
+            Thickness::Set(width) => (width, true),
+        };
+        Key {
+            kind,
+            colour: if system.has_colours() {
+                look.colour.from(colour).rem_euclid(colours)
+            } else {
+                0
+            },
+            thickness: (width.to_bits(), sets),
+        }
+    }
+
+    /// The objects that there are, in order: those that the axiom has, and what comes of them.
+    fn objects(&self) -> Result<Objects, NotCompiled> {
+        let kinds = &self.effects.kinds;
+        let keys = |word: &[usize], colour: i64| -> Result<Vec<Key>, NotCompiled> {
+            let mut reader = Reader::new(&self.effects, State::SAME, false);
+            reader.read(word, 0, Path::of_seed(0))?;
+            let parts = reader.parts.iter();
+            let key = |part: &Part| self.key(word[part.position as usize], part.look, colour);
+            Ok(parts.map(key).collect())
+        };
+        let mut open = keys(&kinds.axiom, 0)?;
+        let mut found = BTreeSet::new();
+        while let Some(key) = open.pop() {
+            if !found.insert(key) {
+                continue;
+            }
+            if found.len() > MOST_OBJECTS {
+                return Err(NotCompiled);
+            }
+            let kind = &kinds.all[key.kind];
+            if kind.is_fertile() {
+                open.extend(keys(&kind.alternatives[0].word, key.colour)?);
+            }
+        }
+        Ok(found.into_iter().zip(0..).collect())
+    }
+
+    fn graph(&self, shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
+        let objects = self.objects()?;
+        let system = &self.effects.system;
         let axiom = &self.effects.kinds.axiom;
         let mut reader = Reader::new(&self.effects, self.start(), false);
         reader.read(axiom, 0, Path::of_seed(0))?;
@@ -376,6 +439,7 @@ impl Edges {
             let to = self.end(&part.of, &part.pose, kind, 0)?;
             links.push(Link {
                 kind,
+                look: part.look,
                 ends: [part.pose.place, to].map(|place| place.over(unit)),
                 mirrored: part.pose.mirrored,
                 joined: part.joined,
@@ -386,46 +450,59 @@ impl Edges {
             links,
             meets: [false; 2],
         };
+        let mut behaviours = BTreeMap::new();
         let mut made = Vec::new();
-        for (shape, _) in shapes.iter().zip(draws).filter(|(_, draws)| **draws) {
-            let replacement = match shape {
+        for key in objects.keys() {
+            let next = behaviours.len();
+            let behaves = (key.kind, key.colour);
+            let replacement = match &shapes[key.kind] {
                 Some(shape) => Replacement::Fixed(Arc::new(Production {
-                    body: shape.chain(&objects)?,
+                    body: shape.chain(self, &objects, key.colour)?,
                     seeds: Vec::new(),
                 })),
                 None => Replacement::Kept,
             };
+            let width = f64::from_bits(key.thickness.0);
+            let palette = &system.heading().style.palette;
             made.push(Object {
                 base_element: 0,
                 visible: true,
                 origin: None,
                 last_map: None,
                 tint: None,
-                paint: None,
-                thickness: None,
+                paint: system.has_colours().then(|| palette.entry(key.colour)),
+                thickness: if key.thickness.1 {
+                    Some(Thickness::Set(width))
+                } else {
+                    Some(Thickness::Times(width)).filter(|_| width != 1.0)
+                },
                 index: 1,
-                behaviour: made.len(),
+                behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
             });
         }
-        Ok(Graph {
+        let mut graph = Graph {
             evaluated: None,
             base_elements: [BaseElement::line()].into(),
             origins: 0,
             objects: made,
-            initiators: vec![start.chain(&objects)?],
+            initiators: vec![start.chain(self, &objects, 0)?],
             roots: Arc::default(),
             depth: None,
             regular: true,
             counts_index: false,
             draws: false,
             seeds: false,
-            tints: false,
+            tints: system.has_colours(),
             widest: None,
             affine: false,
             unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
             place: Homothety::IDENTITY,
-        })
+        };
+        graph.find_widths();
+        // Pens that become wider without end are those of levels.
+        let is_bounded = graph.widest.is_none_or(f64::is_finite);
+        is_bounded.then_some(graph).ok_or(NotCompiled)
     }
 }

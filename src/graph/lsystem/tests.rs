@@ -138,9 +138,12 @@ fn edges_draw_what_words_draw() {
         "angle: 25\naxiom: F\nproductions: {F: 'F[+F]F'}\n",
         "angle: 60\naxiom: F\nproductions: {F: FfF, f: fff}\n",
         "angle: 45\naxiom: F\nsymbols: {R: reflect}\nproductions: {F: '+RFR-[-F]-RFR+'}\n",
+        "angle: 60\naxiom: \"'(1)F--!(3)F--'F\"\nproductions: {F: F+F--F+F}\n",
+        "angle: 25\naxiom: F\nproductions: {F: \"F['!+F]F\"}\n",
+        "angle: 60\naxiom: F\nsymbols: {G: draw}\nproductions: {F: \"'(1)!(1)F+'(2)!(2)G--'(1)!(1)F+'(2)F\", G: \"'(3)!(1)G+'(4)!(2)F--'(5)!(1)F+'(3)!(2)G\"}\n",
     ] {
         let system = system(text);
-        let graph = Graph::of_edges(&system).unwrap();
+        let graph = Graph::of_edges(&system).expect(text);
         for steps in 0..=4 {
             let words = Graph::of_words(&system, steps, 0, 1_000_000).unwrap();
             let (ours, theirs) = (drawn(&graph, steps, 0), drawn(&words, steps, 0));
@@ -157,6 +160,11 @@ fn edges_draw_what_words_draw() {
                     assert!(off.length() < 1e-6, "{text} at {steps}: {off}");
                 }
                 assert_eq!((a.joined, a.direction), (b.joined, b.direction));
+                assert_eq!(a.colour, b.colour, "{text} at {steps}");
+                assert!(
+                    (a.width - b.width).abs() < 1e-5 * b.width,
+                    "{text} at {steps}"
+                );
             }
         }
     }
