@@ -12,7 +12,7 @@ use crate::geometry::{Bounds, DVec2};
 use crate::mix::MixMap;
 use crate::rule::Placement;
 
-use super::hull::Hulls;
+use super::hull::{Fineness, Hulls};
 use super::{Graph, Instance, Object, Replacement};
 
 /// More states than this, at one level and at all of them, are given up.
@@ -46,6 +46,8 @@ struct Reach {
     alive: Vec<bool>,
     /// What lies around every object, as a multiple of its length.
     pads: Vec<f64>,
+    /// What the box may leave out.
+    spared: f64,
 }
 
 /// The boxes of what approximants draw, without stroke width: see [`Graph::bounds`].
@@ -139,17 +141,31 @@ impl Graph {
     /// The box of the limit set: of the limit of the approximants as drawn, to which infertile
     /// visible elements belong.
     ///
-    /// Exact to some 15 digits. `None` where there is none or the graph does not tell.
+    /// Exact to some 15 digits, or to 1e-10 of its long side where maps contract so slowly that these would
+    /// take too long. `None` where there is none or the graph does not tell.
     #[must_use]
     pub fn limit_bounds(&self) -> Option<Bounds> {
         if self.depth.is_some() || !self.contracts() {
             return None;
         }
-        self.boxes_with(true, |_| 0.0)?.of(None)
+        let finenesses = [Fineness::COARSE, Fineness::FINE].into_iter();
+        let mut found =
+            finenesses.map(|fineness| self.boxes_within(true, fineness, |_| 0.0)?.of(None));
+        found.find_map(|bounds| bounds)
     }
 
     /// Boxes of approximants, or of the limit.
     fn boxes_with(&self, limit: bool, pad: impl Fn(&Object) -> f64) -> Option<Boxes<'_>> {
+        self.boxes_within(limit, Fineness::COARSE, pad)
+    }
+
+    /// The same with polygons about what becomes of objects that are as fine as that.
+    fn boxes_within(
+        &self,
+        limit: bool,
+        fineness: Fineness,
+        pad: impl Fn(&Object) -> f64,
+    ) -> Option<Boxes<'_>> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -159,17 +175,20 @@ impl Graph {
         let (spread, ratio) = (self.spread(&pad), self.longest_ratio());
         let alive = self.alive(limit);
         let needs_hulls = self.affine || ratio >= 1.0;
+        let hulls = needs_hulls.then(|| {
+            self.hulls(
+                &|object| self.corners(object, pad(&self.objects[object])),
+                limit.then_some(&alive),
+                fineness,
+            )
+        });
+        let hulls = hulls.flatten();
+        let spared = { hulls.as_ref() }.map(|it| it.spared(&self.initiator(0).instances, fineness));
         let reach = Reach {
             spread,
             ratio,
-            hulls: needs_hulls
-                .then(|| {
-                    self.hulls(
-                        &|object| self.corners(object, pad(&self.objects[object])),
-                        limit.then_some(&alive),
-                    )
-                })
-                .flatten(),
+            spared: spared.unwrap_or_default(),
+            hulls,
             alive,
             pads: self.objects.iter().map(&pad).collect(),
         };
@@ -294,6 +313,7 @@ impl Graph {
                     // What is not surely drawn at this very step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
+                    let negligible = negligible.max(reach.spared);
                     let rest = if steps.is_none() && reach.hulls.is_some() {
                         reach.rest(&state, negligible)
                     } else {
@@ -426,3 +446,6 @@ fn key(vector: DVec2) -> ([i64; 2], u64) {
         (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,24 +1,48 @@
 //! Convex polygons about what becomes of objects: tight where maps contract little, or only one after
 //! the other.
 
-use crate::geometry::{DAffine2, DVec2, convex_hull, distance_to_hull, thinned};
+use crate::geometry::{Bounds, DAffine2, DVec2, convex_hull, distance_to_hull, thinned};
 
 use super::contract::Products;
-use super::{Graph, Replacement};
+use super::policy::{farthest, followed, rightmost};
+use super::{Graph, Instance, Replacement};
 
-/// Polygons are as near as this multiple of their size to the least ones, if that does not take too
-/// long.
-const TOLERANCE: f64 = 1e-4;
+/// How near polygons are to the least ones.
+#[derive(Clone, Copy)]
+pub(super) struct Fineness {
+    /// As near as this multiple of their size, if that does not take too long.
+    tolerance: f64,
+    /// Corners that may be mapped,
+    most_work: usize,
+    /// and polygons of more corners are made coarser.
+    most_corners: usize,
+    /// What a box may leave out, as a multiple of its extent; rounding leaves out some in any case.
+    spared: f64,
+}
+
+impl Fineness {
+    pub(super) const COARSE: Self = Self {
+        tolerance: 1e-4,
+        most_work: 1 << 20,
+        most_corners: 256,
+        spared: 0.0,
+    };
+
+    pub(super) const FINE: Self = Self {
+        tolerance: 1e-8,
+        most_work: 1 << 22,
+        most_corners: 2048,
+        spared: 1e-10,
+    };
+}
 
 /// Rounding leaves no more than this multiple of coordinates unknown.
 const ROUNDING: f64 = 1e-14;
 
-/// Corners that may be mapped, and the rounds that are taken however many that are.
-const MOST_WORK: usize = 1 << 20;
+/// The rounds that are taken however many corners are mapped, and those after which corners are followed
+/// to their end.
 const LEAST_ROUNDS: usize = 4;
-
-/// Polygons of more corners are made coarser.
-const MOST_CORNERS: usize = 256;
+const FEW_ROUNDS: usize = 4;
 
 /// Polygons about what becomes of objects.
 pub(super) struct Hulls {
@@ -42,27 +66,11 @@ impl Hulls {
 
     fn farthest(&self, object: usize, vector: DVec2) -> f64 {
         let corners = self.corners(object);
-        let Some(first) = corners.first() else {
-            return f64::NEG_INFINITY;
-        };
         let right = self.rightmost[self.of[object]];
-        // Along the lower and along the upper half, corners reach farther and farther, then less.
-        let half = if vector.y < 0.0 {
-            0..right
-        } else {
-            right..corners.len()
-        };
-        let (mut low, mut high) = (half.start, half.end);
-        while low < high {
-            let middle = usize::midpoint(low, high);
-            let next = corners.get(middle + 1).unwrap_or(first);
-            if (*next - corners[middle]).dot(vector) > 0.0 {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
+        match farthest(corners, right, vector) {
+            Some(corner) => corners[corner].dot(vector),
+            None => f64::NEG_INFINITY,
         }
-        corners.get(low).unwrap_or(first).dot(vector)
     }
 
     /// The radius of a disc about a point that holds all that becomes of an object.
@@ -72,12 +80,21 @@ impl Hulls {
         far.fold(0.0, f64::max) + self.within[self.of[object]]
     }
 
-    fn sorted(mut self) -> Self {
-        let rightmost = self.corners.iter().map(|corners| {
-            let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
-            (0..corners.len()).max_by(order).unwrap_or_default()
+    /// What a box of instances may leave out.
+    pub(super) fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
+        let extents = instances.iter().map(|instance| {
+            let mut bounds = Bounds::EMPTY;
+            for corner in self.corners(instance.object) {
+                bounds.add(instance.frame.map.transform_point2(*corner));
+            }
+            let within = self.within[self.of[instance.object]];
+            bounds.size().max_element() - 2.0 * instance.length * within
         });
-        self.rightmost = rightmost.collect();
+        fineness.spared * extents.fold(0.0, f64::max)
+    }
+
+    fn sorted(mut self) -> Self {
+        self.rightmost = { self.corners.iter() }.map(|it| rightmost(it)).collect();
         self
     }
 
@@ -96,10 +113,16 @@ impl Graph {
     ///
     /// The hulls K(o) = conv(own(o) ∪ ⋃ f(K(c))) over the instances c in the place of o are a fixed
     /// point. Polygons that one round changes by ε are within ε times the sum of what products of maps
-    /// stretch of it (Banach).
+    /// stretch of it (Banach), however they were found: between rounds corners are [followed] to where
+    /// they would come to in the end.
     ///
     /// `None` where products are not found that contract, and where graphs are not plain.
-    pub(super) fn hulls(&self, own: &Own<'_>, drawn: Option<&[bool]>) -> Option<Hulls> {
+    pub(super) fn hulls(
+        &self,
+        own: &Own<'_>,
+        drawn: Option<&[bool]>,
+        fineness: Fineness,
+    ) -> Option<Hulls> {
         if !self.is_plain() || self.resets().contains(&true) {
             return None;
         }
@@ -130,8 +153,11 @@ impl Graph {
                 thinned(&convex_hull(points, 0.0), tolerance)
             });
             let next: Vec<Vec<DVec2>> = next.collect();
-            let ends = work > MOST_WORK && round >= LEAST_ROUNDS;
-            if next.iter().any(|corners| corners.len() > MOST_CORNERS) {
+            let ends = work > fineness.most_work && round >= LEAST_ROUNDS;
+            if next
+                .iter()
+                .any(|corners| corners.len() > fineness.most_corners)
+            {
                 coarse *= 1.5;
                 tolerance *= 1.5;
             }
@@ -152,7 +178,7 @@ impl Graph {
                 let size = corners().map(|corner| corner.distance(self.middle));
                 let away = corners().map(|corner| corner.length());
                 let [size, away] = [size.fold(0.0, f64::max), away.fold(0.0, f64::max)];
-                let wanted = TOLERANCE * size + ROUNDING * away;
+                let wanted = fineness.tolerance * size + ROUNDING * away;
                 let within = &hulls.within[..images.len()];
                 if ends || settled || within.iter().all(|within| *within <= wanted) {
                     let is_known = within.iter().all(|it| it.is_finite());
@@ -160,6 +186,17 @@ impl Graph {
                 }
                 tolerance = coarse * wanted / sum;
             }
+            let next = if round < FEW_ROUNDS {
+                next
+            } else {
+                let followed = followed(&next, &images, &points);
+                let joined = next.into_iter().zip(followed);
+                joined
+                    .map(|(corners, others)| {
+                        thinned(&convex_hull([corners, others].concat(), 0.0), tolerance)
+                    })
+                    .collect()
+            };
             hulls.corners.splice(..images.len(), next);
         }
         None

@@ -6,6 +6,7 @@ use crate::geometry::{Bounds, DAffine2, DVec2, Homothety};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
+use super::hull::Fineness;
 use super::instancing::instance;
 use super::{Chain, Graph, Object, Production, Replacement};
 
@@ -67,7 +68,11 @@ impl Graph {
 fn middle(graph: &Graph) -> DVec2 {
     let mut bounds = Bounds::EMPTY;
     let drawn = graph.alive(true);
-    if let Some(hulls) = graph.hulls(&|object| graph.corners(object, 0.0), Some(&drawn)) {
+    if let Some(hulls) = graph.hulls(
+        &|object| graph.corners(object, 0.0),
+        Some(&drawn),
+        Fineness::COARSE,
+    ) {
         for corner in hulls.corners(0) {
             bounds.add(*corner);
         }

@@ -32,6 +32,7 @@ mod lines;
 mod lsystem;
 mod no_limit;
 mod place;
+mod policy;
 mod reach;
 mod roots;
 mod state;

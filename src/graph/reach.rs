@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::DVec2;
 use crate::rule::Placement;
 
-use super::hull::around;
+use super::hull::{Fineness, around};
 use super::{Evaluated, Graph, Instance, Object, Replacement};
 
 /// Radii that still change by less than this multiple are good enough.
@@ -104,7 +104,7 @@ impl Graph {
     /// Takes smaller radii where polygons about what becomes of objects tell them.
     fn narrow(&self, radii: &mut [f64], own: &[f64]) {
         let disc = |object: usize| around(self.middle, own[object]).collect();
-        if let Some(hulls) = self.hulls(&disc, None) {
+        if let Some(hulls) = self.hulls(&disc, None, Fineness::COARSE) {
             for (object, radius) in radii.iter_mut().enumerate() {
                 *radius = radius.min(hulls.radius(object, self.middle));
             }
