@@ -241,6 +241,7 @@ fn the_command_says_what_it_found() {
         found["distance"].is_number() && found["same"].is_boolean(),
         "{found}"
     );
+    assert_eq!(found["reached"], true);
     let output = kfrac(&[
         "compare",
         "koch",
@@ -257,6 +258,27 @@ fn the_command_says_what_it_found() {
         ),
         "{said}"
     );
+}
+
+#[test]
+fn a_tolerance_that_is_not_reached_is_told() {
+    let compared = |more: &[&str]| {
+        let mut arguments = vec!["compare", "koch", "cesaro", "--tolerance", "0.01"];
+        arguments.extend(more);
+        let output = kfrac(&arguments);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let found = compared(&["--max-points", "400", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(&found).unwrap();
+    assert_eq!(found["reached"], false);
+    assert!(found["error"].as_f64().unwrap() > 0.011, "{found}");
+    let line =
+        "\nerror       not the 1.00e-2 that --tolerance asks for: --max-points allows more\n";
+    let said = compared(&["--max-points", "400"]);
+    assert!(said.contains(line), "{said}");
+    let said = compared(&[]);
+    assert!(!said.contains("--tolerance"), "{said}");
 }
 
 #[test]

@@ -67,8 +67,8 @@ pub(super) struct Arguments {
     ///
     /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension
     /// (similarity, note); steps is null for limit sets; distance, a_to_b and b_to_a (the farthest that
-    /// a point of one set is from the other) are right to within error; same tells whether distance is
-    /// no more than that.
+    /// a point of one set is from the other) are right to within error; reached tells whether that is
+    /// what --tolerance asks for; same tells whether distance is no more than error.
     #[arg(long)]
     json: bool,
     /// Says nothing but the result and what is wrong
@@ -100,6 +100,7 @@ struct Comparison<'a> {
     steps: Option<u32>,
     distance: f64,
     error: f64,
+    reached: bool,
     a_to_b: f64,
     b_to_a: f64,
     same: bool,
@@ -169,6 +170,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         steps: arguments.steps,
         distance: distance.value(),
         error: distance.error,
+        reached: distance.is_reached(),
         a_to_b: distance.there,
         b_to_a: distance.back,
         same: distance.may_be_same(),
@@ -342,6 +344,13 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
         "distance",
         &format!("{} ± {error:.2e}", told(distance.value(), error)),
     );
+    if !distance.is_reached() {
+        let wanted = distance.wanted;
+        line(
+            "error",
+            &format!("not the {wanted:.2e} that --tolerance asks for: --max-points allows more"),
+        );
+    }
     for (label, one, other, way) in [
         ("A to B", a, b, distance.there),
         ("B to A", b, a, distance.back),

@@ -32,6 +32,8 @@ pub struct Distance {
     pub back: f64,
     /// No figure is off by more: a bound, not a guess.
     pub error: f64,
+    /// The error that was asked for.
+    pub wanted: f64,
     /// The points that stood for each set.
     pub points: [usize; 2],
 }
@@ -41,6 +43,13 @@ impl Distance {
     #[must_use]
     pub fn value(&self) -> f64 {
         self.there.max(self.back)
+    }
+
+    /// Whether the error is as small as was asked for: otherwise that would have taken more points than
+    /// are allowed.
+    #[must_use]
+    pub fn is_reached(&self) -> bool {
+        self.error <= self.wanted
     }
 
     /// Whether the sets may be the same: the distance is not more than its error.
@@ -102,6 +111,7 @@ pub fn hausdorff(
         there: farthest(&first, &second),
         back: farthest(&second, &first),
         error: 2.0 * radius + rounding,
+        wanted: 2.0 * wanted + rounding,
         points,
     })
 }
