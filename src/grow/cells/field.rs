@@ -46,14 +46,14 @@ struct Tile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooFar;
 
-/// A row of cells: what [`Field::rows`] gives.
+/// A row of cells of a [`Field`].
 pub(crate) struct Row<'f> {
     field: &'f Field,
     number: i64,
 }
 
 impl Field {
-    /// No cells, of which so many would come to a unit of length.
+    /// Returns a field without points, of a number of cells to a unit of length.
     pub(super) fn new(scale: f64) -> Self {
         Self {
             scale,
@@ -75,7 +75,7 @@ impl Field {
         self.bounds
     }
 
-    /// The number of a tile, if there may be one.
+    /// Returns the number of a tile in the directory, if that has room for it.
     #[inline]
     fn slot(&self, tile: [i64; 2]) -> Option<usize> {
         let [column, row] = [tile[0] - self.low[0], tile[1] - self.low[1]];
@@ -105,17 +105,8 @@ impl Field {
     pub(super) fn add(&mut self, point: DVec2) -> Result<bool, TooFar> {
         let scaled = point * self.scale;
         let cell = cell_of(scaled);
-        let tile = tile_of(cell);
-        let slot = match self.slot(tile) {
-            Some(slot) => slot,
-            None => self.make_room(tile)?,
-        };
-        if self.directory[slot] == NONE {
-            self.directory[slot] = u32::try_from(self.tiles.len()).map_err(|_| TooFar)?;
-            self.tiles.push(Tile::default());
-        }
         let [column, row] = within(cell);
-        let tile = &mut self.tiles[self.directory[slot] as usize];
+        let tile = self.make_tile(tile_of(cell))?;
         if tile.rows[row] >> column & 1 == 1 {
             return Ok(false);
         }
@@ -125,27 +116,80 @@ impl Field {
         Ok(true)
     }
 
-    /// Adds a point that tells something of its cell, in the place of what is told before.
-    pub(super) fn label(&mut self, point: DVec2, label: u8) -> Result<(), TooFar> {
-        self.add(point)?;
+    /// Adds a point with a label for its cell, unless that has a greater one.
+    #[inline]
+    pub(super) fn label(&mut self, point: DVec2, label: u16) -> Result<(), TooFar> {
         let cell = cell_of(point * self.scale);
         let [column, row] = within(cell);
-        if let Some(slot) = self.slot(tile_of(cell)) {
-            let tile = &mut self.tiles[self.directory[slot] as usize];
-            tile.places[row * WIDTH + column] = [label; 2];
+        let tile = self.make_tile(tile_of(cell))?;
+        let place = &mut tile.places[row * WIDTH + column];
+        let is_new = tile.rows[row] >> column & 1 == 0;
+        if is_new || u16::from_le_bytes(*place) < label {
+            *place = label.to_le_bytes();
+        }
+        if is_new {
+            tile.rows[row] |= 1 << column;
+            self.bounds.add(point);
         }
         Ok(())
     }
 
-    /// Whether the cell of a point tells a label.
-    pub(super) fn has_label(&self, point: DVec2, label: u8) -> bool {
-        self.place(cell_of(point * self.scale)) == Some([label; 2])
+    /// A tile, with room for it.
+    #[inline]
+    fn make_tile(&mut self, tile: [i64; 2]) -> Result<&mut Tile, TooFar> {
+        let slot = match self.slot(tile) {
+            Some(slot) => slot,
+            None => self.make_room(tile)?,
+        };
+        if self.directory[slot] == NONE {
+            self.directory[slot] = u32::try_from(self.tiles.len()).map_err(|_| TooFar)?;
+            self.tiles.push(Tile::default());
+        }
+        Ok(&mut self.tiles[self.directory[slot] as usize])
+    }
+
+    /// The label of the cell of a point, if it has one.
+    pub(super) fn label_of(&self, point: DVec2) -> Option<u16> {
+        self.place(cell_of(point * self.scale))
+            .map(u16::from_le_bytes)
+    }
+
+    /// Adds the cells of another field of this scale, by the greatest labels of the cells around them.
+    pub(super) fn spread_to(&mut self, other: &Self) -> Result<(), TooFar> {
+        let mut open = Vec::new();
+        for row in other.low[1] * SIDE..(other.low[1] + other.room[1]) * SIDE {
+            for column in other.low[0]..other.low[0] + other.room[0] {
+                let left = other.word(column, row) & !self.word(column, row);
+                open.extend(bits(left).map(|bit| [column * SIDE + bit, row]));
+            }
+        }
+        while !open.is_empty() {
+            let before = open.len();
+            let mut found = Vec::new();
+            open.retain(|&cell| {
+                let around = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [x, y]));
+                let around = around.filter_map(|[x, y]| self.place([cell[0] + x, cell[1] + y]));
+                let label = around.map(u16::from_le_bytes).max();
+                found.extend(label.map(|label| (cell, label)));
+                label.is_none()
+            });
+            for (cell, label) in found {
+                self.label((corner(cell) + 0.5) / self.scale, label)?;
+            }
+            if open.len() == before {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Forgets all points.
     pub(super) fn clear(&mut self) {
-        for tile in &mut self.tiles {
-            tile.rows = [0; WIDTH];
+        if !self.bounds.is_empty() {
+            for tile in &mut self.tiles {
+                tile.rows = [0; WIDTH];
+            }
+            self.bounds = Bounds::EMPTY;
         }
     }
 
@@ -195,14 +239,11 @@ impl Field {
     /// a point of every cell leads to a point of most cells, not of all.
     pub(super) fn fill_pits(&mut self) {
         let mut filled = Vec::new();
-        for (slot, &number) in (0..).zip(&self.directory) {
+        for (slot, &number) in self.directory.iter().enumerate() {
             if number == NONE {
                 continue;
             }
-            let [column, first] = [
-                self.low[0] + slot % self.room[0],
-                (self.low[1] + slot / self.room[0]) * SIDE,
-            ];
+            let [column, first] = self.corner_of(slot);
             for row in first..first + SIDE {
                 let [three, _] = self.neighbours(column, row);
                 let pits = three & !self.word(column, row);
@@ -221,11 +262,71 @@ impl Field {
         }
     }
 
+    /// The cells whose eight neighbours all hold points, and which do themselves.
+    pub(super) fn inner(&self) -> Self {
+        let mut inner = Self {
+            low: self.low,
+            room: self.room,
+            directory: vec![NONE; self.directory.len()],
+            ..Self::new(self.scale)
+        };
+        let between = |column: i64, row: i64| {
+            let word = self.word(column, row);
+            let [left, right] = self.beside(column, row, word);
+            word & left & right
+        };
+        for (slot, number) in self.directory.iter().enumerate() {
+            if *number == NONE {
+                continue;
+            }
+            let [column, first] = self.corner_of(slot);
+            let mut tile = Tile::default();
+            let mut words = [first - 1, first].map(|row| between(column, row));
+            for (row, inner) in (first..).zip(&mut tile.rows) {
+                let above = between(column, row + 1);
+                *inner = words[0] & words[1] & above;
+                words = [words[1], above];
+            }
+            if tile.rows != [0; WIDTH] {
+                inner.directory[slot] = u32::try_from(inner.tiles.len()).unwrap_or(NONE);
+                inner.tiles.push(tile);
+            }
+        }
+        inner
+    }
+
+    /// The points of all cells, but of those that another field of this scale holds.
+    pub(super) fn points_without(&self, other: &Self) -> Vec<DVec2> {
+        let mut points = Vec::new();
+        for row in self.low[1] * SIDE..(self.low[1] + self.room[1]) * SIDE {
+            for column in self.low[0]..self.low[0] + self.room[0] {
+                let left = self.word(column, row) & !other.word(column, row);
+                points.extend(bits(left).map(|bit| self.point([column * SIDE + bit, row])));
+            }
+        }
+        points
+    }
+
+    /// The column of a tile of the directory, and its first row of cells.
+    fn corner_of(&self, slot: usize) -> [i64; 2] {
+        let slot = i64::try_from(slot).unwrap_or(0);
+        [
+            self.low[0] + slot % self.room[0],
+            (self.low[1] + slot / self.room[0]) * SIDE,
+        ]
+    }
+
+    /// Whether the left and the right neighbours of the cells of a word hold points.
+    fn beside(&self, column: i64, row: i64, word: u64) -> [u64; 2] {
+        [
+            word << 1 | self.word(column - 1, row) >> 63,
+            word >> 1 | self.word(column + 1, row) << 63,
+        ]
+    }
+
     /// Which cells of a word have neighbours that hold points: three of four, and all.
     fn neighbours(&self, column: i64, row: i64) -> [u64; 2] {
-        let word = self.word(column, row);
-        let left = word << 1 | self.word(column - 1, row) >> 63;
-        let right = word >> 1 | self.word(column + 1, row) << 63;
+        let [left, right] = self.beside(column, row, self.word(column, row));
         let [below, above] = [row - 1, row + 1].map(|row| self.word(column, row));
         let (either, both) = (left | right, left & right);
         [
@@ -251,7 +352,7 @@ impl Field {
         tile.map_or(0, |tile| tile.rows[row])
     }
 
-    /// What is kept of a cell that holds a point: the place of that, or a label.
+    /// The two bytes kept for a cell that holds a point: the place of the point, or a label.
     fn place(&self, cell: [i64; 2]) -> Option<[u8; 2]> {
         let [column, row] = within(cell);
         let tile = self.tile(tile_of(cell))?;
@@ -287,8 +388,8 @@ impl Row<'_> {
         self.visit(|word, _| [word, word], visit);
     }
 
-    /// The same, but cells with no more than two neighbours of four by their points, and without those
-    /// that have all four if they need not be visited.
+    /// Visits the cells as [`Row::visit_runs`] does, but those with no more than two neighbours of four by
+    /// their points, and those that have all four only if inner ones are needed.
     pub(crate) fn visit_points(&self, needs_inner: bool, visit: impl FnMut([DVec2; 2])) {
         let Self { field, number } = *self;
         let sort = |word: u64, column: i64| {
@@ -299,15 +400,15 @@ impl Row<'_> {
         self.visit(sort, visit);
     }
 
-    /// The same by runs of cells that have one label.
-    pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u8, [DVec2; 2])) {
+    /// Visits runs of cells that have one label, by the middles of their ends.
+    pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u16, [DVec2; 2])) {
         let Self { field, number } = *self;
         let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
-        let mut run: Option<(u8, [i64; 2])> = None;
+        let mut run: Option<(u16, [i64; 2])> = None;
         for column in field.low[0]..field.low[0] + field.room[0] {
             for bit in bits(field.word(column, number)) {
                 let cell = column * SIDE + bit;
-                let [label, _] = field.place([cell, number]).unwrap_or_default();
+                let label = u16::from_le_bytes(field.place([cell, number]).unwrap_or_default());
                 match &mut run {
                     Some((of, [_, last])) if *of == label && *last + 1 == cell => *last = cell,
                     _ => {

@@ -37,7 +37,12 @@ const BLOCK: usize = 1 << 15;
 /// Images that are worth another thread.
 const WORTH_A_THREAD: usize = 1 << 14;
 
-/// How often cells between others are filled.
+/// Cells along a side of one about which finer ones are looked for, and the images of points that
+/// are worth it.
+const FINER: [f64; 2] = [2.0, 4.0];
+const FINER_WORTH: f64 = 4e6;
+
+/// Rounds in which cells between others are filled.
 const ROUNDS: usize = 2;
 
 /// Why cells are not found.
@@ -56,7 +61,7 @@ pub(crate) struct LimitCells<'g> {
     layers: usize,
 }
 
-/// What bounds a search for cells.
+/// The bounds of a search for cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
     /// Cells to a unit of length of the plane.
@@ -89,7 +94,7 @@ pub(crate) struct Found {
 }
 
 impl<'g> LimitCells<'g> {
-    /// The limit set of a plain graph that contracts, of which each layer of a picture holds parts.
+    /// Describes the limit set of a plain graph that contracts, by the layers of a picture.
     pub(crate) fn new(graph: &'g Graph, layers: &[Layer]) -> Self {
         Self {
             graph,
@@ -98,7 +103,7 @@ impl<'g> LimitCells<'g> {
         }
     }
 
-    /// A box that holds most of what is in the layers, by a sequence of points.
+    /// Returns a box that holds most of the layers, by a sequence of points.
     fn rough_bounds(&self) -> Bounds {
         const POINTS: usize = 1 << 16;
         let nodes = &self.net.nodes;
@@ -129,7 +134,7 @@ impl<'g> LimitCells<'g> {
         bounds
     }
 
-    /// The box of the layers, to about a pixel of a picture of so many.
+    /// Returns the box of the layers, to about a pixel of a picture whose longer side has `pixels`.
     ///
     /// # Errors
     ///
@@ -155,6 +160,15 @@ impl<'g> LimitCells<'g> {
     ///
     /// If that takes more work than is allowed, or if it is cancelled.
     pub(crate) fn find(&self, search: &Search<'_>) -> Result<Found, Stopped> {
+        let mut found = self.find_all(search, true)?;
+        let layers = found.fields.len() - self.layers;
+        found.fields = finished(found.fields.split_off(layers));
+        Ok(found)
+    }
+
+    /// Finds the cells of all sets, and of every layer after these; without outlines, of what is replaced
+    /// for ever.
+    fn find_all(&self, search: &Search<'_>, with_outlines: bool) -> Result<Found, Stopped> {
         let nodes = &self.net.nodes;
         let fields = nodes
             .iter()
@@ -165,18 +179,59 @@ impl<'g> LimitCells<'g> {
             fields: fields.collect(),
             wave: vec![Vec::new(); nodes.len()],
             left: search.most_images,
+            without: &[],
         };
-        orbit.begin(self.graph)?;
+        orbit.begin(with_outlines.then_some(self.graph))?;
         let mut steps = 0;
         while orbit.go_on()? {
             steps += 1;
         }
-        let fields = finished(orbit.fields.split_off(nodes.len() - self.layers));
         Ok(Found {
             images: search.most_images - orbit.left,
             steps,
-            fields,
+            fields: orbit.fields,
         })
+    }
+
+    /// Adds cells beside those that are known of all sets, where one point of each had not led there: finer
+    /// cells are looked for about all but inner ones, if that takes no more work than is worth while.
+    fn refine(&self, search: &Search<'_>, known: &mut Found) -> Result<(), Stopped> {
+        let nodes = &self.net.nodes;
+        for fineness in FINER {
+            let inner: Vec<Field> = known.fields.iter().map(Field::inner).collect();
+            let fields = known.fields.iter();
+            let wave: Vec<Vec<DVec2>> = { fields.clone().zip(&inner) }
+                .map(|(field, inner)| field.points_without(inner))
+                .collect();
+            let images = wave.iter().zip(nodes);
+            let images: usize = images
+                .map(|(points, it)| points.len() * it.images.len())
+                .sum();
+            if images as f64 * fineness * fineness > FINER_WORTH {
+                break;
+            }
+            let mut orbit = Orbit {
+                net: &self.net,
+                search,
+                fields: fields.map(|it| Field::new(it.scale() * fineness)).collect(),
+                wave: vec![Vec::new(); nodes.len()],
+                left: search.most_images.saturating_sub(known.images),
+                without: &inner,
+            };
+            for (number, points) in wave.into_iter().enumerate() {
+                for point in points {
+                    orbit.add(number, point)?;
+                }
+            }
+            while orbit.go_on()? {}
+            known.images = search.most_images - orbit.left;
+            for (field, finer) in known.fields.iter_mut().zip(&orbit.fields) {
+                for point in finer.points_without(&Field::new(finer.scale())) {
+                    field.add(point)?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -197,14 +252,23 @@ struct Orbit<'a> {
     wave: Vec<Vec<DVec2>>,
     /// Images that may still be worked out.
     left: u64,
+    /// By set, if they are given, cells from which points are not followed.
+    without: &'a [Field],
 }
 
 impl Orbit<'_> {
     fn add(&mut self, node: usize, point: DVec2) -> Result<(), TooFar> {
+        if self.leaves_out(node, point) {
+            return Ok(());
+        }
         if self.fields[node].add(point)? && !self.net.nodes[node].images.is_empty() {
             self.wave[node].push(point);
         }
         Ok(())
+    }
+
+    fn leaves_out(&self, node: usize, point: DVec2) -> bool {
+        self.without.get(node).is_some_and(|it| it.holds(point))
     }
 
     /// Takes some work.
@@ -213,18 +277,20 @@ impl Orbit<'_> {
         self.search.check()
     }
 
-    /// Points of the sets themselves.
-    fn begin(&mut self, graph: &Graph) -> Result<(), Stopped> {
+    /// Points of the sets themselves, and of their outlines if those are given by a graph.
+    fn begin(&mut self, outlines: Option<&Graph>) -> Result<(), Stopped> {
         let net = self.net;
         for (number, node) in net.nodes.iter().enumerate() {
             if node.stretch == 0.0 {
                 continue;
             }
             let scale = self.fields[number].scale();
-            let points = outlined(graph, node, scale, self.left)?;
-            self.take(points.len())?;
-            for point in points {
-                self.add(number, point)?;
+            if let Some(graph) = outlines {
+                let points = outlined(graph, node, scale, self.left)?;
+                self.take(points.len())?;
+                for point in points {
+                    self.add(number, point)?;
+                }
             }
             if let Some(point) = node.point {
                 self.add(number, point)?;
@@ -252,11 +318,14 @@ impl Orbit<'_> {
                     }
                     continue;
                 }
-                let fields = &self.fields;
+                let this = &*self;
+                let is_new = |whole: usize, image: DVec2| {
+                    !this.fields[whole].holds(image) && !this.leaves_out(whole, image)
+                };
                 let found = looked_for(block, threads, |point, found| {
                     let images = maps.iter();
                     let images = images.map(|(map, whole)| (*whole, map.transform_point2(*point)));
-                    found.extend(images.filter(|(whole, image)| !fields[*whole].holds(*image)));
+                    found.extend(images.filter(|(whole, image)| is_new(*whole, *image)));
                 });
                 for (whole, image) in found {
                     self.add(whole, image)?;
@@ -283,7 +352,7 @@ fn outlined(graph: &Graph, node: &Node, scale: f64, most: u64) -> Result<Vec<DVe
     Ok(points)
 }
 
-/// What is found for each of some points, in their order, by so many threads.
+/// Collects the results of a look at each of some points, in the order of the points, on a number of threads.
 fn looked_for<P: Sync, T: Send>(
     points: &[P],
     threads: usize,

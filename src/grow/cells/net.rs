@@ -142,7 +142,7 @@ impl Builder<'_> {
 }
 
 impl Net {
-    /// How much sets are stretched at most on ways that come to no set again.
+    /// Works out the most that sets are stretched on ways that come to no set again.
     fn measure(&mut self, behaviours: usize) {
         for layer in &mut self.nodes[behaviours..] {
             layer.stretch = 1.0;

@@ -9,7 +9,7 @@ const LINES: u32 = 64;
 /// Visits points of an outline in the image of a map, and of the area of a closed one, until no more
 /// are wanted; whether all were.
 ///
-/// On a grid of so many cells to a unit, no point of the image lies farther than a cell from those
+/// On a grid of `scale` cells to a unit, no point of the image lies farther than a cell from those
 /// that are visited, which are on it. Areas are those of the nonzero rule.
 pub(super) fn visit(
     base_element: &BaseElement,

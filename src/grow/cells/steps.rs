@@ -1,14 +1,38 @@
-//! Cells that tell the step in which what covers them is born.
+//! Cells with the last step in which something that covers them is born.
 //!
-//! Elements of a later step cover those of earlier ones, so that a point goes on from a cell once in every
-//! step, and as long as what it is a point of is replaced.
+//! Elements of a later step cover those of earlier ones. Two kinds of points are followed, from inner to
+//! outer maps, with the linear part of all maps that were applied:
+//!
+//! - Points of what is replaced for ever. Only the last steps of these are seen, and by then they have been
+//!   contracted to the shortest length: cells in which one stands for others may be as much larger as
+//!   they are to be contracted yet, so that nearly all work is that of the last halving.
+//! - Points of outlines, step by step, as far as they are not within what is replaced for ever: images of
+//!   it would cover all images of such a point.
 
 use super::field::{Field, TooFar};
 use super::{BLOCK, Found, LimitCells, Search, Stopped, WORTH_A_THREAD};
 use super::{finished, looked_for, outlined};
 use crate::geometry::{DAffine2, DMat2, DVec2, stretch};
 
-/// A point of an outline, and the linear part of the map of the element in whose place that stands.
+/// Elements shorter than this multiple of the shortest length are hardly replaced again.
+const SHORT: f64 = 2.0;
+
+/// Sides of cells to which the last steps of what is replaced for ever are told, in cells of the picture.
+const GRAINS: [f64; 3] = [4.0, 2.0, 1.0];
+
+/// Images of points that are worth a finer grain.
+const WORTH: u64 = 12_000_000;
+
+/// Points along a side of a cell that outlines are followed by: the most that take not too much work.
+const FINENESS: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Growth of the number of cells where their sides are halved.
+const TIMES: u64 = 4;
+
+/// The most sizes of cells, of which each is half of the one before.
+const MOST_SIZES: usize = 40;
+
+/// A point, and the linear part of the maps that were applied to it.
 #[derive(Clone, Copy)]
 struct Drawn {
     at: DVec2,
@@ -25,91 +49,281 @@ impl Drawn {
     }
 }
 
+/// A search for the last steps.
+struct Steps<'a> {
+    set: &'a LimitCells<'a>,
+    search: &'a Search<'a>,
+    /// The least length at which elements are replaced.
+    shortest: f64,
+    /// By set and then by layer: the cells of what is replaced for ever,
+    cores: Vec<Field>,
+    /// and the last steps in cells.
+    last: Vec<Field>,
+    /// Points of the step before, by set.
+    wave: Vec<Vec<Drawn>>,
+    step: u16,
+    /// Images that may still be worked out.
+    left: u64,
+}
+
+/// An image of a point.
+struct Image {
+    whole: usize,
+    drawn: Drawn,
+    /// Whether hardly anything that comes of the point is born in a later step.
+    is_last: bool,
+}
+
 impl LimitCells<'_> {
-    /// Finds the cells of every layer that what is not replaced meets, by the last steps in which it is
-    /// born. Elements are replaced down to a length.
+    /// Finds the cells of every layer by the last steps in which what covers them is born. Elements are
+    /// replaced down to a length.
     ///
     /// # Errors
     ///
     /// If that takes more work or more steps than are allowed, or if it is cancelled.
     pub(crate) fn find_steps(&self, search: &Search<'_>, shortest: f64) -> Result<Found, Stopped> {
-        let nodes = &self.net.nodes;
-        let first_layer = nodes.len() - self.layers;
-        let new = |scale: f64| Field::new(search.scale * scale);
-        // What is met in the next step, and at last in each layer.
-        let mut met: Vec<Field> = { nodes.iter() }.map(|node| new(node.stretch)).collect();
-        let mut layers = met.split_off(first_layer);
-        let mut left = search.most_images;
-        let mut take = |images: usize| -> Result<u64, Stopped> {
-            search.check()?;
-            left = left.checked_sub(images as u64).ok_or(Stopped::TooMany)?;
-            Ok(left)
+        let mut cores = self.find_all(search, false)?;
+        self.refine(search, &mut cores)?;
+        cores.fields = finished(cores.fields);
+        let mut steps = Steps {
+            set: self,
+            search,
+            shortest,
+            last: Vec::new(),
+            wave: Vec::new(),
+            step: 0,
+            left: search.most_images.saturating_sub(cores.images),
+            cores: cores.fields,
         };
-        let mut wave: Vec<Vec<Drawn>> = Vec::new();
-        for (number, node) in nodes.iter().enumerate() {
+        let mut inner = 0;
+        for grain in GRAINS {
+            let before = steps.left;
+            inner = steps.follow_points(grain)?;
+            if (before - steps.left) * TIMES > WORTH {
+                break;
+            }
+        }
+        for (last, core) in steps.last.iter_mut().zip(&steps.cores) {
+            last.spread_to(core)?;
+        }
+        let mut outer = 0;
+        for fineness in FINENESS {
+            let before = steps.left;
+            outer = steps.follow_outlines(fineness)?;
+            if (before - steps.left) * TIMES > WORTH / 2 {
+                break;
+            }
+        }
+        let first_layer = steps.first_layer();
+        Ok(Found {
+            fields: finished(steps.last.split_off(first_layer)),
+            images: search.most_images - steps.left,
+            steps: inner.max(outer).into(),
+        })
+    }
+}
+
+impl Steps<'_> {
+    fn first_layer(&self) -> usize {
+        self.set.net.nodes.len() - self.set.layers
+    }
+
+    /// Takes some work.
+    fn take(&mut self, images: usize) -> Result<(), Stopped> {
+        self.search.check()?;
+        self.left = { self.left.checked_sub(images as u64) }.ok_or(Stopped::TooMany)?;
+        Ok(())
+    }
+
+    /// Returns the length of an element in the picture, in units of the shortest length.
+    #[inline]
+    fn ratio(&self, whole: usize, drawn: &Drawn) -> f64 {
+        stretch(&drawn.linear) * self.set.net.nodes[whole].stretch / self.shortest
+    }
+
+    /// Works out the images of the points of the last step that are kept, and adds each.
+    fn go_on(
+        &mut self,
+        is_kept: impl Fn(&Self, &Image) -> bool + Sync,
+        mut add: impl FnMut(&mut Self, Image) -> Result<(), Stopped>,
+    ) -> Result<(), Stopped> {
+        let set = self.set;
+        let first_layer = self.first_layer();
+        self.step = self.step.checked_add(1).ok_or(Stopped::TooMany)?;
+        let empty = vec![Vec::new(); self.wave.len()];
+        let wave = std::mem::replace(&mut self.wave, empty);
+        for ((number, node), points) in set.net.nodes.iter().enumerate().zip(&wave) {
+            for block in points.chunks(BLOCK) {
+                let images = block.len() * node.images.len();
+                self.take(images)?;
+                let threads = self.search.threads.get().min(images / WORTH_A_THREAD);
+                let this = &*self;
+                let found = looked_for(block, threads, |drawn, found: &mut Vec<Image>| {
+                    let from = found.len();
+                    let mut is_last = this.ratio(number, drawn) < SHORT;
+                    let mut goes_on = false;
+                    for (map, whole) in &node.images {
+                        let drawn = drawn.mapped(map);
+                        if this.ratio(*whole, &drawn) >= 1.0 {
+                            goes_on |= *whole < first_layer;
+                            found.push(Image {
+                                whole: *whole,
+                                drawn,
+                                is_last: false,
+                            });
+                        }
+                    }
+                    is_last |= !goes_on;
+                    found[from..]
+                        .iter_mut()
+                        .for_each(|image| image.is_last = is_last);
+                    let mut at = from;
+                    while let Some(image) = found.get(at) {
+                        if is_kept(this, image) {
+                            at += 1;
+                        } else {
+                            found.swap_remove(at);
+                        }
+                    }
+                });
+                for image in found {
+                    add(self, image)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_done(&self) -> bool {
+        self.wave.iter().all(Vec::is_empty)
+    }
+
+    /// Finds the last steps of what is replaced for ever, to cells of `grain` picture cells along a side;
+    /// returns the number of steps.
+    fn follow_points(&mut self, grain: f64) -> Result<u16, Stopped> {
+        let nodes = &self.set.net.nodes;
+        let first_layer = self.first_layer();
+        let linear = DMat2::IDENTITY;
+        let start = nodes[..first_layer].iter().map(|node| {
+            let point = node.point.filter(|_| node.stretch >= self.shortest);
+            point.map(|at| Drawn { at, linear }).into_iter().collect()
+        });
+        self.wave = start.collect();
+        self.step = 0;
+        let cells = self.cores.iter().map(|core| Field::new(core.scale()));
+        self.last = cells.collect();
+        // Points of the step, by the size of cells that they stand for.
+        let mut met: Vec<Vec<Field>> = { self.cores[..first_layer].iter() }
+            .map(|core| {
+                let finest = core.scale() / grain;
+                let sizes = std::iter::successors(Some(finest), |scale| Some(scale / 2.0));
+                sizes.take(MOST_SIZES).map(Field::new).collect()
+            })
+            .collect();
+        while !self.is_done() {
+            met.iter_mut().flatten().for_each(Field::clear);
+            let is_kept = |this: &Self, image: &Image| {
+                image.whole < first_layer
+                    || image.is_last
+                        && this.last[image.whole].label_of(image.drawn.at) != Some(this.step)
+            };
+            self.go_on(is_kept, |this, image| {
+                let Image {
+                    whole,
+                    drawn,
+                    is_last,
+                } = image;
+                if whole >= first_layer || is_last {
+                    this.last[whole].label(drawn.at, this.step)?;
+                }
+                if whole < first_layer
+                    && met[whole][size_of(this.ratio(whole, &drawn))].add(drawn.at)?
+                {
+                    this.wave[whole].push(drawn);
+                }
+                Ok(())
+            })?;
+        }
+        Ok(self.step)
+    }
+
+    /// Finds the last steps of outlines, by `fineness` points along a side of a cell; returns the number of
+    /// steps.
+    fn follow_outlines(&mut self, fineness: f64) -> Result<u16, Stopped> {
+        let set = self.set;
+        let first_layer = self.first_layer();
+        let linear = DMat2::IDENTITY;
+        let mut met: Vec<Field> = { self.cores[..first_layer].iter() }
+            .map(|core| Field::new(core.scale() * fineness))
+            .collect();
+        self.step = 0;
+        self.wave = vec![Vec::new(); first_layer];
+        for (number, node) in set.net.nodes.iter().enumerate() {
             let points = if node.stretch > 0.0 {
-                outlined(self.graph, node, search.scale * node.stretch, take(0)?)?
+                let scale = self.cores[number].scale() * fineness;
+                outlined(set.graph, node, scale, self.left)?
             } else {
                 Vec::new()
             };
-            take(points.len())?;
-            if number >= first_layer {
-                for at in points {
-                    layers[number - first_layer].label(at, 0)?;
-                }
-                continue;
-            }
-            let linear = DMat2::IDENTITY;
-            let mut drawn = Vec::new();
+            self.take(points.len())?;
             for at in points {
-                if met[number].add(at)? {
-                    drawn.push(Drawn { at, linear });
+                if number >= first_layer {
+                    self.last[number].label(at, 0)?;
+                } else if !self.is_covered(number, &Drawn { at, linear }, 0)
+                    && met[number].add(at)?
+                {
+                    self.wave[number].push(Drawn { at, linear });
                 }
             }
-            wave.push(drawn);
         }
-        let is_long = |drawn: &Drawn, scale: f64| stretch(&drawn.linear) * scale >= shortest;
-        let mut step: u8 = 0;
-        while wave.iter().any(|points| !points.is_empty()) {
-            step = step.checked_add(1).ok_or(Stopped::TooMany)?;
+        while !self.is_done() {
             met.iter_mut().for_each(Field::clear);
-            let mut next: Vec<Vec<Drawn>> = vec![Vec::new(); wave.len()];
-            for (node, points) in nodes.iter().zip(&wave) {
-                for block in points.chunks(BLOCK) {
-                    let images = block.len() * node.images.len();
-                    take(images)?;
-                    let (met_before, layers_before) = (&met, &layers);
-                    let is_new = |whole: usize, drawn: &Drawn| {
-                        let scale = nodes[whole].stretch;
-                        is_long(drawn, scale)
-                            && match whole.checked_sub(first_layer) {
-                                Some(layer) => !layers_before[layer].has_label(drawn.at, step),
-                                None => !met_before[whole].holds(drawn.at),
-                            }
-                    };
-                    let threads = search.threads.get().min(images / WORTH_A_THREAD);
-                    let found = looked_for(block, threads, |drawn, found| {
-                        let images = node.images.iter();
-                        let images = images.map(|(map, whole)| (*whole, drawn.mapped(map)));
-                        found.extend(images.filter(|(whole, image)| is_new(*whole, image)));
-                    });
-                    for (whole, image) in found {
-                        match whole.checked_sub(first_layer) {
-                            Some(layer) => layers[layer].label(image.at, step)?,
-                            None if met[whole].add(image.at)? => next[whole].push(image),
-                            None => {}
-                        }
-                    }
+            let is_kept = |this: &Self, image: &Image| {
+                let Image { whole, drawn, .. } = image;
+                if *whole < first_layer {
+                    !this.is_covered(*whole, drawn, this.step)
+                } else {
+                    let known = this.last[*whole].label_of(drawn.at);
+                    known.is_none_or(|known| known < this.step)
                 }
-            }
-            wave = next;
+            };
+            self.go_on(is_kept, |this, image| {
+                let Image { whole, drawn, .. } = image;
+                if whole >= first_layer {
+                    this.last[whole].label(drawn.at, this.step)?;
+                } else if met[whole].add(drawn.at)? {
+                    this.wave[whole].push(drawn);
+                }
+                Ok(())
+            })?;
         }
-        Ok(Found {
-            fields: finished(layers),
-            images: search.most_images - take(0)?,
-            steps: step.into(),
-        })
+        Ok(self.step)
     }
+
+    /// Whether what is replaced for ever covers a point of a step, and so all its images: it is born in no
+    /// fewer steps, or hardly fewer, when it is as short.
+    fn is_covered(&self, whole: usize, drawn: &Drawn, step: u16) -> bool {
+        const NEARLY: f64 = 1.25;
+        const SPARE: f64 = 2.0;
+        if !self.cores[whole].holds(drawn.at) {
+            return false;
+        }
+        let node = &self.set.net.nodes[whole];
+        let all = libm::log(node.stretch / self.shortest).max(0.0);
+        let gone = -libm::log(stretch(&drawn.linear));
+        let steps = self.last[whole].label_of(drawn.at).unwrap_or(0);
+        (f64::from(step) - SPARE) * all <= NEARLY * f64::from(steps) * gone
+    }
+}
+
+/// The number of a size of cells: the smallest for what cannot be contracted any further.
+fn size_of(ratio: f64) -> usize {
+    let mut size = 0;
+    let mut longest = SHORT;
+    while ratio >= longest && size + 1 < MOST_SIZES {
+        (size, longest) = (size + 1, longest * 2.0);
+    }
+    size
 }
 
 impl From<TooFar> for Stopped {

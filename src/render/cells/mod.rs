@@ -1,22 +1,25 @@
 //! Pictures by cells: limit sets whose copies overlap, or become flat, so that elements to a detail are
 //! far more than pixels or have no area.
 //!
-//! What is drawn is the limit set itself, as a pen of no less than a pixel goes over a point of each
+//! These pictures show the limit set itself, as a pen of no less than a pixel goes over a point of each
 //! [cell](crate::grow::LimitCells) that it meets: all that lies within half a pixel of it.
+
+mod plan;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Field, Found, Growth, Layer, LimitCells, Search, Stopped, WalkError};
 use crate::parallel::Team;
-use crate::style::{Cap, ColorBy, Colour, Join, Style, Width};
+use crate::style::{ColorBy, Colour, Style};
 
+use self::plan::Plan;
 use super::layout::Layout;
-use super::sight::{NEARLY, starts_rings};
+use super::sight::NEARLY;
 use super::surface::{FINE, Paint, Pen, Stroke, Surface, position};
-use super::{Canvas, Classes, Drawing, Empty, Format, NoRoom, Options, Picture, RenderError, Size};
+use super::{Canvas, Classes, Drawing, Empty, Format, Options, Picture, RenderError, Size};
 
 /// Cells along a pixel: the finest of these that takes not too much work.
 const FINENESS: [u8; 4] = [1, 2, 4, 8];
@@ -24,20 +27,17 @@ const FINENESS: [u8; 4] = [1, 2, 4, 8];
 /// Images of points that are worth a finer look.
 const WORTH: u64 = 12_000_000;
 
-/// There are no more than so many times as many cells of half a size.
+/// The most by which the number of cells grows where their sides are halved.
 const MOST_TIMES: u64 = 4;
 
 /// The most images of points.
 const MOST_IMAGES: u64 = 400_000_000;
 
-/// The same where every step counts its own.
+/// The most images of points where steps are told.
 const MOST_IMAGES_BY_STEPS: u64 = 250_000_000;
 
-/// The same where only a part of the set is shown, for which elements may be few.
+/// The most images of points where only a part of the set is shown, for which elements may be few.
 const MOST_IMAGES_ABOUT_A_WINDOW: u64 = 60_000_000;
-
-/// Objects that are looked into for one colour of all that becomes of them.
-const MOST_PARTS: usize = 1 << 12;
 
 /// A limit set on its canvas, by cells.
 pub(super) struct Cells<'a> {
@@ -52,15 +52,7 @@ pub(super) struct Cells<'a> {
     layers: Vec<(Colour, Vec<[DVec2; 2]>)>,
 }
 
-/// What is to be drawn.
-struct Plan {
-    layers: Vec<(Colour, Layer)>,
-    pen: Pen,
-    /// Whether colours tell steps.
-    tells_steps: bool,
-}
-
-/// What finds cells.
+/// The search for the cells of a picture.
 struct Finder<'a> {
     set: LimitCells<'a>,
     options: &'a Options,
@@ -115,7 +107,7 @@ fn becomes_flat(graph: &Graph) -> bool {
     graph.is_affine() && !graph.is_similar()
 }
 
-/// The most elements of a limit set that is drawn by elements: more than its pixels could tell.
+/// Returns the most elements of a limit set that is drawn by elements: more than its pixels could tell.
 fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
     let is_closed = |object: &Object| graph.base_elements()[object.base_element].is_closed();
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
@@ -129,8 +121,8 @@ fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
     to_a_pixel * f64::from(width) * f64::from(height) / (finest * finest)
 }
 
-/// Whether a graph of similarities has more elements than so many, down to a length: about, by the powers of
-/// 2 that they are long. It need not be known.
+/// Estimates whether a graph of similarities has more than `most` elements down to a length, by the powers of
+/// 2 that they are long.
 fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
     const AN_OCTAVE: f64 = 64.0;
     const MOST_WORK: usize = 4_000_000;
@@ -173,7 +165,7 @@ fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
     stand > most
 }
 
-/// How a picture is drawn.
+/// The way in which a picture is drawn.
 pub(super) enum Way<'a> {
     Elements(Box<Layout<'a>>),
     Cells(Cells<'a>),
@@ -232,7 +224,7 @@ fn is_too_much(error: &RenderError) -> bool {
 }
 
 impl<'a> Cells<'a> {
-    /// What has been drawn.
+    /// Describes the finished picture.
     pub(super) fn picture(&self) -> Picture {
         Picture {
             size: self.canvas.size(),
@@ -272,7 +264,12 @@ impl<'a> Cells<'a> {
             },
         };
         let is_exact = options.format == Format::Png;
-        let all: &[u8] = if is_exact { &FINENESS } else { &FINENESS[..1] };
+        // Where steps are told, cells are pixels that have one colour.
+        let all: &[u8] = match plan.tells_steps {
+            _ if !is_exact => &FINENESS[..1],
+            true => &FINENESS[..2],
+            false => &FINENESS,
+        };
         let shortest = plan
             .tells_steps
             .then(|| NEARLY * pixels / (canvas.scale() * graph.unit()));
@@ -331,14 +328,14 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// What is drawn of every step, in the order of their classes.
+/// Returns the marks of every step, in the order of their classes.
 fn labelled(
     fields: &[Field],
     graph: &Graph,
     style: &Style,
     is_shown: impl Fn([DVec2; 2]) -> bool,
 ) -> Vec<(Colour, Vec<[DVec2; 2]>)> {
-    let mut marks: Vec<(u8, [DVec2; 2])> = Vec::new();
+    let mut marks: Vec<(u16, [DVec2; 2])> = Vec::new();
     for row in fields.iter().flat_map(Field::rows) {
         row.visit_labels(|label, ends| marks.extend(is_shown(ends).then_some((label, ends))));
     }
@@ -359,135 +356,6 @@ fn labelled(
     }
     layers.retain(|(_, marks)| !marks.is_empty());
     layers
-}
-
-impl Plan {
-    /// The canvas of the limit set, where the graph tells its box.
-    fn canvas(&self, graph: &Graph, options: &Options) -> Result<Option<Canvas>, RenderError> {
-        let bounds = graph.limit_bounds();
-        bounds.map(|it| self.canvas_of(&it, options)).transpose()
-    }
-
-    fn canvas_of(&self, bounds: &Bounds, options: &Options) -> Result<Canvas, RenderError> {
-        let Options { view, size, .. } = options;
-        let canvas = match view.window {
-            Some(window) => Canvas::of_window(window, view, *size)?,
-            None => Canvas::fit(bounds, *size, view.margin + self.pen.width / 2.0)?,
-        };
-        if !canvas.holds(bounds) {
-            return Err(NoRoom::TooClose.into());
-        }
-        Ok(canvas)
-    }
-
-    fn of(graph: &Graph, options: &Options, pixels: f64) -> Option<Self> {
-        let style = &options.style;
-        let is_known = graph.is_plain()
-            && graph.depth().is_none()
-            && !graph.is_levelled()
-            && graph.roots.elements.is_empty()
-            && !graph.resets().contains(&true);
-        let is_told = match style.color_by {
-            ColorBy::None | ColorBy::Hits => true,
-            ColorBy::Tint => !graph.tints(),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => true,
-            // What is drawn when it is replaced no more hangs on the last step.
-            ColorBy::Step => { graph.objects().iter() }
-                .all(|object| !object.visible || matches!(object.replacement, Replacement::Kept)),
-            ColorBy::Age | ColorBy::Fractal | ColorBy::Index | ColorBy::Direction => false,
-        };
-        let fills_rings = style.fill.is_some() && starts_rings(graph);
-        if !is_known || !is_told || fills_rings || options.plot || !graph.contracts() {
-            return None;
-        }
-        let drawn = graph.objects().iter().filter(|object| object.visible);
-        let is_closed = |object: &&Object| graph.base_elements()[object.base_element].is_closed();
-        let is_kept = |object: &&Object| matches!(object.replacement, Replacement::Kept);
-        let all_closed = drawn.clone().all(|object| is_closed(&object));
-        let any_closed = drawn.clone().any(|object| is_closed(&object));
-        // What is replaced is a dot in the end.
-        let kept: Vec<&Object> = drawn.filter(is_kept).collect();
-        let outlines = any_closed && style.outlines_polygons();
-        let has_two_colours = !all_closed && any_closed && style.lines() != style.polygons();
-        let is_linked = |object: &&Object| {
-            let base_element = &graph.base_elements()[object.base_element];
-            !base_element.is_closed() && base_element.ends_meet_frame() != [true; 2]
-        };
-        let are_linked = graph.joins() && kept.iter().any(is_linked);
-        if has_two_colours || are_linked || outlines && kept.iter().any(is_closed) {
-            return None;
-        }
-        let has_own_widths = graph.widest().is_some() && !kept.is_empty();
-        let least = pixels.max(1.0);
-        let width = match style.width {
-            _ if all_closed && !outlines => least,
-            _ if has_own_widths => return None,
-            Width::Pixels(width) => width.max(least),
-            Width::Relative(_) if kept.is_empty() => least,
-            Width::Relative(_) => return None,
-        };
-        // Steps are told apart within a layer.
-        let classes = Classes::before_survey(style.color_by, graph, 0);
-        let layers = layers(graph, &classes)?;
-        let own = if all_closed && !outlines {
-            style.polygons()
-        } else {
-            style.lines()
-        };
-        let layers = layers.into_iter();
-        Some(Self {
-            layers: layers
-                .map(|(class, layer)| (classes.colour(class, style).unwrap_or(own), layer))
-                .collect(),
-            pen: Pen {
-                width,
-                cap: Cap::Round,
-                join: Join::Round,
-                dash: 0.0,
-            },
-            tells_steps: style.color_by == ColorBy::Step,
-        })
-    }
-}
-
-/// What is drawn of each class, in the order of the classes: objects all of whose becoming is of one.
-fn layers(graph: &Graph, classes: &Classes) -> Option<Vec<(u64, Layer)>> {
-    let of_object = |object: usize| match classes.count() {
-        1 => Some(0),
-        _ => classes.of_object(&graph.objects()[object]),
-    };
-    let start = graph.initiator(0).instances.iter();
-    let mut open: Vec<(DAffine2, usize)> = start.map(|it| (it.frame.map, it.object)).collect();
-    let own: Option<Vec<u64>> = (0..graph.objects().len()).map(of_object).collect();
-    let own = own?;
-    let leading: Vec<Vec<bool>> = classes
-        .all()
-        .map(|class| {
-            graph.leading_to(|object| graph.objects()[object].visible && own[object] == class)
-        })
-        .collect();
-    let mut layers: Vec<(u64, Layer)> = classes.all().map(|class| (class, Vec::new())).collect();
-    let mut looked_at = 0;
-    while let Some((map, object)) = open.pop() {
-        looked_at += 1;
-        if looked_at > MOST_PARTS {
-            return None;
-        }
-        let mut of = (0..).zip(&leading).filter(|(_, leading)| leading[object]);
-        match (of.next(), of.next()) {
-            (None, _) => {}
-            (Some((class, _)), None) => layers[class].1.push((map, object)),
-            _ => match &graph.objects()[object].replacement {
-                Replacement::Fixed(_) => {
-                    let children = graph.children(object);
-                    open.extend(children.map(|(_, it)| (map * it.frame.map, it.object)));
-                }
-                _ => return None,
-            },
-        }
-    }
-    layers.retain(|(_, layer)| !layer.is_empty());
-    Some(layers)
 }
 
 impl Drawing for Cells<'_> {
