@@ -9,6 +9,8 @@ mod boxes;
 mod cells;
 #[path = "systems/fractals.rs"]
 mod fractals;
+#[path = "common/random_systems.rs"]
+mod random_systems;
 #[path = "systems/same.rs"]
 mod same;
 

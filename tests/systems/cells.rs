@@ -3,52 +3,15 @@
 
 use std::num::NonZero;
 
+use super::random_systems::{Random, random_similar_system, random_system};
 use super::{library, system};
-use kfrac::geometry::{DAffine2, DMat2, DVec2};
+use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::ifs::System;
 use kfrac::render::{self, Canvas, Detail, Format, Options, Size};
 
 const SIZE: u32 = 64;
-
-/// Numbers without end (splitmix64; Steele et al. 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// From 0 to 1.
-    fn part(&mut self) -> f64 {
-        (self.next() >> 40) as f64 / f64::from(1 << 24)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        usize::try_from(self.next() >> 33).unwrap() % count
-    }
-}
-
-/// The file of a system of two to eight maps: turns, reflections, singular values in [0, 1), and shifts of
-/// up to 1 along each axis.
-fn random_system(seed: u64) -> String {
-    let mut random = Random(seed);
-    let mut text = "maps:\n".to_owned();
-    for _ in 0..2 + random.below(7) {
-        let turn = |random: &mut Random| DMat2::from_angle(std::f64::consts::TAU * random.part());
-        let (last, first) = (turn(&mut random), turn(&mut random));
-        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
-        let values = DVec2::new(random.part(), sign * random.part());
-        let [x, y] = [2.0 * random.part() - 1.0, 2.0 * random.part() - 1.0];
-        let [[a, b], [c, d]] = (last * DMat2::from_diagonal(values) * first).to_cols_array_2d();
-        text += &format!("  - {{matrix: [[{a}, {c}], [{b}, {d}]], shift: [{x}, {y}]}}\n");
-    }
-    text
-}
 
 fn graph(system: &System) -> Graph {
     Graph::of_system(system)
@@ -123,9 +86,21 @@ fn is_near_set(maps: &[DAffine2], ball: (DVec2, f64), at: DVec2, near: f64, pixe
 /// Draws a system by cells, and holds the picture against points that come by random iteration, and ink
 /// against copies of the set.
 fn hold(name: &str, system: &System, points: usize) {
+    let (picture, opacities) = hold_points(name, system, points, &[]);
+    assert!(picture.is_limit, "{name}");
+    hold_ink(name, system, &opacities);
+}
+
+/// Draws a system, and holds the picture against points that come by random iteration, now and then from a
+/// line between two points again.
+fn hold_points(
+    name: &str,
+    system: &System,
+    points: usize,
+    segment: &[DVec2],
+) -> (render::Picture, Vec<Vec<u8>>) {
     let graph = graph(system);
     let (bytes, picture) = drawn(&graph, &options(SIZE, 1));
-    assert!(picture.is_limit, "{name}");
     let opacities = opacities(&bytes);
     let bounds = graph.limit_bounds().unwrap();
     let canvas = Canvas::fit(&bounds, Size::Long(SIZE), 0.5).unwrap();
@@ -133,13 +108,27 @@ fn hold(name: &str, system: &System, points: usize) {
     let mut random = Random(1);
     let mut at = bounds.min();
     for point in 0..points {
-        at = maps[random.below(maps.len())].transform_point2(at);
+        if let [from, to] = segment
+            && random.below(8) == 0
+        {
+            at = from.lerp(*to, random.part());
+        } else {
+            at = maps[random.below(maps.len())].transform_point2(at);
+        }
         if point < 2_000 {
             continue;
         }
         let pixel = canvas.pixel(at);
         assert!(is_near_ink(&opacities, pixel), "{name}: nothing at {pixel}");
     }
+    (picture, opacities)
+}
+
+/// Holds ink against copies of a set.
+fn hold_ink(name: &str, system: &System, opacities: &[Vec<u8>]) {
+    let bounds = graph(system).limit_bounds().unwrap();
+    let canvas = Canvas::fit(&bounds, Size::Long(SIZE), 0.5).unwrap();
+    let maps: Vec<DAffine2> = system.ifs().maps().iter().map(|map| map.affine).collect();
     let to_plane = canvas.to_pixels().inverse();
     let middle = bounds.min().midpoint(bounds.max());
     let ball = (middle, middle.distance(bounds.min()));
@@ -163,6 +152,27 @@ fn random_systems_are_drawn_where_they_are() {
     for seed in 0..8 {
         let system = system(&random_system(seed));
         hold(&format!("system {seed}"), &system, 20_000);
+    }
+}
+
+/// By elements or by cells.
+#[test]
+fn random_similar_systems_are_drawn_where_they_are() {
+    for seed in 0..12 {
+        let system = system(&random_similar_system(seed));
+        hold_points(&format!("system {seed}"), &system, 20_000, &[]);
+    }
+}
+
+#[test]
+fn condensation_sets_are_drawn_in_random_systems() {
+    let segment = [DVec2::new(0.25, -0.5), DVec2::new(0.5, 1.5)];
+    let set = "condensation:\n  - {segment: [[0.25, -0.5], [0.5, 1.5]]}\n";
+    for seed in 0..6 {
+        for maps in [random_system(seed), random_similar_system(seed)] {
+            let system = system(&(maps + set));
+            hold_points(&format!("system {seed}"), &system, 20_000, &segment);
+        }
     }
 }
 
@@ -228,15 +238,52 @@ fn cells_tell_steps() {
     assert_eq!(colour(-0.3, 0.5)[3], 0);
 }
 
+/// Copies that lie all over each other are nearly all of the last step, and what they do not meet is not.
+#[test]
+fn cells_tell_the_steps_of_copies_that_overlap() {
+    let style = "style: {color_by: step, palette: [\"#ff0000\", \"#0000ff\"]}\n";
+    let crown = "maps:\n  - {scale: 0.9, rotate: 19, shift: [0, 1]}\n  - {scale: 0.9, shift: [0, 1]}\n  \
+                 - {scale: 0.9, rotate: -19, shift: [0, 1]}\n";
+    let trunk = "condensation:\n  - {polygon: [[-0.03, 0], [0.03, 0], [0.03, 1], [-0.03, 1]]}\n";
+    let blues = |text: &str| -> (render::Picture, [usize; 2]) {
+        let tree = system(text);
+        let mut options = options(160, 1);
+        options.style = tree.heading().style.clone();
+        let (bytes, picture) = drawn(&graph(&tree), &options);
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+        decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+        let mut reader = decoder.read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let drawn = pixels.chunks(4).filter(|pixel| pixel[3] == 255);
+        let (blue, red): (Vec<&[u8]>, Vec<_>) = drawn.partition(|pixel| pixel[2] > pixel[0]);
+        (picture, [blue.len(), red.len()])
+    };
+    let (picture, [blue, red]) = blues(&format!("{crown}{trunk}{style}"));
+    assert!(picture.is_limit);
+    assert!(blue > 5_000 && red > 10, "{blue} {red}");
+    // The last steps alone.
+    let (picture, [blue, red]) = blues(&format!("{crown}{style}"));
+    assert!(picture.is_limit);
+    assert!(blue > 5_000 && red < blue / 100, "{blue} {red}");
+}
+
 #[test]
 fn threads_do_not_show_in_cells() {
+    let style = "style: {color_by: step}\n";
     for seed in [1, 4] {
-        let system = system(&random_system(seed));
-        let graph = graph(&system);
-        let (expected, _) = drawn(&graph, &options(300, 1));
-        for threads in [2, 3, 8] {
-            let (bytes, _) = drawn(&graph, &options(300, threads));
-            assert!(bytes == expected, "{seed} on {threads} threads");
+        for style in ["", style] {
+            let system = system(&(random_system(seed) + style));
+            let graph = graph(&system);
+            let options = |threads: usize| Options {
+                style: system.heading().style.clone(),
+                ..options(300, threads)
+            };
+            let (expected, _) = drawn(&graph, &options(1));
+            for threads in [2, 3, 8] {
+                let (bytes, _) = drawn(&graph, &options(threads));
+                assert!(bytes == expected, "{seed} on {threads} threads");
+            }
         }
     }
 }
