@@ -265,10 +265,10 @@ impl<'a> Cells<'a> {
         };
         let is_exact = options.format == Format::Png;
         // Where steps are told, cells are pixels that have one colour.
-        let all: &[u8] = match plan.tells_steps {
-            _ if !is_exact => &FINENESS[..1],
-            true => &FINENESS[..2],
-            false => &FINENESS,
+        let all: &[u8] = if is_exact && !plan.tells_steps {
+            &FINENESS
+        } else {
+            &FINENESS[..1]
         };
         let shortest = plan
             .tells_steps
@@ -296,6 +296,9 @@ impl<'a> Cells<'a> {
         let mut layers = Vec::new();
         if plan.tells_steps {
             layers = labelled(&fields, graph, &options.style, is_shown);
+            let shift = to_pixels(&canvas, pixels, &fields);
+            let marks = layers.iter_mut().flat_map(|(_, marks)| marks);
+            marks.flatten().for_each(|end| *end += shift);
         } else {
             for (colour, field) in colours.into_iter().zip(&fields) {
                 // Rows that lie within others: more would add nothing.
@@ -326,6 +329,17 @@ impl<'a> Cells<'a> {
             layers,
         }))
     }
+}
+
+/// Returns the way, of no more than half a pixel along each axis, by which the middles of cells come to
+/// lie on those of pixels, where both are as large: each pixel has one colour then.
+fn to_pixels(canvas: &Canvas, pixels: f64, fields: &[Field]) -> DVec2 {
+    let Some(field) = fields.first().filter(|_| pixels <= 1.0) else {
+        return DVec2::ZERO;
+    };
+    let pixel = canvas.pixel(DVec2::splat(0.5 / field.scale()));
+    let way = (pixel.floor() + 0.5 - pixel) / canvas.scale();
+    DVec2::new(way.x, -way.y)
 }
 
 /// Returns the marks of every step, in the order of their classes.
