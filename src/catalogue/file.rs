@@ -26,7 +26,7 @@ pub fn open_file(path: &Path) -> Result<File, Diagnostic> {
     File::open(path).map_err(failed)
 }
 
-/// What is said of a file that cannot be read.
+/// Returns the error for a file that cannot be read.
 #[must_use]
 pub fn cannot_be_read(path: &Path, error: &io::Error) -> Diagnostic {
     let name = path.display();

@@ -62,7 +62,7 @@ const OF_RULES: [(&str, &str); 11] = [
     ("compare", "b"),
 ];
 
-/// Those of them that take a component as well.
+/// The commands that take a component as well.
 const OF_COMPONENTS: [&str; 3] = ["show", "cat", "check"];
 
 /// The commands that have `--set`.

@@ -489,7 +489,7 @@ impl Arguments {
     }
 }
 
-/// What is drawn, and how.
+/// A picture to be drawn, with its options.
 struct Pictured<'a> {
     arguments: &'a Arguments,
     loaded: &'a Loaded,

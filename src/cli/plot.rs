@@ -80,7 +80,7 @@ fn pens(text: &str) -> Result<NonZero<usize>, String> {
         .map_err(|_| "a plot has one pen or more: --pens 3".into())
 }
 
-/// What a plot takes, in words.
+/// Describes the cost of a plot: strokes, layers and pen-up travel.
 pub(super) fn described(plotted: &Plotted) -> String {
     let layers = match plotted.layers {
         1 => String::new(),

@@ -64,7 +64,7 @@ pub fn schema_of_all() -> String {
     schema.with("definitions", Object(bodies.into())).to_text()
 }
 
-/// What the schema of a kind of file says, at a place of a document.
+/// Returns the schema of a kind of file, at a place of a document.
 fn body(shelf: Shelf, at: &str) -> Object {
     let mut definitions = Definitions {
         at: at.into(),

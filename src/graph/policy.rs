@@ -12,8 +12,8 @@ enum Origin {
     Image(DAffine2, usize),
 }
 
-/// What corners become if each of them comes from where the farthest of its polygon does along its
-/// direction, again and again: the points that belong to the choices that are best now.
+/// Evaluates the present policy: returns the points that corners converge to if each is mapped, again and
+/// again, from the origin of the farthest point along its direction.
 ///
 /// This is Howard's policy iteration ("Dynamic Programming and Markov Processes", 1960): support
 /// functions solve h(u) = max (h(Lᵀu) + t·u) over maps x → Lx + t, a choice of a map for every
@@ -73,7 +73,7 @@ pub(super) fn followed(
     polygons.iter().map(ends_of).collect()
 }
 
-/// How far a corner has been followed.
+/// The progress of following a corner.
 #[derive(Clone, Copy)]
 enum Followed {
     Not,

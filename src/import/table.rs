@@ -112,7 +112,7 @@ pub fn read_points(
 /// The most bytes from one row to the next: a stream without ends of lines must not fill the memory.
 const MOST_BYTES: usize = 1 << 24;
 
-/// What is read, as long as rows follow each other.
+/// A reader that fails where a row is longer than [`MOST_BYTES`].
 struct Rows<'a, R> {
     input: R,
     /// The bytes since the last row.

@@ -44,8 +44,8 @@ struct Growth {
     weight: f64,
 }
 
-/// What a second power or a logarithm adds to the growth, from each size to the next, and the logarithm
-/// of what the model counts before anything is measured.
+/// The correction by a second power or a logarithm: its addition to the growth from each size to the next,
+/// and the logarithm of the model's prior.
 struct Correction {
     growth: Vec<f64>,
     prior: f64,

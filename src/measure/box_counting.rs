@@ -240,7 +240,7 @@ impl BoxCounting {
     }
 }
 
-/// What a regression reads of sizes.
+/// Returns the readings of a regression, one for each size.
 fn readings<'a>(scales: impl Iterator<Item = &'a Scale>) -> Vec<Reading> {
     let reading = |scale: &Scale| Reading {
         size: scale.size,
@@ -252,7 +252,7 @@ fn readings<'a>(scales: impl Iterator<Item = &'a Scale>) -> Vec<Reading> {
     scales.map(reading).collect()
 }
 
-/// The same of mean counts, from the largest size on.
+/// Returns the readings of mean counts, from the largest size on.
 fn of_means(means: &[(f64, f64)]) -> Vec<Reading> {
     let reading = |(number, &(size, boxes)): (usize, &(f64, f64))| Reading {
         size,

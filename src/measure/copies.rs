@@ -1,5 +1,4 @@
-//! What measures are made of: sets that are made of copies of each other, and how mass is shared
-//! among them.
+//! Self-similar sets made of copies of each other, and the distribution of mass among the copies.
 
 use crate::digraph::components;
 use crate::geometry::{DAffine2, DMat2};

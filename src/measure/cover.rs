@@ -85,7 +85,7 @@ fn boxes(extent: f64) -> usize {
     whole(extent.ceil()).max(1)
 }
 
-/// What `count` tells of every grid, or what else there is, in their order.
+/// Returns the results of `count` for every grid, in the order of the grids.
 pub(super) fn on_all<G: Sync, T: Send>(
     grids: &[G],
     threads: NonZero<usize>,

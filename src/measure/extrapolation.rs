@@ -6,8 +6,8 @@
 //! N(s) − 1 = 4 (N(3 s) − 1)). A pen of a width of w more pixels than one makes all of the set larger,
 //! N(s) of the set being the area at s − w; how wide it may be, the picture's thickness bounds.
 //!
-//! What such a model leaves, such as the waves of a set that repeats itself, goes together at
-//! neighbouring sizes: it is an autoregression of the first order in ln s, of a size that is told
+//! The residuals of such a model, such as the waves of a self-similar set, are correlated between
+//! neighbouring sizes: they are an autoregression of the first order in ln s, of a size that is told
 //! from the data, but no less than some hundredth; it may be larger for coarse boxes, of which a few hold
 //! the whole set. D is the mean over all models by their likelihood, and its error their spread: where
 //! slopes drift, other powers explain them as well, and the error is large.
@@ -29,12 +29,12 @@ const STEP: f64 = 2.0 / STEPS as f64;
 const ADDED: std::ops::Range<i32> = 0..14;
 const ADDED_STEP: f64 = 0.15;
 
-/// How far d is below D at least.
+/// The least difference D − d.
 const APART: f64 = 0.03;
 
-/// What is added is at most so much of the power at the coarsest size, where it is taken away, and
-/// leaves it so much of the count at the finest size.
+/// The least coefficient of the added power, as a share of the main one at the coarsest size.
 const MOST_TAKEN: f64 = -0.9;
+/// The least share of the main power in the count at the finest size.
 const LEAST_SHARE: f64 = 0.7;
 
 /// The finest boxes in pixels, and the coarsest of every range as a part of the long side.
@@ -64,7 +64,7 @@ const LEAST_ERROR: f64 = 0.003;
 /// Sets of a larger thickness are filled: no pen has drawn their lines.
 const FILLED: f64 = 4.5;
 
-/// What is believed before counts are looked at.
+/// The prior distribution.
 struct Belief {
     /// Widths of the pen beyond a pixel.
     pens: Vec<f64>,
@@ -197,7 +197,7 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
 /// A model of a range: the step of its dimension, and the logarithm of its likelihood.
 type Told = (u16, f64);
 
-/// What a range of sizes tells of the dimension.
+/// The estimate of the dimension by a range of sizes.
 struct Range {
     sizes: usize,
     /// The logarithm of its likelihood.

@@ -32,8 +32,7 @@ const MOST_PIXELS: f64 = 1e9;
 /// pixel, which leaves room for the errors of many levels.
 const FINEST: f64 = 1e12;
 
-/// What has no extent across is shown on a strip of this part of its length, but no narrower than so many
-/// pixels.
+/// The width of the strip for a set without extent across, as a part of its length, and in pixels at least.
 const STRIP: f64 = 1.0 / 40.0;
 const NARROWEST_STRIP: f64 = 16.0;
 

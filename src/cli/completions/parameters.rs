@@ -48,7 +48,7 @@ pub(super) fn listed(words: &[OsString]) -> String {
     text
 }
 
-/// What an unfinished command line names.
+/// The rules and options that an unfinished command line names.
 #[derive(Default)]
 struct Typed {
     folders: Vec<PathBuf>,

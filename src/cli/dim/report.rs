@@ -292,7 +292,7 @@ pub(super) fn described(measured: &Measured) -> String {
     text
 }
 
-/// What is to be known of the fit beside its result.
+/// Returns remarks on the fit: drifts, bases and ranges.
 fn remarks(counting: &BoxCounting) -> Vec<String> {
     const USUAL: f64 = 2.0;
     let mut remarks = Vec::new();

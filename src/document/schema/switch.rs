@@ -51,7 +51,7 @@ pub(super) fn by_kind() -> Object {
         })
 }
 
-/// What components have beside their own keys.
+/// The keys of components beside their own.
 const COMPONENT: Shape = Shape {
     keys: &[&DESCRIPTION, &[PARAMS]],
     ..INITIATOR

@@ -81,7 +81,7 @@ impl Shape {
     }
 }
 
-/// What tells objects apart: their kind, their colour, and what becomes of widths, which may be set.
+/// The identity of an object: its kind, its colour, and its change of widths, or a width that is set.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     kind: usize,

@@ -132,8 +132,8 @@ fn symbol(command: Command) -> Option<char> {
     })
 }
 
-/// What a symbol is called here. Those that our words take apart are small letters, which Fractint does
-/// not tell from large ones.
+/// Returns the symbol of kfrac's words for one of Fractint. Punctuation that words of kfrac split at becomes a
+/// lower-case letter, for Fractint ignores case.
 fn own(symbol: char) -> char {
     match symbol {
         '(' => 'a',

@@ -2,7 +2,7 @@
 
 use crate::style::Colour;
 
-/// How many there are.
+/// The number of colours.
 pub(super) const COLOURS: i64 = 256;
 
 /// The one that it begins with: white, on black.

@@ -1,4 +1,4 @@
-/// How much work goes into deciding a dimension before it is given up.
+/// The work that is spent on deciding a dimension before it is given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
     /// Some tens of milliseconds where nothing is decided.

@@ -26,7 +26,7 @@ pub fn dimensions_of_graph(graph: &Graph) -> Grown {
     dimensions_of_graph_within(graph, Effort::Full)
 }
 
-/// The same, by so much work.
+/// Returns the dimensions of a graph's limit, as [`dimensions_of_graph`] does, within an effort.
 #[must_use]
 pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> Grown {
     if graph.draws() {

@@ -155,7 +155,7 @@ pub fn dimensions(system: &System) -> Option<Dimensions> {
     dimensions_within(system, Effort::Full)
 }
 
-/// The same, by so much work.
+/// Returns the dimensions of the sets of a system, as [`dimensions`] does, within an effort.
 #[must_use]
 pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> {
     let system = &system.in_own_units();

@@ -13,7 +13,7 @@ use super::sizes::Generations;
 use super::system::System;
 use super::types::Types;
 
-/// The same sets, made of pieces of which none is there twice, where pieces coincide and are of
+/// Rewrites sets whose pieces coincide as sets of pieces without repetition, where pieces are of
 /// finitely many types: there is a set for every type (Ngai & Wang 2001). The sets keep their numbers.
 ///
 /// Where pieces are of too many types, or a set holds copies of others that do not hold copies of it,
@@ -91,7 +91,7 @@ fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Co
     Some((size + types.kept.len() - sets.len(), pieces))
 }
 
-/// What a map of space does in the plane.
+/// Returns the restriction of a map of space to the plane.
 fn flattened(map: &DAffine3) -> DAffine2 {
     let linear = map.matrix3;
     DAffine2 {

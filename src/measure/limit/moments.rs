@@ -143,7 +143,7 @@ struct Small {
     radius: f64,
 }
 
-/// What is followed down.
+/// The descent: the pieces of the present size, and the work that they took.
 struct Descent<'c> {
     cascade: &'c Cascade,
     orders: &'c [f64],

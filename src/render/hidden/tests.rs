@@ -22,7 +22,7 @@ use crate::style::{ColorBy, Colour, Style, Width};
 /// Of 256 questions for what is covered, those that are not answered: none may be.
 const NOTHING_IS_HIDDEN: u64 = 256;
 
-/// What is drawn, on so many threads as `seed` has them work.
+/// Returns the pixels drawn by a number of threads in an order given by `seed`.
 fn drawn(
     graph: &Graph,
     growth: &Growth<'_>,

@@ -185,7 +185,7 @@ pub(super) struct Plot {
     pub(super) plotted: Plotted,
 }
 
-/// What pens draw of what colours draw.
+/// Returns the strokes of each pen from those of each colour.
 fn by_pen(layers: Vec<(Colour, Strokes)>, pens: Pens) -> Vec<(Colour, Strokes)> {
     let colours: Vec<_> = layers
         .iter()

@@ -4,7 +4,7 @@ use std::num::NonZero;
 
 use crate::style::Colour;
 
-/// How many pens a plot takes.
+/// The number of pens of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pens {
     /// One for every colour where these are few, [`Pens::FEW`] at most, and else one for all.

@@ -20,7 +20,7 @@ const LONGEST_DOT: i64 = 25;
 /// Shapes that are narrower than this have lost their sides by rounding.
 const LINE: f64 = 1.0;
 
-/// What draws dots and lines.
+/// The pen for dots and lines.
 static PEN: LazyLock<RoundPen> = LazyLock::new(|| RoundPen::new(NARROWEST as f64 / FINE as f64));
 
 impl Plane {
