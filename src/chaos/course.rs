@@ -1,3 +1,5 @@
+//! The walks of random iteration, divided among threads.
+
 use crate::geometry::{DAffine2, DVec2};
 
 use super::alias::AliasTable;

@@ -1,3 +1,5 @@
+//! Counts of the points of random iteration, by pixel and class.
+
 use crate::geometry::DAffine2;
 
 /// A part of the plane, in pixels.

@@ -1,3 +1,5 @@
+//! The arithmetic of walkers.
+
 use std::ops::{Add, Mul, Sub};
 
 /// The numbers that walkers walk in. Sums and products are those of IEEE 754, each rounded on its

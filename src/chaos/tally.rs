@@ -1,3 +1,5 @@
+//! Bookkeeping of a game: progress and cancellation.
+
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 

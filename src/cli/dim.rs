@@ -131,7 +131,7 @@ struct Measured {
     spectrum: Vec<Generalised>,
     /// The spectrum that is known without measuring.
     spectrum_known: Option<exact::Spectrum>,
-    /// What measure of a limit set the spectrum is of.
+    /// The measure on the limit set whose spectrum is given.
     measure: Option<&'static str>,
     lacunarity: Vec<Lacunarity>,
     warnings: Vec<String>,

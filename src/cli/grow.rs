@@ -1,6 +1,7 @@
 //! `kfrac grow`: from a rule to a picture or a table.
 
-use std::io::Write;
+mod pictured;
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,8 +11,7 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::geometry::Homothety;
 use crate::graph::{Graph, Object};
-use crate::grow::{Progress, Walked};
-use crate::render::{self, Canvas, Empty, Instanced, Look, Plotted, RenderError, Size, Unit};
+use crate::render::{self, Canvas, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::wording;
 use crate::zoom;
@@ -22,11 +22,12 @@ use super::growth::{self, GrowthArguments};
 use super::labels::labels;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
-use super::plot::{self, PlotArguments};
+use super::plot::PlotArguments;
 use super::rule::{Loaded, RuleArguments};
 use super::svg::{self, SvgArguments};
 use super::zoom::ZoomArguments;
-use super::{Failure, chaos, format, help, light, output, steps, text};
+use super::{Failure, chaos, format, help, output, steps, text};
+use pictured::{Pictured, Wrote};
 
 /// Grows a rule and draws it, or lists its elements
 ///
@@ -486,167 +487,5 @@ impl Arguments {
             ));
         }
         Ok(())
-    }
-}
-
-/// A picture to be drawn, with its options.
-struct Pictured<'a> {
-    arguments: &'a Arguments,
-    loaded: &'a Loaded,
-    format: render::Format,
-    look: Option<&'a Look>,
-    path: &'a Path,
-}
-
-impl Pictured<'_> {
-    /// Draws to a goal, with no more elements than `most` or those that are allowed.
-    fn draw(
-        &self,
-        goal: Goal,
-        graph: Graph,
-        most: Option<u64>,
-        progress: Option<&Progress>,
-        mut out: &mut dyn Write,
-    ) -> Result<Wrote, RenderError> {
-        let Self {
-            arguments, loaded, ..
-        } = self;
-        let options = arguments.options(loaded, goal, self.format, graph.place());
-        goal.come_to(loaded, graph, |graph, steps| {
-            let mut growth = arguments.growth.drawn_as(&options, steps, progress);
-            growth.most_elements = most.unwrap_or(growth.most_elements);
-            let written = match self.look {
-                None => render::write(graph, &growth, &options, &mut out),
-                Some(look) => {
-                    let source = loaded.source();
-                    render::write_zoomed(&source, graph, &growth, &options, look, &mut out)
-                }
-            };
-            written.map(Wrote::from)
-        })
-    }
-
-    /// Draws what is light and comes nearest to a goal; returns the goal that it is drawn to.
-    fn draw_light(
-        &self,
-        goal: Goal,
-        graph: Graph,
-        progress: Option<&Progress>,
-        out: &mut dyn Write,
-    ) -> Result<(Wrote, Goal), Failure> {
-        let Self {
-            arguments, loaded, ..
-        } = self;
-        let explain = |error| arguments.growth.explain(error, loaded, self.path);
-        let options = arguments.options(loaded, goal, self.format, graph.place());
-        let is_part = self.look.is_some() || options.view.window.is_some();
-        let color_by = options.style.color_by;
-        let by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);
-        let nearest = light::nearest(goal, &graph, is_part, by_steps, |goal| {
-            let graph = loaded.compile_for(goal.steps(), color_by)?;
-            let drafted = light::draft(|out| {
-                let most = Some(light::MOST_ELEMENTS);
-                let wrote = self.draw(goal, graph, most, None, out)?;
-                let elements = wrote.elements;
-                Ok((wrote, elements))
-            });
-            drafted.map_err(explain)
-        })?;
-        match nearest {
-            Some((drawn, (wrote, draft))) => {
-                out.write_all(&draft.bytes)
-                    .map_err(|error| output::failed(error, self.path))?;
-                Ok((wrote, drawn))
-            }
-            None => {
-                let least = if self.look.is_some() {
-                    goal
-                } else {
-                    Goal::Steps(0, None)
-                };
-                let graph = loaded.compile_for(least.steps(), color_by)?;
-                let wrote = self.draw(least, graph, None, progress, out);
-                Ok((wrote.map_err(explain)?, least))
-            }
-        }
-    }
-}
-
-/// What has been written.
-struct Wrote {
-    steps: u32,
-    elements: u64,
-    /// Whether there are more.
-    has_more: bool,
-    fractals: u64,
-    pixels: Option<[u32; 2]>,
-    plotted: Option<Plotted>,
-    instanced: Option<Instanced>,
-    /// Whether the limit set is drawn, and not its elements.
-    is_limit: bool,
-    /// Whether elements outside a window may not be among them.
-    is_part: bool,
-    empty: Option<Empty>,
-}
-
-impl From<render::Picture> for Wrote {
-    fn from(picture: render::Picture) -> Self {
-        Self {
-            steps: picture.steps,
-            elements: picture.elements,
-            has_more: picture.has_more,
-            fractals: picture.fractals,
-            pixels: Some(picture.size),
-            plotted: picture.plotted,
-            instanced: picture.instanced,
-            is_limit: picture.is_limit,
-            is_part: picture.is_part,
-            empty: picture.empty,
-        }
-    }
-}
-
-impl Wrote {
-    fn table(walked: Walked, steps: u32) -> Self {
-        Self {
-            steps,
-            elements: walked.elements,
-            has_more: false,
-            fractals: walked.fractals,
-            pixels: None,
-            plotted: None,
-            instanced: None,
-            is_limit: false,
-            is_part: false,
-            empty: None,
-        }
-    }
-
-    fn summary(&self, unit: Unit) -> String {
-        let mut summary = match &self.instanced {
-            Some(instanced) => svg::described(instanced),
-            None if self.is_limit => {
-                let marks = wording::counted(&self.elements.into(), "mark");
-                format!("its limit by {marks}")
-            }
-            None => wording::counted(&self.elements.into(), "element"),
-        };
-        if self.has_more {
-            summary.insert_str(0, "more than ");
-        }
-        if self.is_part {
-            summary.push_str(" visited");
-        }
-        if self.fractals > 1 && self.instanced.is_none() {
-            summary.push_str(" in ");
-            summary.push_str(&wording::counted(&self.fractals.into(), "fractal"));
-        }
-        if let Some(size) = self.pixels {
-            summary.push_str(&format!(", {}", length::described(size, unit)));
-        }
-        if let Some(plotted) = &self.plotted {
-            summary.push_str(&format!(", {}", plot::described(plotted)));
-        }
-        summary
     }
 }

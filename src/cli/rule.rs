@@ -70,8 +70,7 @@ pub(super) struct Loaded {
     pub(super) omitted: Vec<u32>,
     /// What draws depend on, and how many elements are allowed, where that is known.
     growth: (u64, u64),
-    /// What leads to its coordinates from those that graphs are compiled in; those that suit it unless it
-    /// is given.
+    /// The map from the coordinates of compiled graphs to those of the file; [`Model::place`] unless given.
     place: Option<Homothety>,
 }
 
@@ -82,7 +81,7 @@ impl Loaded {
         self
     }
 
-    /// The same with graphs in given coordinates.
+    /// Sets the coordinates in which graphs are compiled: `place` maps them to those of the file.
     pub(super) fn within(self, place: Homothety) -> Self {
         Self {
             place: Some(place),
@@ -90,7 +89,7 @@ impl Loaded {
         }
     }
 
-    /// What leads to its coordinates from those that suit it.
+    /// Returns [`Model::place`], with an error as a mistake in the file.
     pub(super) fn place(&self) -> Result<Homothety, Failure> {
         let place = self.model.place().map_err(CompileError::from);
         place.map_err(|error| self.model.diagnostic(&error).into())
@@ -115,12 +114,12 @@ impl Loaded {
         self.compiled(&self.model, steps)
     }
 
-    /// The same of [the model that has the limit set](Model::of_limit).
+    /// Compiles the graph of [the model that has the limit set](Model::of_limit).
     pub(super) fn compile_limit(&self, steps: u32) -> Result<Graph, Failure> {
         self.compiled(&self.model.of_limit(), steps)
     }
 
-    /// The same, unless that is the model itself.
+    /// Compiles the graph of the model that has the limit set; `None` if it is the model itself.
     pub(super) fn other_limit(&self, steps: u32) -> Result<Option<Graph>, Failure> {
         match self.model.of_limit() {
             Cow::Borrowed(_) => Ok(None),

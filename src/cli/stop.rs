@@ -115,7 +115,7 @@ mod disposition {
             .collect()
     }
 
-    /// The same, where it cannot be known what is ignored: all but the signal that `nohup` is about.
+    /// Returns all but the signal that `nohup` is about, where ignored signals cannot be known.
     #[cfg(not(any(target_os = "linux", target_os = "android")))]
     pub(super) fn heard() -> Vec<i32> {
         use signal_hook::consts::{SIGINT, SIGTERM};

@@ -1,3 +1,5 @@
+//! Reasons for which a fractal has no equivalent of another kind.
+
 use crate::graph::NoLimit;
 use crate::model::Kind;
 

@@ -1,3 +1,5 @@
+//! Points of random iteration as a table.
+
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 

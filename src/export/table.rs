@@ -1,3 +1,5 @@
+//! Elements of approximants as a table.
+
 use std::io::{self, Write};
 use std::num::NonZero;
 

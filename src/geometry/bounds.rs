@@ -1,3 +1,5 @@
+//! Axis-parallel boxes.
+
 use glam::DVec2;
 
 /// A box with sides along the axes; empty until a point is added.

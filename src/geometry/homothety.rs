@@ -1,3 +1,5 @@
+//! Homotheties by powers of two.
+
 use super::{Bounds, DAffine2, DMat2, DVec2};
 
 /// A homothety whose ratio is a power of two: x → 2ⁿ x + c.

@@ -301,7 +301,7 @@ fn of_points(
 }
 
 impl Measured {
-    /// The same of a set that is so many times as large.
+    /// Returns the results for the set enlarged by `ratio`.
     fn enlarged(mut self, ratio: f64) -> Self {
         if ratio == 1.0 {
             return self;

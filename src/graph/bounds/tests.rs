@@ -1,3 +1,5 @@
+//! Boxes of limit sets against random iteration and plain polygon iteration.
+
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 use proptest::collection::vec;

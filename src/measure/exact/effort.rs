@@ -1,3 +1,5 @@
+//! Limits of the work on exact dimensions.
+
 /// The work that is spent on deciding a dimension before it is given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {

@@ -1,3 +1,5 @@
+//! Pictures in which covered elements are left out against pictures with all of them.
+
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 use std::num::NonZero;
