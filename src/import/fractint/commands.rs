@@ -25,8 +25,8 @@ pub(super) enum Command {
     Pop,
     /// `Cnn`
     Colour(i64),
-    /// `<nn` and `>nn`
-    Shift(i64),
+    /// `<nn` and `>nn`: what is added to the number of the colour, or taken from it.
+    Shift { by: i64, down: bool },
     /// Anything else draws nothing.
     Other(char),
 }
@@ -63,6 +63,11 @@ impl Factor {
             true => format!("-{formula}"),
             false => formula,
         }
+    }
+
+    /// Whether the command before it turns it round: `/` does, `\` does not.
+    pub(super) fn is_negative(self) -> bool {
+        self.negative
     }
 
     /// Whether it is a number.
@@ -119,8 +124,10 @@ pub(super) fn of(word: &Word, found: &mut Diagnostics) -> Vec<(Command, Place)> 
             }),
             '@' => Command::Scale(number()),
             'C' => Command::Colour(number().whole()),
-            '<' => Command::Shift(number().whole()),
-            '>' => Command::Shift(number().whole().saturating_neg()),
+            '<' | '>' => Command::Shift {
+                by: number().whole(),
+                down: command == '>',
+            },
             other => Command::Other(other),
         };
         let place = word.part(start..at);

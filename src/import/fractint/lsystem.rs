@@ -12,11 +12,8 @@ use super::commands::{self, Command, Heading};
 use super::entries::{Entry, Word};
 use super::palette;
 
-/// Commands with numbers, which have no rules.
-const RESERVED: &str = "/\\@C<>";
-
-/// Other commands that are no letters: to have a rule, each needs an equals sign.
-const COMMANDS: &str = "+-|![]";
+/// Commands with numbers, and those that are no letters: to have a rule, each needs an equals sign.
+const COMMANDS: &str = "+-|![]/\\@C<>";
 
 /// What an entry says.
 #[derive(Default)]
@@ -54,14 +51,17 @@ pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
     rules.retain(|(symbol, _)| used.contains(symbol));
     if rules.is_empty() {
         // Without rules every string is the axiom.
-        let kept = axiom.iter().find(|command| symbol(**command).is_some());
-        rules.extend(kept.and_then(|kept| Some((symbol(*kept)?, vec![*kept]))));
+        let kept = axiom.iter().find(|command| argument(**command).is_none());
+        rules.extend(kept.map(|kept| (symbol(*kept), vec![*kept])));
     }
     let writer = Writer::new(angle, &axiom, &rules);
     let productions = rules
         .iter()
         .fold(Entries::default(), |entries, (symbol, commands)| {
-            entries.add(own(*symbol), Value::Text(writer.string(commands)))
+            entries.add(
+                writer.predecessor(*symbol),
+                Value::Text(writer.string(commands)),
+            )
         });
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     Some(
@@ -105,7 +105,7 @@ fn used(axiom: &[Command], rules: &Rules) -> BTreeSet<char> {
     let mut used = BTreeSet::new();
     let mut next = vec![axiom];
     while let Some(string) = next.pop() {
-        for symbol in string.iter().filter_map(|command| symbol(*command)) {
+        for symbol in string.iter().map(|command| symbol(*command)) {
             if used.insert(symbol) {
                 let all = rules.iter().filter(|(of, _)| *of == symbol);
                 next.extend(all.map(|(_, string)| string.as_slice()));
@@ -115,25 +115,38 @@ fn used(axiom: &[Command], rules: &Rules) -> BTreeSet<char> {
     used
 }
 
-/// The character of a command without a number: what rules replace.
-fn symbol(command: Command) -> Option<char> {
-    Some(match command {
+/// Returns the character of a command, by which rules replace it whatever its number.
+fn symbol(command: Command) -> char {
+    match command {
         Command::Step { heading, drawn } => letter(heading, drawn),
         Command::Turn(1) => '+',
         Command::Turn(_) => '-',
+        Command::Degrees(turn) if turn.is_negative() => '/',
+        Command::Degrees(_) => '\\',
         Command::Back => '|',
         Command::Reverse => '!',
+        Command::Scale(_) => '@',
         Command::Push => '[',
         Command::Pop => ']',
+        Command::Colour(_) => 'C',
+        Command::Shift { down: false, .. } => '<',
+        Command::Shift { down: true, .. } => '>',
         Command::Other(other) => other,
-        Command::Degrees(_) | Command::Scale(_) | Command::Colour(_) | Command::Shift(_) => {
-            return None;
-        }
-    })
+    }
 }
 
-/// Returns the symbol of kfrac's words for one of Fractint. Punctuation that words of kfrac split at becomes a
-/// lower-case letter, for Fractint ignores case.
+/// Returns the name of the argument that a command's number becomes.
+fn argument(command: Command) -> Option<char> {
+    match command {
+        Command::Degrees(_) => Some('a'),
+        Command::Scale(_) => Some('s'),
+        Command::Colour(_) | Command::Shift { .. } => Some('n'),
+        _ => None,
+    }
+}
+
+/// Returns the symbol of kfrac's words for one of Fractint. Punctuation that words of kfrac split at, and
+/// commands that kfrac writes otherwise, become lower-case letters, for Fractint ignores case.
 fn own(symbol: char) -> char {
     match symbol {
         '(' => 'a',
@@ -141,6 +154,11 @@ fn own(symbol: char) -> char {
         ',' => 'c',
         '\'' => 'd',
         ':' => 'e',
+        '\\' => '/',
+        '/' => 'g',
+        'C' => '\'',
+        '<' => ';',
+        '>' => 'h',
         other => other,
     }
 }
@@ -173,13 +191,8 @@ impl<'e> System<'e> {
                     let message = format!("{} says nothing", word.text.to_ascii_lowercase());
                     found.push(Diagnostic::error(message).at(&word.place));
                 }
-                (_, Some(symbol), _) if equals > 0 && RESERVED.contains(symbol) => {
-                    let message = format!("{symbol} is a command and has no rule");
-                    found.push(Diagnostic::error(message).at(&word.place));
-                }
                 (_, Some(symbol), _)
-                    if !RESERVED.contains(symbol)
-                        && (equals > 0 || (value.is_some() && !COMMANDS.contains(symbol))) =>
+                    if equals > 0 || (value.is_some() && !COMMANDS.contains(symbol)) =>
                 {
                     system.add_rule(symbol, value);
                 }
@@ -249,7 +262,7 @@ impl<'c> Writer<'c> {
             )
         };
         let headings = [Heading::Units, Heading::Degrees].map(goes_by);
-        let shifts = |command: &&Command| matches!(command, Command::Shift(by) if *by != 0);
+        let shifts = |command: &&Command| matches!(command, Command::Shift { by, .. } if *by != 0);
         let mut set = BTreeSet::new();
         for command in &all {
             if let Command::Colour(colour) = command {
@@ -282,39 +295,86 @@ impl<'c> Writer<'c> {
 
     /// Whether turns by degrees have a symbol of their own: where `+` and `-` have other meanings.
     fn has_slashes(&self) -> bool {
-        let is_replaced = ['+', '-'].iter().any(|sign| self.replaced.contains(sign));
-        self.has_both() || is_replaced
+        let mut turns = ['+', '-', '/', '\\'].iter();
+        self.has_both() || turns.any(|turn| self.replaced.contains(turn))
+    }
+
+    /// Returns whether a command and its opposite have symbols of their own, for a rule replaces one of them.
+    /// Elsewhere one symbol, with numbers of both signs, serves both.
+    fn is_apart(&self, command: Command) -> bool {
+        let pair = match command {
+            Command::Degrees(_) => ['/', '\\'],
+            Command::Shift { .. } => ['<', '>'],
+            _ => return false,
+        };
+        pair.iter().any(|symbol| self.replaced.contains(symbol))
+    }
+
+    /// Returns the symbol of a command in words.
+    fn name(&self, command: Command) -> char {
+        match command {
+            Command::Degrees(_) if !self.is_apart(command) => '/',
+            Command::Shift { .. } if !self.is_apart(command) => ';',
+            other => own(symbol(other)),
+        }
     }
 
     fn string(&self, commands: &[Command]) -> String {
         let mut string = String::new();
-        let [units, degrees] = self.headings;
         for command in commands {
-            let written = match *command {
-                // These turn what nothing goes by.
-                Command::Degrees(_) if !degrees => Ok(()),
-                Command::Turn(_) | Command::Back if !units && !self.is_replaced(*command) => Ok(()),
+            let (command, name) = (*command, self.name(*command));
+            let written = match command {
+                Command::Degrees(_)
+                | Command::Turn(_)
+                | Command::Back
+                | Command::Shift { by: 0, .. }
+                    if !self.is_replaced(command) && !self.acts(command) =>
+                {
+                    Ok(())
+                }
                 Command::Degrees(turn) => {
                     let formula = turn.formula();
                     match formula.strip_prefix('-') {
-                        _ if self.has_slashes() => write!(string, "/({formula})"),
+                        _ if self.has_slashes() => write!(string, "{name}({formula})"),
                         Some(clockwise) => write!(string, "-({clockwise})"),
                         None => write!(string, "+({formula})"),
                     }
                 }
-                Command::Scale(factor) => write!(string, "@({})", factor.formula()),
-                Command::Colour(colour) => write!(string, "'({})", self.colour(colour)),
-                Command::Shift(0) => Ok(()),
-                Command::Shift(shift) => write!(string, ";({shift})"),
-                other => symbol(other).map_or(Ok(()), |symbol| string.write_char(own(symbol))),
+                Command::Scale(factor) => write!(string, "{name}({})", factor.formula()),
+                Command::Colour(colour) => write!(string, "{name}({})", self.colour(colour)),
+                Command::Shift { by, down: false } => write!(string, "{name}({by})"),
+                Command::Shift { by, down: true } => write!(string, "{name}({})", -by),
+                _ => string.write_char(name),
             };
             debug_assert!(written.is_ok(), "a string takes everything");
         }
         string
     }
 
+    /// Returns whether a turn changes a heading that steps go by, and a change of the colour the colour.
+    fn acts(&self, command: Command) -> bool {
+        let [units, degrees] = self.headings;
+        match command {
+            Command::Turn(_) | Command::Back => units,
+            Command::Degrees(_) => degrees,
+            Command::Shift { by, .. } => by != 0,
+            _ => true,
+        }
+    }
+
     fn is_replaced(&self, command: Command) -> bool {
-        symbol(command).is_some_and(|symbol| self.replaced.contains(&symbol))
+        self.replaced.contains(&symbol(command))
+    }
+
+    /// Returns the predecessor of a production: a symbol, with the name of its argument if it has one.
+    fn predecessor(&self, replaced: char) -> String {
+        let command = self
+            .all
+            .iter()
+            .find(|command| symbol(***command) == replaced);
+        let argument = command.and_then(|command| argument(**command));
+        let name = own(replaced);
+        argument.map_or_else(|| name.into(), |argument| format!("{name}({argument})"))
     }
 
     /// The number of a colour in our palette.
@@ -356,22 +416,24 @@ impl<'c> Writer<'c> {
                     let turn = format!("-180 + 180/{}", self.angle);
                     action(if reverses { "rotate" } else { "turn" }, &turn)
                 }
-                Command::Degrees(_) if self.has_both() => swapped(action("turn", "a")),
-                Command::Degrees(_) if self.headings[1] && self.has_slashes() => {
-                    action("turn", "a")
+                Command::Degrees(_) if !self.acts(command) => {
+                    if !self.is_replaced(command) {
+                        continue;
+                    }
+                    text("nothing")
                 }
+                Command::Degrees(_) if self.has_both() => swapped(action("turn", "a")),
+                Command::Degrees(_) if self.has_slashes() => action("turn", "a"),
                 Command::Reverse => text("reflect"),
                 Command::Scale(_) => action("scale", "s"),
-                Command::Shift(by) if by != 0 => action("shift_colour", "n"),
+                Command::Shift { .. } if self.acts(command) => action("shift_colour", "n"),
                 Command::Other('{' | '}' | '.' | '&' | '^') => text("nothing"),
                 _ => continue,
             };
-            let name = match command {
-                Command::Degrees(_) => "/(a)".into(),
-                Command::Scale(_) => "@(s)".into(),
-                Command::Shift(_) => ";(n)".into(),
-                other => symbol(other).map(own).into_iter().collect::<String>(),
-            };
+            let mut name = self.name(command).to_string();
+            if let Some(argument) = argument(command) {
+                let _ = write!(name, "({argument})");
+            }
             symbols = symbols.set(&name, meaning);
         }
         symbols

@@ -107,8 +107,8 @@ fn commands_have_numbers() {
     let step = |heading, drawn| Command::Step { heading, drawn };
     let expected = [
         step(Heading::Units, true),
-        Command::Shift(-10),
-        Command::Shift(3),
+        Command::Shift { by: 10, down: true },
+        Command::Shift { by: 3, down: false },
         Command::Colour(1),
         Command::Back,
         Command::Reverse,
@@ -122,7 +122,7 @@ fn commands_have_numbers() {
         Command::Other('X'),
         Command::Turn(1),
         Command::Colour(0),
-        Command::Shift(0),
+        Command::Shift { by: 0, down: false },
         Command::Other('\''),
     ];
     let plain = commands.into_iter().map(|(command, _)| command);
@@ -298,6 +298,21 @@ fn commands_become_symbols_with_meanings() {
         "angle: 360/4\naxiom: F+D/(-30)M\nproductions: {D: DD}\nsymbols:\n  D: [swap, draw, swap]\n  \
          /(a):\n    - swap\n    - {turn: a}\n    - swap\n  M: [swap, move, swap]\n"
     );
+    // Commands with numbers may have rules, and keep their meaning in the last step.
+    let system = |text: &str| match lsystem(text).split_once("style:") {
+        Some((system, _)) => system.to_string(),
+        None => panic!("{text} has colours"),
+    };
+    assert_eq!(
+        system("a { angle 4 axiom F<1>2 F=F<1F@2 <= @=F }"),
+        "angle: 360/4\naxiom: F;(1)h(-2)\nproductions: {F: F;(1)F@(2), ;(n): \"\", \"@(s)\": F}\nsymbols:\n  \
+         ;(n): {shift_colour: n}\n  h(n): {shift_colour: n}\n  \"@(s)\": {scale: s}\n"
+    );
+    assert_eq!(
+        system("a { angle 4 axiom D\\30D/60 /=D D=DC2D C=D }"),
+        "angle: 360/4\naxiom: D/(30)Dg(-60)\nproductions: {g(a): D, D: D'(1)D, \"'(n)\": D}\nsymbols:\n  D: \
+         draw\n  /(a): {turn: a}\n  g(a): {turn: a}\n"
+    );
     // What has no meaning may have rules.
     assert_eq!(
         lsystem("a { angle 4 axiom F(F),'F: F=FF (=F) '=F+F :=F }"),
@@ -375,7 +390,7 @@ fn the_turtle_has_two_headings() {
 #[test]
 fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
     let text = "nothing { }\nunangled { axiom F }\nsharp { angle 2 axiom F }\n\
-                reserved { angle 4 axiom F @=F }\nextra { angle 4 axiom F F F=F + F }\n\
+                extra { angle 4 axiom F F F=F + F }\n\
                 bracket { angle 4 axiom F]F F=F[[F }\n\
                 good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }\n\
                 quote { angle 4 axiom F'F }\ntwo { angle 4 axiom FD }\nback { angle 5 axiom F|!F }";
@@ -398,11 +413,6 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
             "sharp",
             false,
             vec![("the angle '2' is not a whole number from 3", "2")],
-        ),
-        (
-            "reserved",
-            false,
-            vec![("@ is a command and has no rule", "@")],
         ),
         (
             "extra",
@@ -431,9 +441,9 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
     ];
     assert_eq!(told.collect::<Vec<_>>(), expected);
     // At the character, not anywhere in the entry.
-    let places = imported[5].found.iter().map(|found| {
+    let places = imported[4].found.iter().map(|found| {
         let place = found.place().expect("every mistake has its place");
         (place.line(), place.column())
     });
-    assert_eq!(places.collect::<Vec<_>>(), [(6, 26), (6, 32), (6, 33)]);
+    assert_eq!(places.collect::<Vec<_>>(), [(5, 26), (5, 32), (5, 33)]);
 }
