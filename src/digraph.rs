@@ -1,7 +1,7 @@
-//! Directed graphs, by the numbers of their vertices.
+//! Directed graphs whose vertices are numbers.
 
-/// The number of each vertex's strongly connected component (Tarjan 1972), from the lists of the
-/// vertices that edges lead to. An edge never leads to a component of a higher number.
+/// Returns the number of the strongly connected component of each vertex (Tarjan 1972); `targets` lists
+/// the vertices to which the edges of each vertex lead. No edge leads to a component of a higher number.
 pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
     const NONE: usize = usize::MAX;
     let size = targets.len();
@@ -12,7 +12,7 @@ pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
         if order[root] != NONE {
             continue;
         }
-        // Vertices on the way from the root, each with the number of its targets that were taken.
+        // Path from the root: each vertex with the number of its targets that have been taken.
         let mut way = vec![(root, 0)];
         while let Some((vertex, taken)) = way.last_mut() {
             let vertex = *vertex;

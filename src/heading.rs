@@ -1,37 +1,37 @@
-//! What files of all kinds say beside their mathematics.
+//! Metadata that files of all kinds have beside their mathematics.
 
 use crate::style::{Style, View};
 
-/// What a file says about itself.
+/// Description of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
-    /// The title.
+    /// Title.
     pub title: Option<String>,
-    /// A few sentences.
+    /// Description in a few sentences.
     pub about: Option<String>,
-    /// The paper, book or person that it comes from.
+    /// Paper, book or author from which the fractal is taken.
     pub source: Option<String>,
-    /// Words to find it by.
+    /// Keywords for searches.
     pub tags: Vec<String>,
 }
 
-/// A parameter with its value.
+/// Parameter with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// The name that expressions and `--set` call it by.
+    /// Name in expressions and for `--set`.
     pub name: String,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// The least value that it may have.
+    /// Least permitted value.
     pub min: Option<f64>,
-    /// The largest value that it may have.
+    /// Greatest permitted value.
     pub max: Option<f64>,
-    /// What it means.
+    /// Meaning of the parameter.
     pub about: Option<String>,
 }
 
 impl Parameter {
-    /// A parameter without limits.
+    /// Creates a parameter without limits.
     #[must_use]
     pub fn new(name: impl Into<String>, value: f64) -> Self {
         Self {
@@ -44,21 +44,21 @@ impl Parameter {
     }
 }
 
-/// The heading of a file: what it says of itself, its parameters, and how it likes to be drawn.
+/// Metadata of a file: its description, its parameters, published dimensions, and how it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// Title, source and the like.
+    /// Title, source and related metadata.
     pub description: Description,
-    /// The parameters with their values.
+    /// Parameters with their values.
     pub parameters: Vec<Parameter>,
-    /// The number of steps that the file proposes.
+    /// Number of steps that the file proposes.
     pub steps: Option<u32>,
-    /// The published similarity dimension.
+    /// Published similarity dimension.
     pub dimension: Option<f64>,
-    /// The published Hausdorff dimension, where it differs from the similarity dimension.
+    /// Published Hausdorff dimension, where it differs from the similarity dimension.
     pub hausdorff_dimension: Option<f64>,
-    /// How it is drawn.
+    /// Style of drawings.
     pub style: Style,
-    /// What part of the plane is drawn.
+    /// Part of the plane that is drawn.
     pub view: View,
 }

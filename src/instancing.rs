@@ -1,7 +1,8 @@
 //! Object instancing (Hart, "The object instancing paradigm for linear fractal modeling", 1992).
 //!
-//! Canonical objects are unions of instances: of other objects, of themselves, or of shapes, each with a
-//! map of its own. What a file writes with a level, `A(n)`, is here one object a level that is reached.
+//! A canonical object is a union of instances of other objects, of itself or of shapes, each with its own
+//! map. An object that a file writes with a level, `A(n)`, is represented by one object for each level
+//! that is reached.
 
 mod coat;
 
@@ -12,10 +13,10 @@ use crate::heading::Heading;
 use crate::ifs::Shape;
 use crate::style::Colour;
 
-/// A structure of objects that instance each other.
+/// Structure of objects that instance each other.
 ///
-/// Guarantees: all numbers of objects are in range, all maps are finite, and instances that lead back
-/// to their object do not grow (or it is undecided whether they do).
+/// Guarantees: all numbers of objects are in range, all maps are finite, and no instance that leads back
+/// to its object is known to expand (in some cases this is undecided).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instancing {
     pub(crate) heading: Heading,
@@ -24,75 +25,75 @@ pub struct Instancing {
     pub(crate) initial: Option<Shape>,
 }
 
-/// A canonical object: a union of instances.
+/// Canonical object: a union of instances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its name, with its level if it has one: `A(3)`.
+    /// Name, with the level if there is one: `A(3)`.
     pub name: String,
-    /// What is done to all of it.
+    /// Map that is applied to the whole object.
     pub map: DAffine2,
-    /// What it is made of.
+    /// Instances of which the object is the union.
     pub instances: Vec<Instance>,
-    /// Where it is written: the number of an object of the file, and its level.
+    /// Source: the number of an object of the file, and its level.
     pub(crate) origin: (usize, Option<f64>),
 }
 
-/// An instance of an object, or of a shape.
+/// Instance of an object or of a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// Where it stands in the object that it is part of.
+    /// Map into the coordinates of the object that contains the instance.
     pub map: DAffine2,
-    /// What stands there.
+    /// Object or shape that is instanced.
     pub master: Master,
-    /// What it tints all that is in it.
+    /// Tint of the instance and of its contents.
     pub tint: Option<Tint>,
 }
 
-/// What an instance is one of.
+/// Object or shape of which an instance is a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Master {
-    /// An object, by number.
+    /// Object, by number.
     Object(usize),
-    /// A shape: a primitive.
+    /// Shape: a primitive.
     Shape(Shape),
 }
 
-/// A colour and how much it covers (Hart 1992, section 5).
+/// Colour with its coverage (Hart 1992, section 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tint {
-    /// The colour; its own opacity does not matter.
+    /// Colour; its opacity is ignored.
     pub colour: Colour,
-    /// How much it covers, from 0, nothing, to 1, all.
+    /// Coverage, from 0 (transparent) to 1 (opaque).
     pub alpha: f64,
 }
 
 impl Instancing {
-    /// What files of all kinds say.
+    /// Returns the metadata of the file.
     #[must_use]
     pub fn heading(&self) -> &Heading {
         &self.heading
     }
 
-    /// The objects that the scene leads to.
+    /// Returns the objects that the scene reaches.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         &self.objects
     }
 
-    /// What the scene is made of.
+    /// Returns the instances of the scene.
     #[must_use]
     pub fn scene(&self) -> &[Instance] {
         &self.scene
     }
 
-    /// What stands for an object that has not been replaced yet.
+    /// Returns the shape that represents an object that has not been replaced yet.
     #[must_use]
     pub fn initial(&self) -> Option<&Shape> {
         self.initial.as_ref()
     }
 
-    /// The number of steps after which nothing is left to be replaced; `None` if objects lead back to
-    /// themselves.
+    /// Returns the number of steps after which no object is left to be replaced, or `None` if an object
+    /// leads back to itself.
     #[must_use]
     pub fn depth(&self) -> Option<u32> {
         let children = |instances: &[Instance]| -> Vec<usize> {
@@ -105,7 +106,8 @@ impl Instancing {
                 .collect()
         };
         let mut depths = vec![0; self.objects.len()];
-        // How often each is still to be met on the way down.
+        // Number of instances of each object that have not been counted yet: an object is expanded after
+        // its last.
         let mut meetings = vec![0u32; self.objects.len()];
         let all = self.objects.iter().map(|object| &object.instances);
         for child in all.chain([&self.scene]).flat_map(|all| children(all)) {
@@ -128,7 +130,7 @@ impl Instancing {
         (done == self.objects.len()).then_some(deepest)
     }
 
-    /// Where what an instance shows stands, with what the object that it is one of does to all of it.
+    /// Returns the map of an instance, composed with the map that its object applies to itself.
     pub(crate) fn map_of(&self, instance: &Instance) -> DAffine2 {
         match instance.master {
             Master::Object(number) => instance.map * self.objects[number].map,
@@ -136,8 +138,8 @@ impl Instancing {
         }
     }
 
-    /// Returns the structure in the coordinates that a homothety maps to its own; `None` if a shape has no
-    /// extent there.
+    /// Returns the structure in the coordinates that a homothety maps to the structure's own, or `None`
+    /// if a shape has no extent there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         let mut within = self.clone();
         let back = place.backwards();
@@ -158,13 +160,13 @@ impl Instancing {
         Some(within)
     }
 
-    /// Whether there are shapes, or an initial set.
+    /// Returns whether the structure has a shape or an initial set.
     pub(crate) fn draws_anything(&self) -> bool {
         let is_shape = |instance: &Instance| matches!(instance.master, Master::Shape(_));
         self.initial.is_some() || self.instances().any(is_shape)
     }
 
-    /// All instances, those of the scene first.
+    /// Iterates over all instances, those of the scene first.
     pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
         let objects = self.objects.iter().flat_map(|object| &object.instances);
         self.scene.iter().chain(objects)

@@ -1,15 +1,15 @@
-//! Hash tables for short keys that nobody chooses to make them collide.
+//! Fast hash for short keys from trusted input: it does not resist chosen collisions.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// A table that is never walked over, so that its order does not matter.
+/// Map with the fast hash; nothing iterates over it, because the order of its entries is arbitrary.
 pub(crate) type MixMap<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
 
-/// The same, of keys alone.
+/// Set with the fast hash; nothing iterates over it, because the order of its entries is arbitrary.
 pub(crate) type MixSet<K> = HashSet<K, BuildHasherDefault<Mix>>;
 
-/// Mixes the bits of words, by both halves of a product.
+/// Hasher that folds the two halves of a 128-bit product for each word.
 #[derive(Default)]
 pub(crate) struct Mix(u64);
 
@@ -32,7 +32,8 @@ impl Hasher for Mix {
 
     #[inline]
     fn write_u64(&mut self, word: u64) {
-        // The order of words tells, and words of 0 do, too.
+        // The rotation makes the order of words matter, and the constant makes words of 0 change the
+        // state.
         let state = self.0.rotate_left(23) ^ 0x2545_F491_4F6C_DD1D;
         let mixed = u128::from(state ^ word) * 0x9E37_79B9_7F4A_7C15;
         #[expect(clippy::cast_possible_truncation, reason = "both halves are used")]

@@ -1,4 +1,4 @@
-//! What a file comes to: a validated model of one of the kinds of linear fractals.
+//! Validated models of the four kinds of linear fractals, and their compilation to graphs.
 
 mod place;
 
@@ -15,25 +15,25 @@ use crate::instancing::Instancing;
 use crate::lsystem::LSystem;
 use crate::rule::Rule;
 
-/// A kind of files that can be grown.
+/// Kind of a model and of its file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// A production rule.
+    /// Production rule.
     #[default]
     Rule,
-    /// An iterated function system.
+    /// Iterated function system.
     Ifs,
-    /// A structure of objects that instance each other.
+    /// Structure of objects that instance each other.
     Instancing,
-    /// An L-system.
+    /// L-system.
     LSystem,
 }
 
 impl Kind {
-    /// All kinds, in the order in which they are listed and names are looked up.
+    /// All kinds, in the order in which they are listed and in which names are looked up.
     pub const ALL: [Self; 4] = [Self::Rule, Self::Ifs, Self::Instancing, Self::LSystem];
 
-    /// What `kind:` says in its files.
+    /// Returns the value of `kind:` in files of the kind.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -45,21 +45,21 @@ impl Kind {
     }
 }
 
-/// A validated model: immutable, without text that is still to be parsed.
+/// Validated model: immutable, without unparsed text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Model {
-    /// A production rule.
+    /// Production rule.
     Rule(Arc<Rule>),
-    /// An iterated function system.
+    /// Iterated function system.
     Ifs(Arc<System>),
-    /// A structure of objects that instance each other.
+    /// Structure of objects that instance each other.
     Instancing(Arc<Instancing>),
-    /// An L-system.
+    /// L-system.
     LSystem(Arc<LSystem>),
 }
 
 impl Model {
-    /// Its kind.
+    /// Returns the kind of the model.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
@@ -70,7 +70,7 @@ impl Model {
         }
     }
 
-    /// What files of all kinds say.
+    /// Returns the metadata of the file.
     #[must_use]
     pub fn heading(&self) -> &Heading {
         match self {
@@ -81,7 +81,7 @@ impl Model {
         }
     }
 
-    /// The production rule, if it is one.
+    /// Returns the production rule, or `None` for a model of another kind.
     #[must_use]
     pub fn rule(&self) -> Option<&Arc<Rule>> {
         match self {
@@ -90,7 +90,7 @@ impl Model {
         }
     }
 
-    /// The production rule, if it is one.
+    /// Converts the model to its production rule, or `None` for a model of another kind.
     #[must_use]
     pub fn into_rule(self) -> Option<Arc<Rule>> {
         match self {
@@ -99,8 +99,8 @@ impl Model {
         }
     }
 
-    /// The model's graph, resolved for at least `steps` steps; for the seed 0 and
-    /// [`MOST_ELEMENTS`](Self::MOST_ELEMENTS), where that matters.
+    /// Compiles the model to a graph that is resolved for at least `steps` steps, with the seed 0 and the
+    /// limit [`MOST_ELEMENTS`](Self::MOST_ELEMENTS) where these matter.
     ///
     /// # Errors
     ///
@@ -109,11 +109,12 @@ impl Model {
         self.compile_for(steps, 0, Self::MOST_ELEMENTS)
     }
 
-    /// So many elements are drawn unless somebody allows more.
+    /// Default limit of the number of elements that are drawn.
     pub const MOST_ELEMENTS: u64 = 50_000_000;
 
-    /// The model's graph, resolved for at least `steps` steps. Where an L-system is not compiled, its words are
-    /// written for exactly as many, by the draws of a seed, if they draw no more elements than are allowed.
+    /// Compiles the model to a graph that is resolved for at least `steps` steps. For an L-system that is
+    /// not compiled, its word is derived for exactly `steps` steps, with the draws of `seed`, if it draws
+    /// at most `most_elements` elements.
     ///
     /// # Errors
     ///
@@ -132,9 +133,9 @@ impl Model {
         }
     }
 
-    /// The model whose graph has the limit set. That is the model itself, unless an L-system rewrites edges but
-    /// for widths and colours, which may differ from step to step without end: then it is the same system
-    /// [without them](LSystem::without_looks).
+    /// Returns the model whose graph has the limit set: the model itself, except for an L-system that
+    /// rewrites edges apart from widths and colours, which may differ from step to step without end. For
+    /// the latter it returns the system [without them](LSystem::without_looks).
     #[must_use]
     pub fn of_limit(&self) -> Cow<'_, Self> {
         if let Self::LSystem(system) = self
@@ -148,7 +149,7 @@ impl Model {
         Cow::Borrowed(self)
     }
 
-    /// An error of [`Model::compile`], or of a walk, as a mistake in the model's file.
+    /// Converts an error of [`Model::compile`] or of a walk to a diagnostic of the model's file.
     #[must_use]
     pub fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         match self {

@@ -1,4 +1,7 @@
-/// The whole number below; 0 for those below 0 and for what is no number, the largest for those beyond.
+//! Saturating conversion of floating-point numbers to integers.
+
+/// Rounds a number towards 0 to an integer; negative numbers and NaN yield 0, numbers beyond the range
+/// the largest integer.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

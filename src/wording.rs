@@ -1,8 +1,9 @@
-//! Numbers as people read them.
+//! Numbers, sizes and times formatted for messages.
 
 use crate::graph::Count;
 
-/// A whole number with commas between thousands; a very long one by its first digits and its size.
+/// Formats an integer with commas between thousands; one of more than 60 digits in scientific notation,
+/// with its first four digits.
 pub(crate) fn grouped(number: &Count) -> String {
     const LONG: usize = 60;
     let digits = number.to_string();
@@ -19,7 +20,8 @@ pub(crate) fn grouped(number: &Count) -> String {
     text
 }
 
-/// A number to twelve decimals of a unit, without zeros at the end; as 1.2e300 where it would be long.
+/// Formats a number to twelve decimals, without trailing zeros; in scientific notation if `unit`, the
+/// order of magnitude of the context, is not within 1e-3 to 1e3, or if the number reaches 1e15.
 pub(crate) fn decimal(value: f64, unit: f64) -> String {
     if is_plain(value, unit) {
         return trimmed(&format!("{value:.12}")).into();
@@ -27,7 +29,7 @@ pub(crate) fn decimal(value: f64, unit: f64) -> String {
     scientific(value, unit, 12)
 }
 
-/// A number to six decimals of a unit; as 1.2e300 where it would be long.
+/// Formats a number to six decimals; in scientific notation under the conditions of [`decimal`].
 pub(crate) fn measure(value: f64, unit: f64) -> String {
     if is_plain(value, unit) {
         return format!("{value:.6}");
@@ -35,7 +37,7 @@ pub(crate) fn measure(value: f64, unit: f64) -> String {
     scientific(value, unit, 6)
 }
 
-/// Whether the digits before the point, and some behind it, are those that a double has.
+/// Returns whether decimal notation shows only digits that a double has.
 fn is_plain(value: f64, unit: f64) -> bool {
     const LONG: f64 = 1e15;
     (1e-3..1e3).contains(&unit) && value.abs() < LONG
@@ -54,7 +56,7 @@ fn scientific(value: f64, unit: f64, digits: usize) -> String {
     }
 }
 
-/// A decimal without zeros at the end.
+/// Returns a decimal without trailing zeros.
 fn trimmed(text: &str) -> &str {
     match text.trim_end_matches('0').trim_end_matches('.') {
         "-0" => "0",
@@ -62,7 +64,7 @@ fn trimmed(text: &str) -> &str {
     }
 }
 
-/// A number of bytes in powers of a thousand, to two digits or three.
+/// Formats a number of bytes with a decimal prefix (powers of 1000), to two or three digits.
 #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
 pub(crate) fn bytes(count: u64) -> String {
     let (value, unit) = in_bytes(count as f64);
@@ -73,7 +75,7 @@ pub(crate) fn bytes(count: u64) -> String {
     }
 }
 
-/// An estimated number of bytes, to two digits.
+/// Formats an estimated number of bytes to two digits.
 pub(crate) fn rough_bytes(count: f64) -> String {
     let (value, unit) = in_bytes(two_digits(count));
     if value >= 1e6 {
@@ -85,11 +87,12 @@ pub(crate) fn rough_bytes(count: f64) -> String {
     }
 }
 
-/// In the unit that leaves no more than three digits before the point, as long as there is one.
+/// Returns the value in the unit that leaves at most three digits before the point, as far as there are
+/// prefixes.
 fn in_bytes(mut value: f64) -> (f64, &'static str) {
     let mut unit = "B";
     for larger in ["kB", "MB", "GB", "TB", "PB", "EB", "ZB", "YB"] {
-        // What is rounded to 1000 belongs to the next unit.
+        // A value that rounds to 1000 belongs to the next unit.
         if value < 999.5 {
             break;
         }
@@ -99,12 +102,12 @@ fn in_bytes(mut value: f64) -> (f64, &'static str) {
     (value, unit)
 }
 
-/// A number to its first two digits.
+/// Rounds a number to two significant digits.
 pub(crate) fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// A time, as roughly as people speak of it.
+/// Formats a time in the largest suitable unit, to at most two significant digits.
 pub(crate) fn duration(seconds: f64) -> String {
     const UNITS: [(f64, &str); 5] = [
         (365.25 * 24.0 * 3600.0, "years"),
@@ -133,7 +136,7 @@ pub(crate) fn duration(seconds: f64) -> String {
     format!("{number} {unit}")
 }
 
-/// A number below 2^64 as the nearest whole number.
+/// Formats a number below 2^64, rounded to an integer, with commas between thousands.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -143,7 +146,7 @@ fn thousands(value: f64) -> String {
     grouped(&(value.round() as u64).into())
 }
 
-/// "1 element", "2 elements".
+/// Formats a number with a noun in the singular or plural: "1 element", "2 elements".
 pub(crate) fn counted(number: &Count, noun: &str) -> String {
     let s = if *number == Count::from(1u64) {
         ""

@@ -1,37 +1,38 @@
+//! Appearance of instances: tints composed by Hart's equations, and stroke widths.
+
 use crate::style::Colour;
 
 use super::Tint;
 
-/// What becomes of the widths of strokes.
+/// Change of the width of strokes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Thickness {
-    /// They are so many times as wide.
+    /// Multiplies the width by a factor.
     Times(f64),
-    /// They are so many times as wide as the style says, whatever they stand in.
+    /// Sets the width to a multiple of the style's, regardless of the enclosing instances.
     Set(f64),
 }
 
-/// Tints that lie over each other, the outermost on top (Hart 1992, section 5), and what becomes of the
-/// widths of strokes, of which the innermost is set last.
+/// Appearance: tints composed from the outside in, the outermost on top (Hart 1992, section 5), and the
+/// width of strokes, for which the innermost setting applies.
 ///
-/// Guarantee: putting coats over each other is associative but for rounding, and [`Coat::NONE`] changes
-/// nothing.
+/// Guarantee: composition is associative up to rounding, and [`Coat::NONE`] is its identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
-    /// Red, green and blue from 0 to 1, each times `alpha`.
+    /// Red, green and blue from 0 to 1, each multiplied by `alpha`.
     colour: [f32; 3],
-    /// How much it covers, from 0 to 1.
+    /// Coverage, from 0 to 1.
     alpha: f32,
-    /// So many times as wide strokes are.
+    /// Factor of the width of strokes.
     width: f32,
-    /// Whether they are, whatever they stand in.
+    /// Whether the factor applies to the style's width, regardless of the enclosing instances.
     sets_width: bool,
-    /// Whether what is inside has this colour, and not one over its own.
+    /// Whether the colour replaces that of the contents, unaffected by the tints of enclosing instances.
     paints: bool,
 }
 
 impl Coat {
-    /// Nothing has been tinted.
+    /// Identity: neither tint nor change of width.
     pub const NONE: Self = Self {
         colour: [0.0; 3],
         alpha: 0.0,
@@ -40,7 +41,7 @@ impl Coat {
         paints: false,
     };
 
-    /// A single tint.
+    /// Creates the appearance of a single tint.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -56,7 +57,7 @@ impl Coat {
         }
     }
 
-    /// Nothing is tinted, but strokes have another width.
+    /// Creates an appearance that changes the width of strokes only.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -74,7 +75,8 @@ impl Coat {
         }
     }
 
-    /// Another colour for all that has none of its own inside.
+    /// Creates an appearance with an opaque colour for all contents that have no paint of their own;
+    /// tints of enclosing instances do not apply to it.
     #[must_use]
     pub fn of_paint(colour: Colour) -> Self {
         Self {
@@ -83,7 +85,7 @@ impl Coat {
         }
     }
 
-    /// The same without its colours.
+    /// Returns the appearance without its colours: the width of strokes only.
     pub(crate) fn without_colour(self) -> Self {
         Self {
             width: self.width,
@@ -92,7 +94,7 @@ impl Coat {
         }
     }
 
-    /// What tells it from others.
+    /// Returns the bit patterns of all fields, as a key.
     pub(crate) fn bits(self) -> [u32; 6] {
         let [red, green, blue] = self.colour.map(f32::to_bits);
         let flags = u32::from(self.sets_width) | u32::from(self.paints) << 1;
@@ -100,15 +102,15 @@ impl Coat {
         [red, green, blue, alpha, width, flags]
     }
 
-    /// So many times as wide as the style says strokes are.
+    /// Returns the width of strokes as a multiple of the style's.
     #[inline]
     #[must_use]
     pub fn width(self) -> f64 {
         f64::from(self.width)
     }
 
-    /// This coat with another one under it: c = c_o + (1 − α_o) α_i c_i and α = α_o + α_i (1 − α_o), the
-    /// paper's equations (9) and (10).
+    /// Composes this appearance with one inside it: c = c_o + (1 − α_o) α_i c_i and α = α_o + α_i (1 −
+    /// α_o), equations (9) and (10) of the paper.
     #[inline]
     #[must_use]
     pub fn over(self, inner: Self) -> Self {
@@ -131,7 +133,7 @@ impl Coat {
         }
     }
 
-    /// The colour of what this coat lies on, to whole values.
+    /// Applies the appearance to a colour, rounded to 8 bits a channel.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -164,14 +166,14 @@ mod tests {
 
     #[test]
     fn the_equations_are_those_of_the_paper() {
-        // Half red, then half of the half that is left blue, then a quarter of black.
+        // Half is red, half of the remaining half is blue, and the last quarter is black.
         let both = coat([255, 0, 0], 0.5).over(coat([0, 0, 255], 0.5));
         assert_eq!(both.colour, [0.5, 0.0, 0.25]);
         assert_eq!(both.alpha, 0.75);
         assert_eq!(both.on(Colour::BLACK).rgba(), [128, 0, 64, 255]);
         let white = Colour::grey(255);
         assert_eq!(both.on(white).rgba(), [191, 64, 128, 255]);
-        // What is transparent stays so where nothing covers it.
+        // A transparent colour stays transparent in the share that no tint covers.
         let clear = Colour::of_rgba([0, 255, 0, 0]);
         assert_eq!(both.on(clear).rgba(), [170, 0, 85, 191]);
     }

@@ -1,13 +1,14 @@
-//! Normalisation: coordinates in which a model has about the extent 1 and lies near the origin.
+//! Normalisation: coordinates in which a model has an extent of about 1 and lies near the origin.
 //!
-//! A fractal does not depend on scale and place, but doubles have a limited range and precision. A model
-//! that is large, small or far from the origin is therefore compiled in normalised coordinates, which a
-//! [`Homothety`] by a power of two maps to its own; the ratio is exact in doubles. Computations on the graph
-//! see numbers of order 1, and [`Graph::place`] maps results back where coordinates are reported.
+//! A fractal does not depend on scale and position, but doubles have a limited range and precision. A
+//! model that is large, small or far from the origin is therefore compiled in normalised coordinates,
+//! which a [`Homothety`] by a power of two maps to its own; the ratio is exact in doubles. Computations
+//! on the graph see numbers of order 1, and [`Graph::place`] maps results back where coordinates are
+//! reported.
 //!
-//! A rule is moved by its initiator alone, for generators live in the unit frames of elements. In a system
-//! and in a structure every map f becomes h⁻¹ f h, and every set its image under h⁻¹. An L-system starts at
-//! the origin and keeps lengths of any exponent itself.
+//! A rule is moved by its initiator alone, because generators are written in the unit frames of elements.
+//! In a system and in a structure every map f becomes h⁻¹ f h, and every set its image under h⁻¹. An
+//! L-system starts at the origin and represents lengths of any exponent itself.
 
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::graph::{CompileError, Graph, exponent_of};
@@ -17,19 +18,20 @@ use crate::rule::Rule;
 
 use super::Model;
 
-/// Extents beyond this, or below its inverse, are normalised.
+/// Limit of extents that are used unchanged; larger ones, and those below its inverse, are normalised.
 const ORDINARY: f64 = (1u64 << 20) as f64;
 
-/// Models at more than this multiple of their extent from the origin are normalised.
+/// Limit of the distance from the origin, as a multiple of the extent, of models that are used unchanged.
 const NEAR: f64 = 1000.0;
 
-/// The largest distance from the origin as a multiple of the extent; beyond, doubles do not resolve pixels.
+/// Limit of the distance from the origin, as a multiple of the extent, beyond which doubles do not
+/// resolve pixels.
 const FARTHEST: f64 = 1e12;
 
-/// The smallest and the largest extent of a model: approximants must stay in the range of doubles.
+/// Least and greatest extent of a model: approximants must stay within the range of doubles.
 const EXTENTS: [f64; 2] = [1e-300, 1e300];
 
-/// An error: a model beyond the range or the precision of doubles.
+/// Error: a model is beyond the range or the precision of doubles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OutOfRange {
     /// The model is too large or too small.
@@ -40,7 +42,7 @@ pub enum OutOfRange {
         most = EXTENTS[1]
     )]
     Size {
-        /// The longer side of its box, approximately.
+        /// Longer side of the bounding box, approximately, in the model's units.
         size: f64,
     },
     /// The model is too far from the origin.
@@ -50,9 +52,9 @@ pub enum OutOfRange {
         ratio = distance / size
     )]
     Distance {
-        /// The distance from the origin.
+        /// Distance from the origin: the larger coordinate, in the model's units.
         distance: f64,
-        /// The longer side of its box, approximately.
+        /// Longer side of the bounding box, approximately, in the model's units.
         size: f64,
     },
     /// An approximant leaves the range of doubles.
@@ -60,21 +62,22 @@ pub enum OutOfRange {
         "by step {step} it becomes larger than the range of numbers, 1.8e308: fewer steps are right"
     )]
     Growth {
-        /// The number of the step.
+        /// Number of steps of the approximant.
         step: u32,
     },
 }
 
-/// About where a model is, and how large.
+/// Estimate of the position and size of a model.
 struct Extent {
-    /// A point of it.
+    /// Point of the model.
     at: DVec2,
-    /// The longer side of a box, which is no larger than its own.
+    /// Longer side of a box that is at most as large as the bounding box.
     size: f64,
 }
 
 impl Extent {
-    /// Of points of a model, if there are any, and of maps by which others are made of each.
+    /// Returns the extent of points of a model and of the images of the first point under `maps`, or
+    /// `None` if there is no point.
     fn of(
         points: impl IntoIterator<Item = DVec2>,
         maps: impl Iterator<Item = Map>,
@@ -120,7 +123,8 @@ impl Extent {
         Self::of(points, maps())
     }
 
-    /// The coordinates that suit it. `exactly` measures its extent in these.
+    /// Returns the homothety from suitable normalised coordinates; `exactly` measures the extent in
+    /// these.
     fn place(
         &self,
         exactly: impl FnOnce(&Homothety) -> Option<f64>,
@@ -133,7 +137,7 @@ impl Extent {
             let shift = if is_ordinary { DVec2::ZERO } else { at };
             return Ok(Homothety::new(0, shift));
         }
-        // At the ends of the range, rounding does not decide.
+        // The factor of two keeps rounding from deciding at the ends of the range.
         if !(EXTENTS[0] / 2.0..=EXTENTS[1] * 2.0).contains(&size) {
             return Err(OutOfRange::Size { size });
         }
@@ -143,7 +147,7 @@ impl Extent {
         }
         let shift = if is_near { DVec2::ZERO } else { at };
         let place = Homothety::new(exponent_of(size), shift);
-        // What is estimated may be some times too small.
+        // The estimate may be several times too small.
         if distance >= FARTHEST / 16.0 * size {
             let exactly = exactly(&place).map_or(size, |extent| extent * place.ratio());
             let size = size.max(exactly);
@@ -157,12 +161,14 @@ impl Extent {
 
 impl Model {
     /// Returns the homothety from normalised coordinates to those of the model: the identity, unless the
-    /// model is more than about a million times larger or smaller than 1, or more than a thousand times its
-    /// extent away from the origin.
+    /// model is more than about a million times larger or smaller than 1, or further from the origin than
+    /// a thousand times its extent. It is the identity, too, if a shape has no extent in normalised
+    /// coordinates.
     ///
     /// # Errors
     ///
-    /// If the model is larger than 1e300, smaller than 1e-300, or 1e12 times its extent away from the origin.
+    /// If the extent of the model is above 1e300 or below 1e-300 (within a factor of 2), or its distance
+    /// from the origin reaches 1e12 times its extent.
     pub fn place(&self) -> Result<Homothety, OutOfRange> {
         let extent = match self {
             Self::Rule(rule) => Extent::of_rule(rule),
@@ -180,9 +186,9 @@ impl Model {
         Ok(if stays { place } else { Homothety::IDENTITY })
     }
 
-    /// Returns the model in the coordinates that a homothety maps to its own, if its maps are those of the
-    /// whole plane (a system or a structure). Other models are returned unchanged, and so are those without
-    /// an extent in these coordinates.
+    /// Returns the model in the coordinates that a homothety maps to its own, if it is a system or a
+    /// structure, whose maps are maps of the whole plane. Other models are returned unchanged, as are
+    /// models in which a shape has no extent in these coordinates.
     #[must_use]
     pub fn within(&self, place: &Homothety) -> Self {
         self.moved(place).unwrap_or_else(|| self.clone())
@@ -202,7 +208,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// As for [`Model::compile_for`] and [`Model::place`], and if a rule grows beyond the range of numbers.
+    /// As for [`Model::compile_for`] and [`Model::place`], and if a rule grows beyond the range of
+    /// doubles.
     pub fn compile_near(
         &self,
         steps: u32,
@@ -217,7 +224,8 @@ impl Model {
         graph.ok_or_else(|| OutOfRange::Growth { step: steps }.into())
     }
 
-    /// Compiles the model as [`Model::compile_for`] does, in the coordinates that `place` maps to its own.
+    /// Compiles the model as [`Model::compile_for`] does, in the coordinates that `place` maps to its
+    /// own.
     ///
     /// # Errors
     ///
@@ -241,8 +249,8 @@ impl Model {
         })
     }
 
-    /// Returns [`Graph::telling_last_maps`] of a system in normalised coordinates. `None` if there are too
-    /// many maps, or if the model is no system.
+    /// Returns [`Graph::telling_last_maps`] of a system in normalised coordinates, or `None` if there are
+    /// too many maps, or if the model is not a system.
     ///
     /// # Errors
     ///

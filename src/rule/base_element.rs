@@ -1,16 +1,19 @@
+//! Base elements: outlines of lines and cubic Bézier curves in the unit frame, their extent and their
+//! area.
+
 use crate::geometry::{Bounds, DAffine2, DVec2};
 
-/// A piece of a base element, from the last point of the piece before it.
+/// Piece of a base element's outline; it starts where the preceding piece ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Piece {
-    /// A straight line to a point.
+    /// Straight line to a point.
     Line(DVec2),
-    /// A cubic Bézier curve: two control points and the end point.
+    /// Cubic Bézier curve: two control points and the end point.
     Cubic(DVec2, DVec2, DVec2),
 }
 
 impl Piece {
-    /// The piece's last point.
+    /// Returns the end point of the piece.
     #[must_use]
     pub fn end(&self) -> DVec2 {
         match *self {
@@ -18,7 +21,7 @@ impl Piece {
         }
     }
 
-    /// The piece in the image of a map.
+    /// Returns the image of the piece under a map.
     #[inline]
     #[must_use]
     pub fn transformed(&self, map: &DAffine2) -> Self {
@@ -33,26 +36,28 @@ impl Piece {
     }
 }
 
-/// A base element: what is drawn where an element stands.
+/// Base element: the outline that is drawn for an element.
 ///
 /// Coordinates are those of the unit frame, in which the element runs from (0, 0) to (1, 0).
 ///
-/// Guarantees: at least one piece, all coordinates finite. An open base element does not end where
-/// it starts; a closed one is a polygon (or a curve) whose last piece ends at its start.
+/// Guarantees: there is at least one piece, and all coordinates are finite. The end points of an open
+/// base element differ; a closed one is a polygon (or a curve) whose last piece ends at its start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseElement {
     start: DVec2,
     pieces: Vec<Piece>,
-    /// The same outline from its last point to its first.
+    /// Start and pieces of the outline in the opposite order.
     backwards: (DVec2, Vec<Piece>),
     signed_area: f64,
     closed: bool,
 }
 
 impl BaseElement {
-    /// A base element from a start point and pieces; a closed one gets its last side if it is missing.
+    /// Creates a base element from a start point and pieces; a closed outline that does not end at its
+    /// start is completed by a line.
     ///
-    /// Returns `None` for a base element of no extent (see the guarantees above).
+    /// Returns `None` if the outline violates a guarantee of the type: no piece, no extent, equal end
+    /// points of an open outline, or a coordinate that is not finite.
     #[must_use]
     pub fn new(start: DVec2, mut pieces: Vec<Piece>, closed: bool) -> Option<Self> {
         let end = pieces.last()?.end();
@@ -61,7 +66,7 @@ impl BaseElement {
         }
         let stays = |piece: &Piece| match *piece {
             Piece::Line(end) => end == start,
-            // A loop has an extent, though it ends where it starts.
+            // // A loop has an extent although it ends at its start.
             Piece::Cubic(a, b, end) => [a, b, end] == [start; 3],
         };
         if !closed && end == start || pieces.iter().all(stays) {
@@ -83,7 +88,7 @@ impl BaseElement {
         })
     }
 
-    /// Returns the image under a map; `None` if it has no extent left.
+    /// Returns the image under a map, or `None` if the image has no extent or is not finite.
     #[must_use]
     pub fn transformed(&self, map: &DAffine2) -> Option<Self> {
         let pieces = self.pieces.iter().map(|piece| piece.transformed(map));
@@ -94,7 +99,7 @@ impl BaseElement {
         )
     }
 
-    /// The line from (0, 0) to (1, 0): the base element of a rule that names none.
+    /// Returns the line from (0, 0) to (1, 0), the base element of a rule that names none.
     #[must_use]
     pub fn line() -> Self {
         let (start, pieces) = (DVec2::ZERO, vec![Piece::Line(DVec2::X)]);
@@ -107,31 +112,31 @@ impl BaseElement {
         }
     }
 
-    /// Whether the outline is closed; closed base elements never join their neighbours.
+    /// Returns whether the outline is closed; closed base elements never join their neighbours.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Whether this is the plain line from (0, 0) to (1, 0).
+    /// Returns whether the outline is the line from (0, 0) to (1, 0).
     #[must_use]
     pub fn is_line(&self) -> bool {
         self.start == DVec2::ZERO && self.pieces == [Piece::Line(DVec2::X)]
     }
 
-    /// Where the outline starts, in the order of listing.
+    /// Returns the start of the outline, in the order of listing.
     #[must_use]
     pub fn start(&self) -> DVec2 {
         self.start
     }
 
-    /// The pieces in the order of listing.
+    /// Returns the pieces in the order of listing.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Start and pieces in the order of traversal: as listed, or backwards.
+    /// Returns start and pieces in the order of traversal: as listed, or reversed.
     #[inline]
     #[must_use]
     pub fn outline(&self, reversed: bool) -> (DVec2, &[Piece]) {
@@ -142,10 +147,11 @@ impl BaseElement {
         }
     }
 
-    /// Whether the outline begins and ends where the element does, at (0, 0) and at (1, 0).
+    /// Returns whether the outline starts at (0, 0), and whether it ends at (1, 0): at the end points of
+    /// its element. Both are false for a closed outline.
     ///
-    /// Such an element shares its end points with the neighbours that it joins; others (a Hilbert
-    /// cup) are linked to them by a line.
+    /// An element of an open outline shares these end points with the neighbours that it joins; at any
+    /// other end (of a Hilbert cup, for example) a line links it to the neighbour.
     #[must_use]
     pub fn ends_meet_frame(&self) -> [bool; 2] {
         [
@@ -154,7 +160,8 @@ impl BaseElement {
         ]
     }
 
-    /// The points between which the outline lies: ends of pieces, and those that curves are drawn to.
+    /// Iterates over points whose convex hull contains the outline: the ends of pieces, and the control
+    /// points of curves.
     pub(crate) fn control_points(&self) -> impl Iterator<Item = DVec2> {
         let points = self.pieces.iter().flat_map(|piece| match *piece {
             Piece::Line(end) => [end; 3],
@@ -163,7 +170,7 @@ impl BaseElement {
         std::iter::once(self.start).chain(points)
     }
 
-    /// The support function: the largest x·u over the outline's points x.
+    /// Returns the support function of the outline: the maximum of x·u over its points x.
     #[must_use]
     pub fn support(&self, direction: DVec2) -> f64 {
         let mut from = self.start.dot(direction);
@@ -180,8 +187,8 @@ impl BaseElement {
         largest
     }
 
-    /// The radius of a disc about a point that holds the outline: no less than the smallest, and no
-    /// more than √2 times that.
+    /// Returns the radius of a disc about `centre` that contains the outline: at least the least such
+    /// radius, at most √2 times that.
     #[must_use]
     pub fn radius_about(&self, centre: DVec2) -> f64 {
         let mut far = DVec2::ZERO;
@@ -192,7 +199,7 @@ impl BaseElement {
         far.length()
     }
 
-    /// Adds the outline's image under a map to a box, with `pad` more on every side.
+    /// Extends `bounds` by the box of the outline's image under a map, padded by `pad` on every side.
     pub fn add_to(&self, bounds: &mut Bounds, map: &DAffine2, pad: f64) {
         let mut from = map.transform_point2(self.start);
         let mut add = |point: DVec2| {
@@ -212,15 +219,15 @@ impl BaseElement {
         }
     }
 
-    /// The area between the outline and the line back from its end to its start: positive where
-    /// that is encircled counter-clockwise.
+    /// Returns the signed area between the outline and the line from its end back to its start: positive
+    /// where that contour runs counter-clockwise.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         self.signed_area
     }
 }
 
-/// The area between an outline and the line back from its end to its start.
+/// Computes the signed area between an outline and the line from its end back to its start.
 fn signed_area(start: DVec2, pieces: &[Piece]) -> f64 {
     let mut from = start;
     let mut twice = 0.0;
@@ -253,12 +260,12 @@ fn backwards(start: DVec2, pieces: &[Piece]) -> (DVec2, Vec<Piece>) {
     (from, reversed)
 }
 
-/// The largest value of a cubic Bézier polynomial over [0, 1], from the zeros of its derivative.
+/// Returns the maximum of a cubic Bézier polynomial over [0, 1], from the zeros of its derivative.
 fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
     let (d0, d1, d2) = (p1 - p0, p2 - p1, p3 - p2);
     let (a, b, c) = (d0 - 2.0 * d1 + d2, d1 - d0, d0);
     let root = (b * b - a * c).max(0.0).sqrt();
-    // The two zeros of a t² + 2 b t + c in the form that does not cancel.
+    // The zeros of a t² + 2 b t + c, in the form without cancellation.
     let q = -(b + b.signum() * root);
     [q / a, c / q]
         .into_iter()
@@ -270,10 +277,10 @@ fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
         .fold(p0.max(p3), f64::max)
 }
 
-/// Cubic Bézier pieces along the circular arc from `from` through `through` to `to`.
+/// Returns cubic Bézier pieces along the circular arc from `from` through `through` to `to`, or `None` if
+/// the three points are collinear.
 ///
-/// Each spans at most 22.5°, which keeps them within 1e-7 of the radius of the arc. `None` if the
-/// three points lie on a line.
+/// Each piece spans at most 22.5°, which limits the deviation from the arc to 1e-7 of its radius.
 #[must_use]
 pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
     let (a, b) = (through - from, to - from);

@@ -1,26 +1,26 @@
 //! Random draws as pure functions of the seed and of an element's path.
 //!
-//! A path is the position in the initiator, then at each replacement the position in the generator
-//! as listed. It is carried as a 64-bit hash that grows by one mixing step a replacement, so a
-//! draw does not depend on what was drawn elsewhere, on the order or on the number of steps.
+//! A path is the position in the initiator, followed at each replacement by the position in the generator
+//! as listed. Its representation is a 64-bit hash that takes one mixing step a replacement. A draw
+//! therefore does not depend on other draws, on the order of the walk or on the number of steps.
 
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
 use crate::expression::{Interval, Program};
 
-/// The hash of a seed and of an element's path.
+/// Hash of a seed and of an element's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path(u64);
 
 impl Path {
-    /// The path that leads nowhere yet, for a seed.
+    /// Returns the empty path for a seed.
     #[must_use]
     pub fn of_seed(seed: u64) -> Self {
         Self(mix(seed ^ 0x6b66_7261_635f_7631))
     }
 
-    /// The path to the child at a position.
+    /// Returns the path of the child at a position.
     #[inline]
     #[must_use]
     pub fn child(self, position: u32) -> Self {
@@ -29,7 +29,7 @@ impl Path {
         ))
     }
 
-    /// The stream of random numbers that belongs to a name at this path.
+    /// Returns the random number stream of a name at this path.
     fn stream(self, name: u64) -> Pcg64Mcg {
         let high = mix(self.0 ^ name);
         let low = mix(high.wrapping_add(GOLDEN));
@@ -40,7 +40,7 @@ impl Path {
 /// 2⁶⁴ divided by the golden ratio, odd: the increment of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014).
+/// Applies an increment and the finaliser of SplitMix64 (Steele, Lea & Flood 2014).
 fn mix(value: u64) -> u64 {
     let z = value.wrapping_add(GOLDEN);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -48,22 +48,23 @@ fn mix(value: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A name's hash (FNV-1a), which keeps the streams of a path's variables apart.
+/// Returns the FNV-1a hash of a name; it separates the streams of the variables of a path.
 fn hash_of_name(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
 
-/// The farthest that a normal draw lies from its mean, in standard deviations: √(−2 ln 2⁻⁵³), for
-/// the numbers that it is made of have 53 bits.
+/// Largest deviation of a normal draw from its mean, in standard deviations: √(−2 ln 2⁻⁵³), because the
+/// Box–Muller transform is applied to numbers of 53 bits.
 const MOST_DEVIATIONS: f64 = 8.572;
 
-/// How likely it is that a normal draw lies in an interval, in standard deviations from its mean.
+/// Returns the probability of an interval, in standard deviations from the mean, under the normal
+/// distribution.
 fn normal(interval: Interval) -> f64 {
     let beyond = |deviations: f64| libm::erfc(deviations / std::f64::consts::SQRT_2) / 2.0;
     let Interval { low, high } = interval;
-    // Far out, differences of what lies beyond keep their digits.
+    // The difference of the smaller tails avoids cancellation far from the mean.
     if low + high < 0.0 {
         beyond(-high) - beyond(-low)
     } else {
@@ -71,24 +72,24 @@ fn normal(interval: Interval) -> f64 {
     }
 }
 
-/// A number from [0, 1) with 53 random bits.
+/// Draws a number from [0, 1) with 53 random bits.
 #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
 fn unit(stream: &mut Pcg64Mcg) -> f64 {
     (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// How a variable of a generator's random function is distributed.
+/// Distribution of a variable of a generator's random function.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Distribution {
-    /// Equally likely between two limits: from the first on, below the second.
+    /// Uniform on the interval from the first limit (included) to the second (excluded).
     Uniform(Program, Program),
     /// Normal, with mean and standard deviation (Box & Muller 1958).
     Normal(Program, Program),
-    /// One of the values, all equally likely.
+    /// Uniform on a list of values.
     Choice(Vec<Program>),
 }
 
-/// A variable that is drawn anew for every element that is replaced.
+/// Variable that is drawn for every replacement of an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     name: String,
@@ -97,7 +98,7 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// A variable with its distribution.
+    /// Creates a variable with a distribution.
     #[must_use]
     pub fn new(name: &str, distribution: Distribution) -> Self {
         Self {
@@ -107,19 +108,19 @@ impl Variable {
         }
     }
 
-    /// The name that expressions call it by.
+    /// Returns the name by which expressions refer to the variable.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How it is distributed.
+    /// Returns the distribution.
     #[must_use]
     pub fn distribution(&self) -> &Distribution {
         &self.distribution
     }
 
-    /// A value that stands for all: halfway between limits, the mean, the first choice.
+    /// Returns a representative value: the midpoint of the limits, the mean, or the first choice.
     #[must_use]
     pub fn typical(&self, slots: &[f64]) -> f64 {
         match &self.distribution {
@@ -129,7 +130,7 @@ impl Variable {
         }
     }
 
-    /// The expressions of its distribution.
+    /// Returns the expressions of the distribution.
     pub(super) fn programs(&self) -> Vec<&Program> {
         match &self.distribution {
             Distribution::Uniform(a, b) | Distribution::Normal(a, b) => vec![a, b],
@@ -137,7 +138,7 @@ impl Variable {
         }
     }
 
-    /// The number of values that it chooses from, if it does.
+    /// Returns the number of values of a choice; `None` for other distributions.
     pub(super) fn choices(&self) -> Option<usize> {
         match &self.distribution {
             Distribution::Choice(values) => Some(values.len()),
@@ -145,8 +146,10 @@ impl Variable {
         }
     }
 
-    /// All that may be drawn where the slots lie within these, give or take rounding: in so many
-    /// parts, or as one. With each goes how likely it is that what is drawn is of that part.
+    /// Divides the range of the variable, for slots within the given intervals, into `count` intervals,
+    /// each with its probability; the intervals are valid up to rounding.
+    ///
+    /// The values of a choice are separate intervals if `count` is their number, otherwise one interval.
     #[expect(clippy::cast_precision_loss, reason = "numbers of parts are small")]
     pub(super) fn parts(&self, slots: &[Interval], count: usize) -> Vec<(Interval, f64)> {
         let share = 1.0 / count as f64;
@@ -178,7 +181,7 @@ impl Variable {
         }
     }
 
-    /// The value that belongs to a path.
+    /// Returns the value drawn for a path.
     #[must_use]
     pub fn draw(&self, path: Path, slots: &[f64]) -> f64 {
         let mut stream = path.stream(self.stream);
@@ -188,7 +191,7 @@ impl Variable {
                 low + (high - low) * unit(&mut stream)
             }
             Distribution::Normal(mean, deviation) => {
-                // 1 − u lies in (0, 1], so that the logarithm is finite.
+                // 1 − u lies in (0, 1]: its logarithm is finite.
                 let radius = (-2.0 * libm::log(1.0 - unit(&mut stream))).sqrt();
                 let angle = std::f64::consts::TAU * unit(&mut stream);
                 mean.eval(slots) + deviation.eval(slots) * radius * libm::cos(angle)
@@ -210,10 +213,10 @@ fn pick_index(stream: &mut Pcg64Mcg, count: usize) -> usize {
     ((unit(stream) * count as f64) as usize).min(count - 1)
 }
 
-/// What stands for selection at random where variables have their names; no name has a space.
+/// Name of the stream for selection at random; names of variables contain no space.
 const SELECTION: &str = "the selection";
 
-/// Picks an entry by weight: the index, for weights that are not negative and not all zero.
+/// Draws the index of an entry by weight; the weights are not negative and not all zero.
 #[must_use]
 pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
     let total: f64 = weights.clone().sum();
@@ -247,7 +250,7 @@ mod tests {
             .collect()
     }
 
-    /// What is drawn is part of every picture: these values may never change.
+    /// Every random picture depends on the draws: these values must never change.
     #[test]
     fn draws_are_pinned() {
         let uniform = draws(Distribution::Uniform(program(-20.0), program(20.0)));
@@ -303,7 +306,8 @@ mod tests {
         assert_eq!(typical(choice), 7.0);
     }
 
-    /// Means and variances of many draws are those of the distributions, within four standard errors.
+    /// Compares means and variances of many draws with those of the distributions, within four standard
+    /// errors.
     #[test]
     fn draws_are_distributed_as_they_say() {
         let count = 40_000u32;
@@ -339,7 +343,7 @@ mod tests {
         assert!((picked as f64 / f64::from(count) - 0.75).abs() < error * 0.44);
     }
 
-    /// Names, positions, depths and seeds all lead to other streams.
+    /// Different names, positions, depths and seeds have different streams.
     #[test]
     fn streams_are_apart() {
         let mut seen = std::collections::BTreeSet::new();
@@ -356,7 +360,7 @@ mod tests {
                         );
                     }
                 }
-                // The child at 0 of one path is a start of the next.
+                // The child at 0 of one path is also the start of the next.
                 seen.clear();
             }
         }

@@ -1,41 +1,41 @@
-//! How far draws may move the elements of a generator.
+//! Bounds on the positions and lengths of a generator's elements over all random draws.
 
 use crate::expression::{Dependence, Interval, Program};
 use crate::geometry::DVec2;
 
 use super::generator::{Generator, ListedElement, Moment, Move};
 
-/// The ranges of the drawn variables are cut into no more parts than this in all.
+/// Limit of the number of parts into which the ranges of all drawn variables together are divided.
 const MOST_PARTS: usize = 1024;
 
-/// So many parts, at most, of one of them.
+/// Limit of the number of parts of one variable's range.
 const MOST_PARTS_OF_ONE: usize = 32;
 
-/// What holds of an element wherever it is drawn.
+/// Bounds that hold for an element over all draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Extent {
-    /// The most that its middle lies away from the middle of the unit frame.
+    /// Largest distance of its midpoint from the midpoint of the unit frame.
     pub(crate) away: f64,
-    /// The most that it is long.
+    /// Largest length.
     pub(crate) length: f64,
 }
 
-/// A box in which a point lies.
+/// Box that contains a point.
 type Place = [Interval; 2];
 
 impl Generator {
-    /// What holds of its elements, by position, for all draws and all moments within these limits;
-    /// give or take rounding.
+    /// Returns bounds that hold for each element, by position, over all draws and all moments within the
+    /// given limits, up to rounding.
     ///
-    /// Interval arithmetic, on parts of the draws' ranges: the parts are what keeps in mind that
-    /// coordinates are drawn together.
+    /// The bounds result from interval arithmetic on parts of the variables' ranges: within a part, the
+    /// correlation of coordinates that depend on one variable loses little.
     pub(crate) fn extents(&self, moment: &[Interval; 4]) -> Vec<Extent> {
         let extent = |element| self.cover(element, f64::INFINITY, moment);
         self.elements().map(extent).collect()
     }
 
-    /// The same on average, of a power: of numbers x no less than the root of that power of the mean of
-    /// its powers of x.
+    /// Returns upper bounds of the power means (E[xᵖ])^(1/p), p being `power`, of the quantities x of
+    /// [`Extent`], for each element by position.
     pub(crate) fn means(&self, power: f64, moment: &[Interval; 4]) -> Vec<Extent> {
         let mean = |element| {
             let Extent { away, length } = self.cover(element, power, moment);
@@ -60,8 +60,8 @@ impl Generator {
         cover.extent
     }
 
-    /// Into how many parts the ranges of the variables are cut, one after another: of those that the
-    /// element depends on.
+    /// Returns the number of parts into which the range of each variable is divided: 1 for variables that
+    /// do not affect the element.
     fn parts_for(&self, element: &ListedElement) -> Vec<usize> {
         let ends = [element.from, element.to];
         let moves = self.moves.iter();
@@ -94,18 +94,19 @@ impl Generator {
     }
 }
 
-/// Goes through the parts of the ranges of the variables.
+/// Recursion over the parts of the variables' ranges.
 struct Cover<'g> {
     generator: &'g Generator,
     element: &'g ListedElement,
     parts: Vec<usize>,
-    /// Whether the sums of powers are looked for, or, if that is infinite, the most.
+    /// Exponent of the power means; infinite for maxima.
     power: f64,
     extent: Extent,
 }
 
 impl Cover<'_> {
-    /// Goes on to the parts of the next variable's range, as likely as it is to have come here.
+    /// Recurses into the parts of the next variable's range; `likely` is the probability of the parts so
+    /// far.
     fn go_on(&mut self, slots: &mut Vec<Interval>, likely: f64) {
         let number = slots.len() - Moment::NAMES.len();
         let Some(variable) = self.generator.variables.get(number) else {
@@ -142,7 +143,7 @@ impl Cover<'_> {
 }
 
 impl Move {
-    /// Where a point in a place may be moved to.
+    /// Returns a box of the images of a point under the move.
     fn image(&self, point: Place, slots: &[Interval]) -> Place {
         let angle = self.rotate.range(slots);
         let (sine, cosine) = (angle.sine(), angle.cosine());
@@ -167,7 +168,7 @@ fn minus(a: Place, b: Place) -> Place {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// The most that a point in a place lies from the origin.
+/// Returns the largest distance of a point in a box from the origin.
 fn far([x, y]: Place) -> f64 {
     DVec2::new(x.magnitude(), y.magnitude()).length()
 }

@@ -1,3 +1,5 @@
+//! Generators: the elements that replace a fertile element, with their random functions and placements.
+
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
@@ -7,54 +9,55 @@ use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
 
 use super::draw::{Path, Variable};
 
-/// What the expressions of a generator and of a selection see of the element that is replaced.
+/// Values that the expressions of a generator and of a selection see of the element that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// The element's rank in its fractal, from 1.
+    /// Index of the element in its fractal, from 1 in the order of traversal.
     pub index: f64,
-    /// The age of its fractal.
+    /// Age of its fractal, in steps.
     pub age: f64,
-    /// The number of the approximant that is being replaced.
+    /// Number of the approximant that is replaced.
     pub step: f64,
-    /// Its length, as a multiple of the initiator element's that it descends from.
+    /// Length of the element, as a multiple of the length of the initiator element from which it
+    /// descends.
     pub length: f64,
 }
 
 impl Moment {
-    /// The names that expressions know the fields by, in the order of their slots.
+    /// Names of the fields in expressions, in the order of their slots.
     pub const NAMES: [&'static str; 4] = ["i", "age", "step", "length"];
-    /// The slot of `i`.
+    /// Slot of `i`.
     pub const INDEX: usize = 0;
-    /// The slot of `age`.
+    /// Slot of `age`.
     pub const AGE: usize = 1;
-    /// The slot of `step`.
+    /// Slot of `step`.
     pub const STEP: usize = 2;
-    /// The slot of `length`.
+    /// Slot of `length`.
     pub const LENGTH: usize = 3;
 
-    /// The values, in the order of their slots.
+    /// Returns the values in the order of their slots.
     #[must_use]
     pub fn slots(&self) -> [f64; 4] {
         [self.index, self.age, self.step, self.length]
     }
 }
 
-/// A part of a random function: moves points of the generator (Kaandorp 1987, figure 4).
+/// Component of a random function: moves points of the generator (Kaandorp 1987, figure 4).
 ///
-/// Points are scaled and turned about a centre, then shifted. Angles are degrees, positive
-/// counter-clockwise; lengths are those of the unit frame.
+/// Points are scaled and rotated about a centre, then translated. Angles are in degrees, positive
+/// counter-clockwise; lengths are in units of the unit frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     pub(crate) rotate: Program,
     pub(crate) scale: [Program; 2],
     pub(crate) shift: [Program; 2],
     pub(crate) about: [Program; 2],
-    /// The points that move, by their number. Moves of the same points share them.
+    /// Numbers of the points that move; moves of equal points share the allocation.
     pub(crate) points: Arc<[usize]>,
 }
 
 impl Move {
-    /// Its expressions.
+    /// Iterates over the expressions of the move.
     pub(super) fn programs(&self) -> impl Iterator<Item = &Program> {
         let pairs = [&self.scale, &self.shift, &self.about].into_iter();
         std::iter::once(&self.rotate).chain(pairs.flatten())
@@ -72,78 +75,79 @@ impl Move {
     }
 }
 
-/// Where the elements of a part go (Kaandorp 1987, step E1 of the algorithm, and figure 6).
+/// Placement of the elements of a part (Kaandorp 1987, step E1 of the algorithm, and figure 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// They take the replaced element's place.
+    /// The elements take the place of the replaced element.
     Stays,
-    /// They start a new fractal in the replaced element's frame.
+    /// The elements start a new fractal in the frame of the replaced element.
     Seeds,
-    /// They start a new fractal with the linear part of the initiator element that the replaced
-    /// element descends from, and with its origin at the replaced element's first point.
+    /// The elements start a new fractal with the linear part of the initiator element from which the
+    /// replaced element descends, and with the origin at the first point of the replaced element.
     SeedsAsInitiator,
 }
 
 impl Placement {
-    /// Whether a new fractal starts.
+    /// Returns whether the part is a seed part: whether it starts a new fractal.
     #[must_use]
     pub fn seeds(self) -> bool {
         self != Self::Stays
     }
 }
 
-/// An element as an initiator or a generator lists it.
+/// Element as listed in an initiator or a generator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedElement {
-    /// The number of the point that it runs from.
+    /// Number of its first point.
     pub from: usize,
-    /// The number of the point that it runs to.
+    /// Number of its last point.
     pub to: usize,
-    /// Its direction.
+    /// Direction.
     pub direction: Direction,
-    /// Whether it is replaced in the next step.
+    /// Whether the element is fertile: replaced in the next step.
     pub fertile: bool,
-    /// Whether it is drawn.
+    /// Whether the element is drawn.
     pub visible: bool,
-    /// Whether it joins the element listed before it (the first one: the last, in a closed chain).
+    /// Whether the element joins the one listed before it (the first joins the last, in a closed chain).
     pub joined: bool,
-    /// The generator that it names for its replacement.
+    /// Number of the generator that the element names for its replacement.
     pub generator: Option<usize>,
-    /// Its base element, by number.
+    /// Number of its base element.
     pub base_element: usize,
 }
 
-/// A list of elements that stand together: an initiator, or a part of a generator.
+/// List of elements with one placement: an initiator, or a part of a generator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Where the elements go.
+    /// Placement of the elements.
     pub placement: Placement,
-    /// The elements in the order of listing.
+    /// Elements in the order of listing.
     pub elements: Vec<ListedElement>,
-    /// Whether the first element is written to start at (0, 0) and the last to end at (1, 0).
+    /// Whether the first element is written to start at (0, 0), and whether the last is written to end at
+    /// (1, 0).
     pub meets_frame: [bool; 2],
 }
 
-/// How a generator or an initiator was written: for messages about what shows only when it is
-/// evaluated, and for what needs more digits than a double has.
+/// Source of a generator or an initiator: for diagnostics of evaluation, and for computations in more
+/// digits than a double has.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) name: Place,
-    /// Its points.
+    /// Points as written.
     pub(crate) points: Vec<Point>,
 }
 
 impl PartialEq for Origin {
-    /// Two generators are the same wherever they were written.
+    /// Returns true: generators are compared regardless of their source.
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// A generator: what replaces a fertile element.
+/// Generator: the elements that replace a fertile element.
 ///
-/// The coordinates of its points are those of the unit frame, in which the replaced element runs
-/// from (0, 0) to (1, 0).
+/// The coordinates of its points are those of the unit frame, in which the replaced element runs from (0,
+/// 0) to (1, 0).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generator {
     pub(crate) origin: Origin,
@@ -155,20 +159,21 @@ pub struct Generator {
 }
 
 impl Generator {
-    /// The name that selections and elements call it by.
+    /// Returns the name by which selections and elements refer to the generator.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The variables of its random function.
+    /// Returns the variables of the random function.
     #[must_use]
     pub fn variables(&self) -> &[Variable] {
         &self.variables
     }
 
-    /// The first coordinate that is not finite at a moment, before points move: where it is
-    /// written, and what it depends on. None if it depends on draws or becomes infinite as it moves.
+    /// Returns the first coordinate that is not finite at a moment, before points move: its source place,
+    /// and the names and values on which it depends. `None` if the generator is random or all coordinates
+    /// are finite before the moves.
     pub(crate) fn infinite_coordinate(
         &self,
         moment: &Moment,
@@ -187,24 +192,25 @@ impl Generator {
         Some((place, values.collect()))
     }
 
-    /// Its parts, in the order of listing.
+    /// Returns the parts in the order of listing.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// All elements, in the order of listing, across parts.
+    /// Iterates over all elements in the order of listing, across parts.
     pub fn elements(&self) -> impl Iterator<Item = &ListedElement> {
         self.parts.iter().flat_map(|part| &part.elements)
     }
 
-    /// Whether the points depend on draws.
+    /// Returns whether the generator has random variables.
     #[must_use]
     pub fn is_random(&self) -> bool {
         !self.variables.is_empty()
     }
 
-    /// What the expressions of its points see: the moment, and what is drawn for a path.
+    /// Returns the values that the expressions of the points see: those of the moment, and the draws for
+    /// a path.
     pub(crate) fn slots(&self, moment: &Moment, path: Path) -> Vec<f64> {
         let mut slots = moment.slots().to_vec();
         for variable in &self.variables {
@@ -213,17 +219,18 @@ impl Generator {
         slots
     }
 
-    /// All expressions of the generator.
+    /// Iterates over all expressions of the generator.
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
         let moves = self.moves.iter().flat_map(Move::programs);
         let drawn = self.variables.iter().flat_map(Variable::programs);
         self.points.iter().flatten().chain(moves).chain(drawn)
     }
 
-    /// The points for one replacement: drawn, evaluated, moved.
+    /// Evaluates the points for one replacement: draws the variables, evaluates the coordinates, applies
+    /// the moves.
     ///
-    /// `scratch` and `points` are overwritten: their memory is used again, so nothing is allocated
-    /// in a walk. The points may be infinite or NaN where an expression is.
+    /// `scratch` and `points` are overwritten and their memory is reused: a walk does not allocate. A
+    /// point is infinite or NaN where an expression is.
     pub fn evaluate(
         &self,
         moment: &Moment,
@@ -235,7 +242,7 @@ impl Generator {
         self.evaluate_with(moment, draw, scratch, points);
     }
 
-    /// The points for draws that stand for all (see [`Variable::typical`]).
+    /// Returns the points for representative draws (see [`Variable::typical`]).
     #[must_use]
     pub fn typical(&self, moment: &Moment) -> Vec<DVec2> {
         let (mut scratch, mut points) = (Vec::new(), Vec::new());
@@ -243,7 +250,8 @@ impl Generator {
         points
     }
 
-    /// The points for draws of one's own, of each variable in the order of listing.
+    /// Evaluates the points with the draws of the function `draw`, called for each variable in the order
+    /// of listing.
     #[inline]
     pub(crate) fn evaluate_with(
         &self,

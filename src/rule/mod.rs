@@ -1,9 +1,9 @@
 //! Production rules: Kaandorp's system (Kaandorp 1987, section 2.1) as a validated model.
 //!
-//! A [`Rule`] holds no text that is still to be parsed and no name that is still to be looked up:
-//! all indices are in range, all parameters have their values, all expressions are compiled and
-//! see only names that exist where they are evaluated. Its initiator has at least one element and
-//! every element that may be fertile has a generator.
+//! A [`Rule`] contains no unparsed text and no unresolved name: all indices are in range, all parameters
+//! have values, and all expressions are compiled and refer only to names that exist where they are
+//! evaluated. The initiator has at least one element, and every element that may be fertile has a
+//! generator.
 
 mod base_element;
 pub mod draw;
@@ -21,11 +21,11 @@ use crate::geometry::DVec2;
 use crate::heading::{Description, Heading, Parameter};
 use crate::style::{Style, View};
 
-/// A production rule: an initiator, generators with a selection, and base elements.
+/// Production rule: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     pub(crate) heading: Heading,
-    /// How the initiator was written.
+    /// Source of the initiator.
     pub(crate) origin: Origin,
     pub(crate) points: Vec<DVec2>,
     pub(crate) initiator: Part,
@@ -35,85 +35,86 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// What files of all kinds say.
+    /// Returns the metadata of the file.
     #[must_use]
     pub fn heading(&self) -> &Heading {
         &self.heading
     }
 
-    /// Title, source and the like.
+    /// Returns title, source and related metadata.
     #[must_use]
     pub fn description(&self) -> &Description {
         &self.heading.description
     }
 
-    /// The parameters with their values.
+    /// Returns the parameters with their values.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
         &self.heading.parameters
     }
 
-    /// The initiator's elements; their points are those of [`Rule::initiator_points`].
+    /// Returns the elements of the initiator; their points are those of [`Rule::initiator_points`].
     #[must_use]
     pub fn initiator(&self) -> &Part {
         &self.initiator
     }
 
-    /// The points of the initiator, in the rule's own units.
+    /// Returns the points of the initiator, in the rule's units.
     #[must_use]
     pub fn initiator_points(&self) -> &[DVec2] {
         &self.points
     }
 
-    /// The array of generators.
+    /// Returns the generators.
     #[must_use]
     pub fn generators(&self) -> &[Generator] {
         &self.generators
     }
 
-    /// How a generator is selected for an element that does not name its own.
+    /// Returns the selection of generators for elements that name none.
     #[must_use]
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// The base elements that elements refer to by number; 0 is the rule's.
+    /// Returns the base elements, to which elements refer by number; number 0 is that of the rule.
     #[must_use]
     pub fn base_elements(&self) -> &[BaseElement] {
         &self.base_elements
     }
 
-    /// The number of steps that the file proposes.
+    /// Returns the number of steps that the file proposes.
     #[must_use]
     pub fn steps(&self) -> Option<u32> {
         self.heading.steps
     }
 
-    /// The published similarity dimension.
+    /// Returns the published similarity dimension.
     #[must_use]
     pub fn dimension(&self) -> Option<f64> {
         self.heading.dimension
     }
 
-    /// The published Hausdorff dimension, where it differs from the similarity dimension.
+    /// Returns the published Hausdorff dimension, where it differs from the similarity dimension.
     #[must_use]
     pub fn hausdorff_dimension(&self) -> Option<f64> {
         self.heading.hausdorff_dimension
     }
 
-    /// How it is drawn.
+    /// Returns the style.
     #[must_use]
     pub fn style(&self) -> &Style {
         &self.heading.style
     }
 
-    /// What part of the plane is drawn.
+    /// Returns the view: the part of the plane that is drawn.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.heading.view
     }
 
-    /// Whether anything depends on draws: a random function, or selection at random.
+    /// Returns whether the rule depends on random draws: by a random function, or by selection at random
+    /// among several generators.
     #[must_use]
     pub fn is_random(&self) -> bool {
         matches!(self.selection, Selection::AtRandom(_)) && self.selection.candidates().len() > 1

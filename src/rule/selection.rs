@@ -1,20 +1,23 @@
+//! Selection of the generator for a fertile element: by index, by condition or by weight.
+
 use crate::expression::Program;
 
 use super::draw::{Path, pick_by_weight};
 use super::generator::Moment;
 
-/// Which generator replaces a fertile element that does not name its own.
+/// Selection of the generator for a fertile element that does not name its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Selection {
-    /// Always the same.
+    /// One generator for all elements.
     Always(usize),
-    /// Element i takes entry (i − 1) mod m of the m entries (Kaandorp 1987, figure 13).
+    /// By index: element i takes entry (i − 1) mod m of the m entries (Kaandorp 1987, figure 13).
     ByIndex(Vec<usize>),
-    /// The first whose condition holds; the last one has none (Kaandorp 1987, figure 6).
+    /// By condition: the first case that holds, or the last entry, which has no condition (Kaandorp 1987,
+    /// figure 6).
     ByCondition {
-        /// Conditions, tried in order.
+        /// Conditions in the order in which they are tried.
         cases: Vec<(Program, usize)>,
-        /// The generator where none holds.
+        /// Generator if no condition holds.
         otherwise: usize,
     },
     /// At random, by weight.
@@ -22,7 +25,7 @@ pub enum Selection {
 }
 
 impl Selection {
-    /// The generator for an element.
+    /// Returns the number of the generator for an element.
     #[inline]
     #[must_use]
     pub fn select(&self, moment: &Moment, path: Path) -> usize {
@@ -43,7 +46,7 @@ impl Selection {
         }
     }
 
-    /// The generators that may be picked, each once, in the order of listing.
+    /// Returns the generators that can be selected, each once, in the order of listing.
     #[must_use]
     pub fn candidates(&self) -> Vec<usize> {
         let mut all: Vec<usize> = match self {
@@ -78,7 +81,7 @@ impl Selection {
     }
 }
 
-/// (index − 1) mod count, for an index from 1.
+/// Computes (index − 1) mod count, for an index from 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
