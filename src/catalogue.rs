@@ -1,7 +1,8 @@
-//! Where rule files and components are found: the user's folders, then the embedded library.
+//! Lookup of library files by name or path: in the user's folders first, then in the embedded library.
 //!
-//! A library folder holds `rules`, `ifs`, `instancing`, `lsystems`, `initiators`, `generators` and `base_elements`, each with YAML
-//! files; rules may also lie in the folder itself. The folder `schema` is for editors only.
+//! A library folder has the subfolders `rules`, `ifs`, `instancing`, `lsystems`, `initiators`,
+//! `generators` and `base_elements`, which hold YAML files; rules may also lie in the folder itself.
+//! The folder `schema` of the embedded library is for editors only.
 
 mod file;
 
@@ -19,27 +20,27 @@ pub use file::{cannot_be_read, open_file};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
 
-/// What a library file holds.
+/// Category of a library file: the folder in which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shelf {
-    /// A production rule.
+    /// Production rules.
     Rules,
-    /// An iterated function system.
+    /// Iterated function systems.
     Ifs,
-    /// A structure of objects that instance each other.
+    /// Instancing structures.
     Instancing,
-    /// An L-system.
+    /// L-systems.
     LSystems,
-    /// An initiator.
+    /// Initiators.
     Initiators,
-    /// A generator.
+    /// Generators.
     Generators,
-    /// A base element.
+    /// Base elements.
     BaseElements,
 }
 
 impl Shelf {
-    /// The shelf of a kind of files that can be grown.
+    /// Returns the shelf of the files of a kind.
     #[must_use]
     pub fn of(kind: Kind) -> Self {
         match kind {
@@ -50,13 +51,13 @@ impl Shelf {
         }
     }
 
-    /// The shelves of what can be grown, in the order in which names are looked up.
+    /// Returns the shelves of complete fractals, in the order of lookup.
     #[must_use]
     pub fn grown() -> [Self; Kind::ALL.len()] {
         Kind::ALL.map(Self::of)
     }
 
-    /// The shelves of components, in the order in which names are looked up.
+    /// The shelves of components, in the order of lookup.
     pub const COMPONENTS: [Self; 3] = [Self::Initiators, Self::Generators, Self::BaseElements];
 
     /// All shelves, in the order in which they are listed.
@@ -70,7 +71,7 @@ impl Shelf {
         Self::BaseElements,
     ];
 
-    /// The folder's name.
+    /// Returns the name of the folder.
     #[must_use]
     pub fn folder(self) -> &'static str {
         match self {
@@ -84,7 +85,8 @@ impl Shelf {
         }
     }
 
-    /// What one of its files is called: `rule`, `initiator`, `generator` or `base_element`.
+    /// Returns the keyword for the content of a file, such as `rule`, `lsystem` or `base_element`. For
+    /// components it is the key of a rule that names one.
     #[must_use]
     pub fn kind(self) -> &'static str {
         match self {
@@ -98,7 +100,7 @@ impl Shelf {
         }
     }
 
-    /// The same, to be read in a sentence.
+    /// Returns the noun for the content of a file, for use in messages.
     #[must_use]
     pub fn noun(self) -> &'static str {
         match self {
@@ -110,7 +112,8 @@ impl Shelf {
         }
     }
 
-    /// The first line of its files in the embedded library: editors find their schema by it.
+    /// Returns the first line of the files of this shelf in the embedded library, by which editors find
+    /// their schema.
     #[must_use]
     pub fn modeline(self) -> String {
         format!(
@@ -123,16 +126,16 @@ impl Shelf {
 /// A file of the library.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Its name, without extension.
+    /// Name of the file, without its extension.
     pub name: String,
-    /// What it holds.
+    /// Shelf on which the file lies.
     pub shelf: Shelf,
-    /// Where it lies; `None` if it is embedded.
+    /// Path of the file; `None` if it is embedded.
     pub path: Option<PathBuf>,
 }
 
 impl Entry {
-    /// Why a component is not what a rule is.
+    /// Returns the error for a component that is used as a rule.
     fn refusal(&self) -> Diagnostic {
         let Self { name, shelf, .. } = self;
         let (noun, kind, folder) = (shelf.noun(), shelf.kind(), shelf.folder());
@@ -146,30 +149,32 @@ impl Entry {
     }
 }
 
-/// The places in which rules and components are looked for, the first one first.
+/// The folders that are searched, in order, before the embedded library.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
     folders: Vec<PathBuf>,
 }
 
 impl Catalogue {
-    /// The embedded library alone.
+    /// Creates a catalogue of the embedded library alone.
     #[must_use]
     pub fn embedded() -> Self {
         Self::default()
     }
 
-    /// Folders, in this order, before the embedded library.
+    /// Creates a catalogue that searches the folders, in this order, before the embedded library.
     #[must_use]
     pub fn with_folders(folders: Vec<PathBuf>) -> Self {
         Self { folders }
     }
 
-    /// A rule by path or by name: a file that exists wins.
+    /// Reads a complete fractal by path or by name. An existing file takes precedence over a name in
+    /// the library.
     ///
     /// # Errors
     ///
-    /// If there is no such rule, or it cannot be read.
+    /// Returns an error if the argument is neither a file nor a name in the library, if it names a
+    /// component, or if the file cannot be read.
     pub fn rule(&self, argument: impl AsRef<Path>) -> Result<Arc<Source>, Diagnostic> {
         let path = argument.as_ref();
         let name = path.to_string_lossy();
@@ -180,7 +185,7 @@ impl Catalogue {
                     "'{name}' is a folder, not a rule file"
                 )));
             }
-            // A link that leads nowhere is the file that is meant.
+            // A dangling link is the file that the user meant.
             Err(error) if path.is_symlink() => {
                 return Err(cannot_be_read(path, &error));
             }
@@ -199,8 +204,9 @@ impl Catalogue {
         self.named(&Shelf::grown(), &name)
     }
 
-    /// The component of a name that no file and nothing has that can be grown, or of one that names
-    /// its folder too: `generators/koch` is the generator, where `koch` is the rule.
+    /// Returns the component that an argument refers to: by a name, if neither a file nor a complete
+    /// fractal has that name, or by folder and name, if no such file exists. For example,
+    /// `generators/koch` is a generator, while `koch` is a rule.
     #[must_use]
     pub fn component_named(&self, argument: impl AsRef<Path>) -> Option<Entry> {
         let path = argument.as_ref();
@@ -216,9 +222,11 @@ impl Catalogue {
         candidates.into_iter().next()
     }
 
-    /// The rule that the last one of a chain extends: a file beside it or by path, or a rule by name.
+    /// Reads the file that the last file of `chain` extends: a file relative to that file's folder or
+    /// to the current folder, or a library file by name.
     ///
-    /// A name passes over the files of the chain, so that a rule can extend the one that it hides.
+    /// A name is resolved to the first file that is not in `chain`, so that a rule can extend the rule
+    /// that it hides.
     pub(crate) fn parent(
         &self,
         name: &str,
@@ -232,7 +240,7 @@ impl Catalogue {
                 return read_file(&beside);
             }
         }
-        // A rule that is read must not wait for what a pipe or a terminal says.
+        // Reading a rule must not block on a pipe or a terminal.
         let special = |file: fs::Metadata| !file.is_file() && !file.is_dir();
         if fs::metadata(name).is_ok_and(special) {
             return Err(Diagnostic::error(format!("'{name}' is no regular file")));
@@ -253,11 +261,11 @@ impl Catalogue {
         Ok(first)
     }
 
-    /// A file of data, from the folder of the file that names it.
+    /// Reads a data file, relative to the folder of the file that contains `named`.
     pub(crate) fn data(&self, name: &str, named: &Place) -> Result<Arc<Source>, Diagnostic> {
         let folder = named.source().path().parent();
         let path = folder.unwrap_or(Path::new("")).join(name);
-        // What is read must not wait for what a pipe or a terminal says.
+        // Reading data must not block on a pipe or a terminal.
         if path.is_file() {
             return read_file(&path);
         }
@@ -267,19 +275,19 @@ impl Catalogue {
         )
     }
 
-    /// A rule or component by name.
+    /// Reads a library file by name.
     ///
     /// # Errors
     ///
-    /// If there is none of this name, or it cannot be read.
+    /// Returns an error if the shelf has no file of this name, or if the file cannot be read.
     pub fn component(&self, shelf: Shelf, name: &str) -> Result<Arc<Source>, Diagnostic> {
         self.named(&[shelf], name)
     }
 
-    /// What has a name on one of some shelves.
+    /// Reads the first file of the given name on the given shelves.
     fn named(&self, shelves: &[Shelf], name: &str) -> Result<Arc<Source>, Diagnostic> {
         let Some(entry) = self.candidates(shelves, name).into_iter().next() else {
-            // A name that ends as those of files do is that of a file.
+            // A name with an extension was probably meant as a file.
             let is_file = shelves.len() > 1 && Path::new(name).extension().is_some();
             let message = if is_file {
                 format!("there is no file '{name}', and no rule of this name in the library")
@@ -302,11 +310,11 @@ impl Catalogue {
         self.open(&entry)
     }
 
-    /// The text of an entry.
+    /// Reads the text of an entry.
     ///
     /// # Errors
     ///
-    /// If it cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn open(&self, entry: &Entry) -> Result<Arc<Source>, Diagnostic> {
         if let Some(path) = &entry.path {
             return read_file(path);
@@ -318,7 +326,8 @@ impl Catalogue {
         Source::read(format!("library/{name}"), bytes.to_vec())
     }
 
-    /// All files of a name on some shelves; the first hides the others.
+    /// Returns all files of the given name on the given shelves, in the order of lookup: the first
+    /// hides the others.
     fn candidates(&self, shelves: &[Shelf], name: &str) -> Vec<Entry> {
         let name = without_extension(name);
         let is_name = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
@@ -350,7 +359,8 @@ impl Catalogue {
         found
     }
 
-    /// Everything in the library, by shelf and name; what comes first hides what comes later.
+    /// Returns the visible files of the library, sorted by shelf and name. A file hides those of the
+    /// same shelf and name in later folders.
     #[must_use]
     pub fn entries(&self) -> Vec<Entry> {
         let mut entries = BTreeMap::new();
@@ -364,7 +374,8 @@ impl Catalogue {
                     let files = fs::read_dir(folder).into_iter().flatten().flatten();
                     let files = files.map(|file| file.path()).filter(|path| path.is_file());
                     let mut files: Vec<_> = files.collect();
-                    // Backwards, so that of two extensions the first is added last and stays.
+                    // In descending order, so that of two extensions the first one is inserted last and
+                    // kept.
                     files.sort_by(|a, b| b.cmp(a));
                     for path in files {
                         add(&mut entries, shelf, &path, Some(&path));
@@ -376,14 +387,14 @@ impl Catalogue {
     }
 }
 
-/// The shelf, of some, and the name in `FOLDER/NAME`.
+/// Splits `FOLDER/NAME` into one of the given shelves and a name.
 fn on_shelf<'n>(shelves: &[Shelf], name: &'n str) -> Option<(Shelf, &'n str)> {
     let (folder, name) = name.split_once('/')?;
     let shelf = shelves.iter().find(|shelf| shelf.folder() == folder)?;
     Some((*shelf, name))
 }
 
-/// The embedded files of a shelf.
+/// Iterates over the embedded files of a shelf.
 fn embedded(shelf: Shelf) -> impl Iterator<Item = &'static File<'static>> {
     EMBEDDED
         .get_dir(shelf.folder())
@@ -411,7 +422,7 @@ fn add(
     }
 }
 
-/// What the names of library files end in; the first comes before the second.
+/// Extensions of library files, in order of precedence.
 const EXTENSIONS: [&str; 2] = [".yaml", ".yml"];
 
 fn without_extension(name: &str) -> &str {
@@ -419,7 +430,7 @@ fn without_extension(name: &str) -> &str {
     stems.into_iter().flatten().next().unwrap_or(name)
 }
 
-/// Whether two texts come from one file, by whatever paths.
+/// Returns whether two texts were read from one file, even if by different paths.
 pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
     let file = |source: &Source| fs::canonicalize(source.path()).ok();
     a.text() == b.text() && (a.name() == b.name() || file(a).is_some() && file(a) == file(b))
@@ -427,7 +438,7 @@ pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
 
 fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     use std::io::Read;
-    // One byte more than is allowed tells a file that is too large without reading all of it.
+    // One byte more than the limit suffices to detect a file that is too large.
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
     let read = open_file(path)?.take(most).read_to_end(&mut bytes);

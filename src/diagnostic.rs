@@ -1,7 +1,9 @@
-//! Mistakes in a file, reported as compilers do: what is wrong, where, and what would be right.
+//! Diagnostics: messages about mistakes in a file, each with a source span and a help text, printed in
+//! the style of rustc.
 //!
-//! A [`Source`] is a text with its name, a [`Place`] a stretch of it, a [`Diagnostic`] one mistake
-//! and [`Diagnostics`] all of them. What they print is the same on every machine and terminal.
+//! A [`Source`] is a text with a name, a [`Place`] is a span of a source, a [`Diagnostic`] is one
+//! mistake, and [`Diagnostics`] collects all mistakes of a file. The rendered text does not depend on
+//! the machine or the terminal.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -16,16 +18,16 @@ pub use source::{Place, Source};
 pub use suggest::did_you_mean;
 pub(crate) use suggest::{listed, nearest};
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// The file cannot be used.
+    /// Makes the file unusable.
     Error,
-    /// The file can be used, but probably says something else than was meant.
+    /// Leaves the file usable, but marks a probable mistake.
     Warning,
 }
 
-/// One mistake: what is wrong, where, and how to mend it.
+/// A message with an optional source span and an optional help text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     severity: Severity,
@@ -35,12 +37,12 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// A mistake that makes the file unusable.
+    /// Creates an error: a mistake that makes the file unusable.
     pub fn error(message: impl Into<String>) -> Self {
         Self::new(Severity::Error, message.into())
     }
 
-    /// A likely mistake in a file that can be used.
+    /// Creates a warning: a probable mistake in a file that can be used.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, message.into())
     }
@@ -54,49 +56,50 @@ impl Diagnostic {
         }
     }
 
-    /// The same mistake with the place it is at.
+    /// Sets the source span.
     #[must_use]
     pub fn at(mut self, place: &Place) -> Self {
         self.place = Some(place.clone());
         self
     }
 
-    /// The same mistake with what would mend it.
+    /// Sets the help text, which describes a remedy. A text of more than 600 bytes is cut in the
+    /// middle.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(shortened(hint.into()));
         self
     }
 
-    /// How bad it is.
+    /// Returns the severity.
     #[must_use]
     pub fn severity(&self) -> Severity {
         self.severity
     }
 
-    /// What is wrong.
+    /// Returns the message.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// Where it is wrong.
+    /// Returns the source span, if there is one.
     #[must_use]
     pub fn place(&self) -> Option<&Place> {
         self.place.as_ref()
     }
 
-    /// What would be right.
+    /// Returns the help text, if there is one.
     #[must_use]
     pub fn hint_text(&self) -> Option<&str> {
         self.hint.as_deref()
     }
 }
 
-/// Characters of a message or hint that are kept: names in it may be of any length.
+/// Length in bytes beyond which messages and help texts are cut: names in them may have any length.
 const MOST_SAID: usize = 600;
 
-/// The text, without its middle if it is too long.
+/// Returns the text, with its middle replaced by ` ... ` if it is longer than [`MOST_SAID`].
 fn shortened(text: String) -> String {
     if text.len() <= MOST_SAID {
         return text;
@@ -106,42 +109,43 @@ fn shortened(text: String) -> String {
     format!("{} ... {}", &text[..start], &text[end..])
 }
 
-/// All that is wrong with a file. It displays as plain text, as [`Diagnostics::render`] without
+/// All diagnostics of a file. `Display` writes plain text, as [`Diagnostics::render`] does without
 /// colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
-    /// Adds a mistake.
+    /// Appends a diagnostic.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.0.push(diagnostic);
     }
 
-    /// Whether nothing is wrong, not even a warning.
+    /// Returns whether there are no diagnostics, neither errors nor warnings.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// How many there are.
+    /// Returns the number of diagnostics.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether one of them is an error.
+    /// Returns whether at least one diagnostic is an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.iter()
             .any(|diagnostic| diagnostic.severity == Severity::Error)
     }
 
-    /// The mistakes in the order they were found.
+    /// Iterates over the diagnostics in the order in which they were added.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.0.iter()
     }
 
-    /// Each mistake once: what a file holds may be used, and looked at, several times.
+    /// Removes duplicates, which have equal messages and equal spans in sources of the same name: one
+    /// part of a file may be checked several times.
     #[must_use]
     pub(crate) fn without_repeats(self) -> Self {
         let mut said = HashSet::new();
@@ -155,9 +159,12 @@ impl Diagnostics {
         Self(all)
     }
 
-    /// The text that a person reads: sorted by source (in the order the sources were first named)
-    /// and place, what has no place at the end; each mistake once; the first
-    /// 100 in full and the number of the others. Lines are 100 columns wide whatever the terminal.
+    /// Renders the diagnostics as text for a person, with ANSI colours if `color` is set.
+    ///
+    /// Diagnostics are sorted by source (in order of first occurrence) and position; diagnostics
+    /// without a span come last. Adjacent duplicates are omitted. The first 100 diagnostics are shown
+    /// in full, errors before warnings if there are more, and the others are counted. Lines are 100
+    /// columns wide on every terminal.
     #[must_use]
     pub fn render(&self, color: bool) -> String {
         render::render(&self.0, color)

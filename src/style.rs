@@ -1,4 +1,4 @@
-//! How elements are drawn: strokes, fills, colours by class.
+//! Styles and views: strokes, fills, colours by class, and the visible window.
 
 mod palette;
 
@@ -8,27 +8,28 @@ use crate::geometry::Homothety;
 
 pub use palette::{Palette, UnknownPalette};
 
-/// A colour: red, green, blue and opacity, 0 to 255 each.
+/// An sRGB colour with opacity: red, green, blue and alpha, each from 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour([u8; 4]);
 
 impl Colour {
-    /// Black.
+    /// Opaque black.
     pub const BLACK: Self = Self([0, 0, 0, 255]);
 
-    /// Red, green, blue and opacity.
+    /// Creates a colour from red, green, blue and alpha.
     #[must_use]
     pub const fn of_rgba(rgba: [u8; 4]) -> Self {
         Self(rgba)
     }
 
-    /// A grey from 0, black, to 255, white.
+    /// Creates an opaque grey, from 0 (black) to 255 (white).
     #[must_use]
     pub const fn grey(value: u8) -> Self {
         Self([value, value, value, 255])
     }
 
-    /// Reads a colour as CSS writes it: a name, `#3b6`, `#33bb66`, `rgb(…)`, `hsl(…)`, `oklch(…)` ….
+    /// Parses a CSS colour: a name, `#3b6`, `#33bb66`, `rgb(…)`, `hsl(…)`, `oklch(…)` and so on.
+    /// Returns `None` if the text is not a colour.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         colorgrad::Color::from_html(text)
@@ -36,27 +37,28 @@ impl Colour {
             .map(|colour| Self(colour.to_rgba8()))
     }
 
-    /// Red, green, blue and opacity.
+    /// Returns red, green, blue and alpha.
     #[must_use]
     pub fn rgba(self) -> [u8; 4] {
         self.0
     }
 
-    /// The colour without its transparency.
+    /// Returns the colour with full opacity.
     #[must_use]
     pub fn opaque(self) -> Self {
         let [red, green, blue, _] = self.0;
         Self([red, green, blue, 255])
     }
 
-    /// The opacity, from 0 to 1.
+    /// Returns the opacity, from 0 to 1.
     #[must_use]
     pub fn opacity(self) -> f64 {
         f64::from(self.0[3]) / 255.0
     }
 }
 
-/// As `#rrggbb`; the opacity is left out. The alternate form is `#rrggbbaa` where that matters.
+/// Writes `#rrggbb`, without the opacity. The alternate form writes `#rrggbbaa` unless the colour is
+/// opaque.
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [red, green, blue, opacity] = self.0;
@@ -68,81 +70,81 @@ impl fmt::Display for Colour {
     }
 }
 
-/// The width of a stroke.
+/// Width of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
-    /// In pixels of the picture.
+    /// Width in pixels of the picture.
     Pixels(f64),
-    /// As a multiple of the element's length |p1 − p0|.
+    /// Width as a multiple of the element's length |p1 − p0|.
     Relative(f64),
 }
 
-/// The ends of open paths.
+/// Line cap: the shape of the ends of open paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cap {
-    /// A half disk.
+    /// A half disk around the end point.
     #[default]
     Round,
-    /// Cut off at the end point.
+    /// Ends at the end point.
     Butt,
-    /// Half a stroke's width longer.
+    /// Extends half the stroke's width beyond the end point.
     Square,
 }
 
-/// The corners of paths.
+/// Line join: the shape of the corners of paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Join {
-    /// A disk.
+    /// A disk around the corner.
     #[default]
     Round,
     /// Cut off.
     Bevel,
-    /// Pointed, up to four times the stroke's width.
+    /// Pointed, up to a miter limit of four times the stroke's width.
     Miter,
 }
 
-/// What an element's colour tells.
+/// Attribute of an element that determines its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorBy {
-    /// Nothing: one colour for all.
+    /// No attribute: all elements have one colour.
     #[default]
     None,
-    /// The step of its birth.
+    /// Step in which the element was born.
     Step,
-    /// The age of its fractal.
+    /// Age of the element's fractal.
     Age,
-    /// The number of its fractal.
+    /// Number of the element's fractal.
     Fractal,
-    /// Its rank in its fractal.
+    /// Rank of the element in its fractal.
     Index,
-    /// The generator that it comes from (the initiator first).
+    /// Generator from which the element comes; the initiator counts as the first class.
     Generator,
-    /// Its direction.
+    /// Direction of the element.
     Direction,
-    /// The map of a system that is applied first, the innermost one.
+    /// The map of a system that is applied first (innermost).
     FirstMap,
-    /// The map of a system that is applied last, the outermost one: the tiling.
+    /// The map of a system that is applied last (outermost), which shows the tiling.
     LastMap,
-    /// How often random iteration comes to a pixel. Approximants are of one colour for all.
+    /// Number of hits of a pixel in random iteration. Approximants are drawn in one colour.
     Hits,
-    /// Nothing, but what the objects of a structure tint.
+    /// Tints of the objects of a structure, or colours that the turtle of an L-system sets.
     Tint,
 }
 
 impl ColorBy {
-    /// Whether elements have the palette's colours.
+    /// Returns whether the colours of elements come from the palette.
     #[must_use]
     pub fn takes_palette(self) -> bool {
         !matches!(self, Self::None | Self::Hits | Self::Tint)
     }
 }
 
-/// The names of the variants of an enumeration, as files and the command line write them.
+/// Enumerations whose variants have names in files and on the command line.
 pub trait Named: Sized + Copy + 'static {
-    /// Every variant with its name.
+    /// All variants with their names.
     const NAMES: &'static [(&'static str, Self)];
 
-    /// The variant's name.
+    /// Returns the name of the variant.
     #[must_use]
     fn name(self) -> &'static str
     where
@@ -154,7 +156,7 @@ pub trait Named: Sized + Copy + 'static {
             .map_or("", |(name, _)| name)
     }
 
-    /// The variant with a name.
+    /// Returns the variant of the given name.
     #[must_use]
     fn from_name(name: &str) -> Option<Self> {
         let mut names = Self::NAMES.iter();
@@ -196,29 +198,28 @@ impl Named for ColorBy {
     ];
 }
 
-/// How elements are drawn.
+/// Appearance of elements.
 ///
-/// Open base elements are stroked. Closed ones are filled with the colour of their class, or with
-/// `fill`, or with `stroke`; they are outlined where `stroke` is given and they are filled with
-/// something else.
-/// `fill` also fills fractals that are one closed path.
+/// Open base elements are stroked. Closed base elements are filled with the colour of their class, or
+/// with `fill`, or with `stroke`; they are also outlined if `stroke` is given and the fill is another
+/// colour. `fill` also fills fractals that consist of one closed path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    /// The colour of strokes; black if none is given.
+    /// Colour of strokes; black if `None`.
     pub stroke: Option<Colour>,
-    /// Their width.
+    /// Width of strokes.
     pub width: Width,
-    /// The ends of open paths.
+    /// Shape of the ends of open paths.
     pub cap: Cap,
-    /// The corners of paths.
+    /// Shape of the corners of paths.
     pub join: Join,
-    /// The colour of areas.
+    /// Colour of areas.
     pub fill: Option<Colour>,
-    /// The colour behind everything; transparent if none is given.
+    /// Colour behind the picture; transparent if `None`.
     pub background: Option<Colour>,
-    /// What the colours of the palette tell.
+    /// Attribute to which the colours of the palette are assigned.
     pub color_by: ColorBy,
-    /// The colours that classes get.
+    /// Palette of the classes.
     pub palette: Palette,
 }
 
@@ -238,19 +239,20 @@ impl Default for Style {
 }
 
 impl Style {
-    /// The colour of open base elements.
+    /// Returns the colour of open base elements.
     #[must_use]
     pub fn lines(&self) -> Colour {
         self.stroke.unwrap_or(Colour::BLACK)
     }
 
-    /// The colour that closed base elements are filled with.
+    /// Returns the fill colour of closed base elements without a class.
     #[must_use]
     pub fn polygons(&self) -> Colour {
         self.fill.unwrap_or_else(|| self.lines())
     }
 
-    /// The same with the middle colour of the palette for all, whatever colours tell.
+    /// Returns the style with [`ColorBy::None`], where strokes have the middle colour of the palette
+    /// unless both `stroke` and `fill` are given. The fill is kept.
     #[must_use]
     pub fn in_one_colour(self) -> Self {
         let colour = self.palette.at(0.5);
@@ -261,7 +263,7 @@ impl Style {
         }
     }
 
-    /// Whether closed base elements get an outline beside their fill.
+    /// Returns whether closed base elements are outlined in addition to their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {
         let is_filled = self.fill.is_some() || self.color_by.takes_palette();
@@ -269,17 +271,18 @@ impl Style {
     }
 }
 
-/// What part of the plane is drawn.
+/// The part of the plane that is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct View {
-    /// A window in the rule's units: lower left corner, width, height; everything if none is given.
+    /// Window in the rule's units: x and y of the lower left corner, width, height. `None` shows
+    /// everything.
     pub window: Option<[f64; 4]>,
-    /// Pixels left free around what is drawn, strokes included.
+    /// Margin in pixels around the drawing, strokes included.
     pub margin: f64,
 }
 
 impl View {
-    /// Returns the view in the coordinates that a homothety maps to its own.
+    /// Returns the view in the coordinates that the homothety maps to those of this view.
     #[must_use]
     pub fn within(self, place: &Homothety) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Elements and lists of them.
+//! Builders of elements and of lists of elements.
 
 use crate::document::node::{Node, Value};
 use crate::geometry::Direction;
@@ -9,8 +9,8 @@ use super::written::{self, Entries};
 
 /// A list of elements: an initiator, or a part of a generator.
 ///
-/// A point is an element that runs to it from the one before; the first point is where the list
-/// starts. Any number of points make a list of elements.
+/// The first point is the start of the list. Each further point adds an element from the previous point
+/// to it. Any iterator of points converts to a list of elements.
 #[derive(Clone, Debug, Default)]
 #[must_use]
 pub struct Elements {
@@ -19,25 +19,25 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// A list without elements, to which some are added.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a point.
+    /// Appends a point.
     pub fn point(mut self, point: impl Into<Point>) -> Self {
         self.list.push(point.into().0.into());
         self
     }
 
-    /// Adds an element.
+    /// Appends an element.
     pub fn element(mut self, element: Element) -> Self {
         self.list.push(element.0.value().into());
         self
     }
 
-    /// Whether one more element runs from the last point to the first. Only initiators and parts
-    /// that seed can be closed.
+    /// Sets whether one more element connects the last point to the first. Only initiators and seed
+    /// parts can be closed. The default is false.
     pub fn closed(self, closed: bool) -> Self {
         Self {
             flags: self.flags.set("closed", Value::Bool(closed)),
@@ -45,7 +45,7 @@ impl Elements {
         }
     }
 
-    /// Whether elements join at all, as they do if nothing is said.
+    /// Sets whether elements join each other. The default is true.
     pub fn connected(self, connected: bool) -> Self {
         Self {
             flags: self.flags.set("connected", Value::Bool(connected)),
@@ -53,17 +53,17 @@ impl Elements {
         }
     }
 
-    /// What `elements` and the keys beside it hold.
+    /// Returns the entries for `elements` and the keys beside it.
     pub(super) fn entries(self) -> Entries {
         self.flags.set("elements", Value::Sequence(self.list))
     }
 
-    /// Whether there is nothing to say but what the elements are.
+    /// Returns whether the list has no other keys than `elements`.
     pub(super) fn is_list(&self) -> bool {
         self.flags.is_empty()
     }
 
-    /// The bare list, if there is nothing else to say.
+    /// Returns the bare list if it has no other keys, and a mapping otherwise.
     pub(super) fn value(self) -> Value {
         if self.is_list() {
             Value::Sequence(self.list)
@@ -79,13 +79,13 @@ impl<I: IntoIterator<Item: Into<Point>>> From<I> for Elements {
     }
 }
 
-/// An element with more to say than where it runs to.
+/// An element with attributes.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Element(Entries);
 
 impl Element {
-    /// An element to a point, from where the one before it ends.
+    /// Creates an element from the end of the previous element to `point`.
     pub fn to(point: impl Into<Point>) -> Self {
         Self(Entries::default().set("to", point.into().0))
     }
@@ -94,38 +94,38 @@ impl Element {
         Self(self.0.set(key, value))
     }
 
-    /// The point that it runs from. It joins the element before if that ends in this very point.
+    /// Sets the start point. The element joins the previous one if the two points are written alike.
     pub fn from(self, point: impl Into<Point>) -> Self {
         self.set("from", point.into().0)
     }
 
-    /// Its direction; normal if nothing is said.
+    /// Sets the direction. The default is normal.
     pub fn direction(self, direction: Direction) -> Self {
         let number = f64::from(direction.number());
         self.set("direction", Value::Number(number))
     }
 
-    /// Whether it is replaced in the next step, as it is if nothing is said.
+    /// Sets whether the element is replaced in the next step. The default is true.
     pub fn fertile(self, fertile: bool) -> Self {
         self.set("fertile", Value::Bool(fertile))
     }
 
-    /// Whether it is drawn, as it is if nothing is said.
+    /// Sets whether the element is drawn. The default is true.
     pub fn visible(self, visible: bool) -> Self {
         self.set("visible", Value::Bool(visible))
     }
 
-    /// Whether it may join the element before it, as it may if nothing is said.
+    /// Sets whether the element may join the previous one. The default is true.
     pub fn connected(self, connected: bool) -> Self {
         self.set("connected", Value::Bool(connected))
     }
 
-    /// The generator that replaces it, whatever the selection says.
+    /// Sets the generator that replaces the element, which takes precedence over the selection.
     pub fn generator(self, name: impl Into<String>) -> Self {
         self.set("use", Value::Text(name.into()))
     }
 
-    /// A base element of its own.
+    /// Sets the element's own base element.
     pub fn base_element(self, base_element: &BaseElement) -> Self {
         self.set("base_element", written::base_element(base_element))
     }

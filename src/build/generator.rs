@@ -1,4 +1,4 @@
-//! Generators and what moves their points.
+//! Builders of generators and of the moves of their points.
 
 use crate::document::node::{Node, Value};
 use crate::rule::Placement;
@@ -6,7 +6,8 @@ use crate::rule::Placement;
 use super::written::{self, Entries};
 use super::{Elements, Number, Point};
 
-/// What replaces a fertile element. A list of elements, or of points, is a generator.
+/// A generator: the replacement of a fertile element. A list of elements or points converts to a
+/// generator of one part.
 #[derive(Clone, Debug, Default)]
 #[must_use]
 pub struct Generator {
@@ -16,19 +17,19 @@ pub struct Generator {
 }
 
 impl Generator {
-    /// A generator without parts, to which some are added.
+    /// Creates a generator without parts.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a part.
+    /// Appends a part.
     pub fn part(mut self, placement: Placement, elements: impl Into<Elements>) -> Self {
         self.parts.push((placement, elements.into()));
         self
     }
 
-    /// Adds a variable that is drawn anew for every element that is replaced, from
-    /// `uniform(a, b)`, `normal(mean, deviation)` or `choice(a, b, ...)`.
+    /// Adds a random variable, which is drawn for every replacement from `uniform(a, b)`, `normal(mean,
+    /// deviation)` or `choice(a, b, ...)`.
     pub fn random(self, name: impl Into<String>, distribution: impl Into<Number>) -> Self {
         Self {
             variables: self.variables.add(name, distribution.into().0),
@@ -36,7 +37,7 @@ impl Generator {
         }
     }
 
-    /// Adds a move, which is done after those before it.
+    /// Appends a move, which acts after the previous ones.
     pub fn moves(mut self, moving: Move) -> Self {
         self.moves.push(moving.0.value().into());
         self
@@ -76,46 +77,46 @@ impl<E: Into<Elements>> From<E> for Generator {
     }
 }
 
-/// Scales and turns points of a generator about a centre, then shifts them.
+/// A move of points of a generator: a scaling and a rotation about a centre, followed by a translation.
 #[derive(Clone, Debug, Default)]
 #[must_use]
 pub struct Move(Entries);
 
 impl Move {
-    /// A move that is still to be told what it does. It moves all points but the two ends of what
-    /// takes the element's place.
+    /// Creates the identity, which applies to all points but the first and the last one of what takes
+    /// the element's place. Points of seed parts all move.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The angle, in degrees, positive counter-clockwise; 0 if nothing is said.
+    /// Sets the angle of rotation in degrees, counter-clockwise. The default is 0.
     pub fn rotate(self, angle: impl Into<Number>) -> Self {
         Self(self.0.set("rotate", angle.into().0))
     }
 
-    /// The factors along x and y; 1 if nothing is said.
+    /// Sets the scaling factors along x and y. The default is 1.
     pub fn scale(self, factors: impl Into<Point>) -> Self {
         Self(self.0.set("scale", factors.into().0))
     }
 
-    /// How far points are shifted in the end; not at all if nothing is said.
+    /// Sets the translation. The default is (0, 0).
     pub fn shift(self, shift: impl Into<Point>) -> Self {
         Self(self.0.set("shift", shift.into().0))
     }
 
-    /// The centre of turning and scaling; (0, 0) if nothing is said.
+    /// Sets the centre of scaling and rotation. The default is (0, 0).
     pub fn about(self, centre: impl Into<Point>) -> Self {
         Self(self.0.set("about", centre.into().0))
     }
 
-    /// The numbers of the points that move, from 0 in the order in which they are first written.
+    /// Sets the points that move, by their numbers from 0 in the order of their first occurrence.
     pub fn points(self, numbers: impl IntoIterator<Item = u32>) -> Self {
         let numbers = numbers.into_iter();
         let numbers = numbers.map(|number| Value::Number(f64::from(number)));
         Self(self.0.set("points", written::sequence(numbers)))
     }
 
-    /// All points move, the two ends too.
+    /// Moves all points, including the two ends.
     pub fn all_points(self) -> Self {
         Self(self.0.set("points", Value::Text("all".into())))
     }

@@ -1,9 +1,9 @@
-//! What files of all kinds say.
+//! Metadata methods that all builders share.
 
-/// The methods of a builder for the keys that files of all kinds have.
+/// Defines the methods for the keys that files of all kinds have.
 macro_rules! of_all_kinds {
     () => {
-        /// Adds a parameter, which expressions know by its name.
+        /// Adds a parameter, which expressions refer to by its name.
         pub fn parameter(self, parameter: Parameter) -> Self {
             let Parameter {
                 name,
@@ -24,33 +24,33 @@ macro_rules! of_all_kinds {
             }
         }
 
-        /// The number of steps that the file proposes.
+        /// Sets the number of steps that the file proposes.
         pub fn steps(self, steps: u32) -> Self {
             self.set("steps", Value::Number(f64::from(steps)))
         }
 
-        /// The published similarity dimension.
+        /// Sets the published similarity dimension.
         pub fn dimension(self, dimension: impl Into<Number>) -> Self {
             self.set("dimension", dimension.into().0)
         }
 
-        /// The published Hausdorff dimension, where it differs from the similarity dimension.
+        /// Sets the published Hausdorff dimension, where it differs from the similarity dimension.
         pub fn hausdorff_dimension(self, dimension: impl Into<Number>) -> Self {
             self.set("hausdorff_dimension", dimension.into().0)
         }
 
-        /// Title, source and the like.
+        /// Sets title, description, source and tags.
         pub fn description(mut self, description: &Description) -> Self {
             self.entries = written::description(self.entries, description);
             self
         }
 
-        /// How it is drawn.
+        /// Sets the style.
         pub fn style(self, style: &Style) -> Self {
             self.set("style", written::style(style).value())
         }
 
-        /// What part of the plane is drawn.
+        /// Sets the view: the window and the margin.
         pub fn view(self, view: &View) -> Self {
             self.set("view", written::view(view).value())
         }

@@ -1,4 +1,4 @@
-//! Maps of systems.
+//! Builder of affine maps.
 
 use crate::document::node::Value;
 use crate::geometry::DAffine2;
@@ -29,57 +29,57 @@ impl Map {
         }
     }
 
-    /// By the rows of a matrix: [x, y] goes to [a x + b y, c x + d y].
+    /// Creates a linear map from the rows of its matrix: [x, y] is mapped to [a x + b y, c x + d y].
     pub fn matrix(rows: [impl Into<Point>; 2]) -> Self {
         Self::new("matrix", sequence(rows.map(|row| row.into().0)))
     }
 
-    /// Everything is scaled by a factor.
+    /// Creates a scaling by a factor.
     pub fn scale(factor: impl Into<Number>) -> Self {
         Self::new("scale", factor.into().0)
     }
 
-    /// The x axis and the y axis are scaled, each by its factor.
+    /// Creates a scaling along x and y, by one factor each.
     pub fn scales(factors: impl Into<Point>) -> Self {
         Self::new("scale", factors.into().0)
     }
 
-    /// The plane is taken times a complex number: its real and its imaginary part.
+    /// Creates a multiplication by a complex number, given by its real and imaginary part.
     pub fn times(factor: impl Into<Point>) -> Self {
         Self::new("times", factor.into().0)
     }
 
-    /// The conjugate is taken first, of a map that [takes times](Map::times).
+    /// Applies complex conjugation before the multiplication of a map created by [`Map::times`].
     pub fn conjugate(self) -> Self {
         self.set("conjugate", Value::Bool(true))
     }
 
-    /// Both axes are turned after they have been scaled, by an angle in degrees, counter-clockwise.
+    /// Sets the rotation that follows the scaling, by an angle in degrees, counter-clockwise.
     pub fn rotate(self, angle: impl Into<Number>) -> Self {
         self.set("rotate", angle.into().0)
     }
 
-    /// The x axis and the y axis are turned, each by its angle.
+    /// Sets the rotations of the images of the x axis and of the y axis, by one angle in degrees each.
     pub fn rotate_axes(self, angles: impl Into<Point>) -> Self {
         self.set("rotate", angles.into().0)
     }
 
-    /// What is added last.
+    /// Sets the translation that is added last.
     pub fn shift(self, shift: impl Into<Point>) -> Self {
         self.set("shift", shift.into().0)
     }
 
-    /// The point that stays where it is, in place of a shift.
+    /// Sets the fixed point of the map, as an alternative to a translation.
     pub fn fixed(self, point: impl Into<Point>) -> Self {
         self.set("fixed", point.into().0)
     }
 
-    /// How often random iteration picks the map, relative to the others.
+    /// Sets the relative probability with which random iteration picks the map.
     pub fn weight(self, weight: impl Into<Number>) -> Self {
         self.set("weight", weight.into().0)
     }
 
-    /// A name; a map without one is called by its number, from 1.
+    /// Sets the name. A map without a name is referred to by its number, from 1.
     pub fn name(self, name: impl Into<String>) -> Self {
         Self {
             name: Some(name.into()),

@@ -1,14 +1,14 @@
-//! Rules, systems and structures that are written in a program instead of a file.
+//! Builders for rules, systems and structures defined in a program.
 //!
-//! A [`RuleBuilder`], a [`SystemBuilder`] or a [`StructureBuilder`] has a method for every key of a file
-//! of its kind and writes the file that says the same. That file is read like any other: whatever a file can say can be said here, every mistake
-//! is found by the same checks, and a message shows the line of the file that it is about. The
-//! meaning of the keys is that of `library/README.md`.
+//! [`RuleBuilder`], [`SystemBuilder`] and [`StructureBuilder`] have a method for every key of a file of
+//! their kind. A builder writes a file, which is read like any other: a program can express what a file
+//! can express, the same checks apply, and a diagnostic shows the line of the generated file.
+//! `library/README.md` describes the keys.
 //!
-//! Numbers are `f64`, `i32`, or text: an expression such as `"sqrt(3)/6"`, of parameters, drawn
-//! variables and `i`, `age`, `step` and `length`. A number that is not finite is a mistake, which
-//! is reported with all others when the rule is built; -0.0 is 0. Two points are one where both
-//! are written alike, so take the same numbers, or the same texts, for both.
+//! A number is an `f64`, an `i32`, or an expression as text, such as `"sqrt(3)/6"`, of parameters,
+//! random variables and `i`, `age`, `step` and `length`. Numbers that are not finite are reported with
+//! all other mistakes when the file is read; -0.0 becomes 0. Two points are the same point if both are
+//! written alike, as equal numbers or equal texts.
 //!
 //! The Koch curve:
 //!
@@ -28,7 +28,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Trees on the sides of a triangle. Their walls stay as they are, and their roofs sway:
+//! Trees on the sides of a triangle, whose walls are infertile and whose roofs have a random tilt:
 //!
 //! ```
 //! use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
@@ -56,7 +56,8 @@
 //! # Ok::<(), kfrac::diagnostic::Diagnostics>(())
 //! ```
 //!
-//! A tree of two maps, with a stem that is drawn at every level, and the same as objects:
+//! A tree of two maps with a condensation set as its stem, and the same tree as an instancing
+//! structure:
 //!
 //! ```
 //! use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
@@ -111,11 +112,11 @@ use crate::style::{Style, View};
 use heading::of_all_kinds;
 use written::Entries;
 
-/// What messages call what was built.
+/// Name of the generated file in messages.
 const NAME: &str = "(built)";
 
-/// Writes a production rule. What is said twice counts as said last, except that every generator
-/// and every parameter has a name of its own.
+/// Builder of a production rule. Setting a key again replaces its value. Names of generators and
+/// parameters must be unique.
 #[derive(Clone, Debug)]
 #[must_use = "a rule is made by `build` or `document`"]
 pub struct RuleBuilder {
@@ -125,7 +126,7 @@ pub struct RuleBuilder {
 }
 
 impl RuleBuilder {
-    /// A rule that starts from an initiator, and has no generator yet.
+    /// Creates a rule with an initiator, but without generators.
     pub fn new(initiator: impl Into<Elements>) -> Self {
         Self {
             entries: Entries::default().set("initiator", initiator.into().value()),
@@ -141,8 +142,8 @@ impl RuleBuilder {
         }
     }
 
-    /// Adds a generator. If there are several, a selection says which one replaces an element, or
-    /// every fertile element [does](Element::generator).
+    /// Adds a generator. If there are several, either a selection or [every fertile
+    /// element](Element::generator) names the generator that replaces an element.
     pub fn generator(self, name: impl Into<String>, generator: impl Into<Generator>) -> Self {
         Self {
             generators: self.generators.add(name, generator.into().value()),
@@ -150,14 +151,14 @@ impl RuleBuilder {
         }
     }
 
-    /// Element i of a fractal takes entry (i − 1) mod m of the m names of generators.
+    /// Selects generators by index: element i of a fractal takes entry (i − 1) mod m of the m names.
     pub fn select_by_index(self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let names = names.into_iter().map(|name| Value::Text(name.into()));
         let by_index = Entries::default().set("by_index", written::sequence(names));
         self.set("select", by_index.value())
     }
 
-    /// Generators are drawn, each as often as its weight says.
+    /// Selects generators at random, with probabilities proportional to the weights.
     pub fn select_at_random(
         self,
         weights: impl IntoIterator<Item = (impl Into<String>, impl Into<Number>)>,
@@ -170,8 +171,8 @@ impl RuleBuilder {
         self.set("select", at_random.value())
     }
 
-    /// The generator of the first condition that holds, such as `("age >= 3", "seed")`, or the one
-    /// for all other cases.
+    /// Selects the generator of the first condition that holds, such as `("age >= 3", "seed")`, and
+    /// `otherwise` if none holds.
     pub fn select_first(
         self,
         cases: impl IntoIterator<Item = (impl Into<String>, impl Into<String>)>,
@@ -186,20 +187,20 @@ impl RuleBuilder {
         self.set("select", written::sequence(cases.chain([otherwise])))
     }
 
-    /// The base element of all elements that have [none of their own](Element::base_element); a
-    /// line if nothing is said.
+    /// Sets the base element of all elements without [their own](Element::base_element). The default is
+    /// a line.
     pub fn base_element(self, base_element: &BaseElement) -> Self {
         self.set("base_element", written::base_element(base_element))
     }
 
     of_all_kinds!();
 
-    /// The rule as a file that has been read: to be saved as YAML, to be resolved with other values
-    /// of its parameters, or with what is doubtful in it.
+    /// Returns the rule as a document, which can be written as YAML or resolved with other parameter
+    /// values, and which reports warnings.
     ///
     /// # Errors
     ///
-    /// What is wrong, as [`Document::read`] tells it.
+    /// Returns all mistakes that [`Document::read`] finds.
     pub fn document(&self) -> Result<Document, Diagnostics> {
         read(
             &self.entries,
@@ -210,12 +211,12 @@ impl RuleBuilder {
         )
     }
 
-    /// The validated rule.
+    /// Returns the validated rule.
     ///
     /// # Errors
     ///
-    /// All that is wrong with it: no element in a list, no generator or one that is not there, a
-    /// number that is not finite, an expression that cannot be read, and so on.
+    /// Returns all mistakes: an empty list of elements, a missing or unknown generator, a number that
+    /// is not finite, an invalid expression, and so on.
     pub fn build(&self) -> Result<Rule, Diagnostics> {
         let rule = resolved(&self.document()?)?.into_rule();
         Ok(Arc::unwrap_or_clone(rule.unwrap_or_else(|| {
@@ -224,7 +225,7 @@ impl RuleBuilder {
     }
 }
 
-/// The file that has these entries, and names under some keys.
+/// Writes a file from entries and from named mappings, of which empty ones are omitted, and reads it.
 fn read(entries: &Entries, named: &[(&str, &Entries)]) -> Result<Document, Diagnostics> {
     let mut entries = entries.clone();
     for (key, named) in named {
@@ -236,7 +237,7 @@ fn read(entries: &Entries, named: &[(&str, &Entries)]) -> Result<Document, Diagn
     Document::read(&Source::new(NAME, text), &Catalogue::embedded())
 }
 
-/// What a file that was built comes to.
+/// Resolves a built document and discards its warnings.
 fn resolved(document: &Document) -> Result<Model, Diagnostics> {
     let (model, _doubts) = document.resolve(&[])?;
     Ok(model)

@@ -1,4 +1,4 @@
-//! Numbers and points.
+//! Numbers and points as builder arguments.
 
 use crate::document::node::Value;
 use crate::geometry::DVec2;
@@ -11,13 +11,13 @@ pub struct Number(pub(crate) Value);
 
 impl From<f64> for Number {
     fn from(value: f64) -> Self {
-        // YAML's words for what is not finite, which the expression reader refuses.
+        // YAML's notation for non-finite numbers, which the expression reader refuses.
         Self(if value.is_nan() {
             Value::Text(".nan".into())
         } else if value.is_infinite() {
             Value::Text(if value > 0.0 { ".inf" } else { "-.inf" }.into())
         } else {
-            // Points are one where they are written alike; -0.0 + 0.0 is 0.0.
+            // Points are compared as written, and -0.0 + 0.0 is 0.0.
             Value::Number(value + 0.0)
         })
     }
@@ -41,7 +41,7 @@ impl From<String> for Number {
     }
 }
 
-/// A point: two numbers, to the right and upwards.
+/// A point: x to the right and y upwards.
 #[derive(Clone, Debug)]
 pub struct Point(pub(crate) Value);
 

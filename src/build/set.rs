@@ -1,11 +1,11 @@
-//! Sets of the plane.
+//! Builder of plane sets.
 
 use crate::document::node::Value;
 
 use super::written::{Entries, sequence};
 use super::{Map, Number, Point};
 
-/// A condensation set, an initial set or a primitive.
+/// A condensation set of a system, an initial set, or a primitive of a structure.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Set(pub(super) Entries);
@@ -20,34 +20,34 @@ impl Set {
         Self::new(key, sequence(points))
     }
 
-    /// A point.
+    /// Creates a point.
     pub fn point(point: impl Into<Point>) -> Self {
         Self::new("point", point.into().0)
     }
 
-    /// A line from one point to another.
+    /// Creates a line segment.
     pub fn segment(from: impl Into<Point>, to: impl Into<Point>) -> Self {
         Self::points("segment", [from.into(), to.into()])
     }
 
-    /// A line through points.
+    /// Creates a polyline.
     pub fn polyline(points: impl IntoIterator<Item = impl Into<Point>>) -> Self {
         Self::points("polyline", points)
     }
 
-    /// What a line through points and back to the first encloses.
+    /// Creates a filled polygon.
     pub fn polygon(points: impl IntoIterator<Item = impl Into<Point>>) -> Self {
         Self::points("polygon", points)
     }
 
-    /// A disk.
+    /// Creates a disk.
     pub fn disk(centre: impl Into<Point>, radius: impl Into<Number>) -> Self {
         let disk = Entries::default().set("centre", centre.into().0);
         Self::new("disk", disk.set("radius", radius.into().0).value())
     }
 
-    /// An ellipse by its half axes, of which the first is turned by an angle in degrees,
-    /// counter-clockwise, from the x axis.
+    /// Creates a filled ellipse from its half axes, of which the first is rotated from the x axis by
+    /// `angle` degrees, counter-clockwise.
     pub fn ellipse(
         centre: impl Into<Point>,
         half_axes: impl Into<Point>,
@@ -60,7 +60,7 @@ impl Set {
         Self::new("ellipse", ellipse.value())
     }
 
-    /// Another fractal of the library, as it is after some steps.
+    /// Creates a set from approximant `steps` of another fractal of the library.
     pub fn fractal(name: impl Into<String>, steps: impl Into<Number>) -> Self {
         Self(
             Self::new("fractal", Value::Text(name.into()))
@@ -69,12 +69,12 @@ impl Set {
         )
     }
 
-    /// What the random draws of a [fractal](Set::fractal) depend on.
+    /// Sets the seed of the random draws of a [fractal](Set::fractal).
     pub fn seed(self, seed: impl Into<Number>) -> Self {
         Self(self.0.set("seed", seed.into().0))
     }
 
-    /// Values of the parameters of a [fractal](Set::fractal), by name.
+    /// Sets parameters of a [fractal](Set::fractal) by name.
     pub fn parameters(
         self,
         values: impl IntoIterator<Item = (impl Into<String>, impl Into<Number>)>,
@@ -86,12 +86,12 @@ impl Set {
         Self(self.0.set("set", values.value()))
     }
 
-    /// Where a [fractal](Set::fractal) stands.
+    /// Sets the map that places a [fractal](Set::fractal).
     pub fn placed(self, map: impl Into<Map>) -> Self {
         Self(self.0.set("map", map.into().entries.value()))
     }
 
-    /// How often random iteration draws a point anew from a condensation set.
+    /// Sets the relative probability with which random iteration restarts in a condensation set.
     pub fn weight(self, weight: impl Into<Number>) -> Self {
         Self(self.0.set("weight", weight.into().0))
     }

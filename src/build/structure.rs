@@ -1,4 +1,4 @@
-//! Structures of objects that instance each other.
+//! Builder of instancing structures.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::heading::of_all_kinds;
 use super::written::{self, Entries, colour_text, sequence};
 use super::{Number, Point, Set, read, resolved};
 
-/// Transforms in the order in which they are done.
+/// Transforms in the order of application.
 #[derive(Clone, Debug, Default)]
 struct Transforms(Vec<Value>);
 
@@ -30,7 +30,7 @@ impl Transforms {
     }
 }
 
-/// The methods that transform.
+/// Defines the methods that append a transform.
 macro_rules! transforms {
     () => {
         fn transformed(self, key: &str, value: Value) -> Self {
@@ -40,34 +40,34 @@ macro_rules! transforms {
             }
         }
 
-        /// Then it is scaled about (0, 0) by a factor.
+        /// Appends a scaling about (0, 0) by a factor.
         pub fn scale(self, factor: impl Into<Number>) -> Self {
             self.transformed("scale", factor.into().0)
         }
 
-        /// Then it is scaled along x and along y, each by its factor.
+        /// Appends a scaling about (0, 0) along x and y, by one factor each.
         pub fn scales(self, factors: impl Into<Point>) -> Self {
             self.transformed("scale", factors.into().0)
         }
 
-        /// Then it is turned about (0, 0) by degrees, counter-clockwise.
+        /// Appends a rotation about (0, 0) by an angle in degrees, counter-clockwise.
         pub fn rotate(self, angle: impl Into<Number>) -> Self {
             self.transformed("rotate", angle.into().0)
         }
 
-        /// Then it is shifted.
+        /// Appends a translation.
         pub fn translate(self, shift: impl Into<Point>) -> Self {
             self.transformed("translate", shift.into().0)
         }
 
-        /// Then a matrix is applied, given by its rows.
+        /// Appends a linear map, given by the rows of its matrix.
         pub fn matrix(self, rows: [impl Into<Point>; 2]) -> Self {
             self.transformed("matrix", sequence(rows.map(|row| row.into().0)))
         }
     };
 }
 
-/// An instance of an object, or of a set.
+/// An instance of an object or of a set.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Instance {
@@ -76,7 +76,7 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance of an object by name, with its level if it has one: `A(n - 1)`.
+    /// Creates an instance of an object by its name, with its level if it has one: `A(n - 1)`.
     pub fn of(object: impl Into<String>) -> Self {
         Self {
             entries: Entries::default().set("object", Value::Text(object.into())),
@@ -86,7 +86,8 @@ impl Instance {
 
     transforms!();
 
-    /// Tints all that is in it with a colour; `alpha` says how much, from 0 to 1.
+    /// Tints the content of the instance with a colour; `alpha` is the strength of the tint, from 0 to
+    /// 1.
     pub fn tint(self, colour: Colour, alpha: impl Into<Number>) -> Self {
         let tint = Entries::default()
             .set("color", colour_text(colour))
@@ -116,12 +117,12 @@ pub struct Union {
 }
 
 impl Union {
-    /// A union without instances, to which some are added.
+    /// Creates an empty union.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds an instance.
+    /// Appends an instance.
     pub fn with(mut self, instance: impl Into<Instance>) -> Self {
         let Instance {
             entries,
@@ -145,8 +146,8 @@ impl From<Instance> for Union {
     }
 }
 
-/// Writes a structure of objects. What is said twice counts as said last, except that every object has a
-/// name, or a level, of its own.
+/// Builder of an instancing structure. Setting a key again replaces its value. Names of objects, with
+/// their levels, must be unique.
 #[derive(Clone, Debug)]
 #[must_use = "a structure is made by `build` or `document`"]
 pub struct StructureBuilder {
@@ -156,7 +157,7 @@ pub struct StructureBuilder {
 }
 
 impl StructureBuilder {
-    /// A structure with a scene, and no objects yet.
+    /// Creates a structure with a scene, but without objects.
     pub fn new(scene: impl Into<Union>) -> Self {
         let kind = Value::Text(Kind::Instancing.name().into());
         Self {
@@ -175,7 +176,7 @@ impl StructureBuilder {
         }
     }
 
-    /// Adds an object: `A`, at all levels `A(n)`, or at a single one `A(0)`.
+    /// Adds an object: `A`, `A(n)` for all levels, or `A(0)` for a single level.
     pub fn object(self, name: impl Into<String>, union: impl Into<Union>) -> Self {
         Self {
             objects: self.objects.add(name, union.into().value()),
@@ -183,18 +184,18 @@ impl StructureBuilder {
         }
     }
 
-    /// What stands for objects that have not been replaced yet.
+    /// Sets the set that is drawn in place of objects that are not replaced yet.
     pub fn initial(self, set: Set) -> Self {
         self.set("initial", set.0.value())
     }
 
     of_all_kinds!();
 
-    /// The structure as a file that has been read.
+    /// Returns the structure as a document.
     ///
     /// # Errors
     ///
-    /// What is wrong, as [`Document::read`] tells it.
+    /// Returns all mistakes that [`Document::read`] finds.
     pub fn document(&self) -> Result<Document, Diagnostics> {
         read(
             &self.entries,
@@ -202,11 +203,11 @@ impl StructureBuilder {
         )
     }
 
-    /// The validated structure.
+    /// Returns the validated structure.
     ///
     /// # Errors
     ///
-    /// All that is wrong with it: objects that are not there, loops that do not contract, and so on.
+    /// Returns all mistakes: unknown objects, loops that do not contract, and so on.
     pub fn build(&self) -> Result<Instancing, Diagnostics> {
         let Model::Instancing(structure) = resolved(&self.document()?)? else {
             unreachable!("what is built says its kind")

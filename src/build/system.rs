@@ -1,4 +1,4 @@
-//! Iterated function systems.
+//! Builder of iterated function systems.
 
 use std::sync::Arc;
 
@@ -14,8 +14,8 @@ use super::heading::of_all_kinds;
 use super::written::{self, Entries, sequence};
 use super::{Map, Number, Point, Set, read, resolved};
 
-/// Writes an iterated function system. What is said twice counts as said last; maps, condensation sets
-/// and edges add up.
+/// Builder of an iterated function system. Setting a key again replaces its value; maps, condensation
+/// sets and edges accumulate.
 #[derive(Clone, Debug)]
 #[must_use = "a system is made by `build` or `document`"]
 pub struct SystemBuilder {
@@ -40,7 +40,7 @@ impl Default for SystemBuilder {
 }
 
 impl SystemBuilder {
-    /// A system that has no map yet.
+    /// Creates a system without maps.
     pub fn new() -> Self {
         Self::default()
     }
@@ -52,13 +52,14 @@ impl SystemBuilder {
         }
     }
 
-    /// Adds a map.
+    /// Appends a map.
     pub fn map(mut self, map: impl Into<Map>) -> Self {
         self.maps.push(map.into());
         self
     }
 
-    /// A map towards each of some points, which leaves so much of the way, in place of other maps.
+    /// Sets the maps to contractions towards the given points, x → `shrink` x + (1 − `shrink`) v, in
+    /// place of other maps.
     pub fn vertices(
         self,
         points: impl IntoIterator<Item = impl Into<Point>>,
@@ -69,8 +70,8 @@ impl SystemBuilder {
         self.set("vertices", vertices.set("shrink", shrink.into().0).value())
     }
 
-    /// The maps of a curve through points, from left to right, whose heights shrink by factors from the
-    /// whole to its pieces; in place of other maps.
+    /// Sets the maps to those of fractal interpolation through the given points, from left to right, in
+    /// place of other maps. `scales` are the vertical scaling factors of the pieces.
     pub fn interpolate(
         self,
         points: impl IntoIterator<Item = impl Into<Point>>,
@@ -80,7 +81,8 @@ impl SystemBuilder {
         self.curve(points, "scale", sequence(scales))
     }
 
-    /// The same for a curve of a dimension.
+    /// Sets the maps as [`SystemBuilder::interpolate`] does, with a vertical scaling factor that gives
+    /// the curve the box dimension `dimension`, from 1 to less than 2.
     pub fn interpolate_to_dimension(
         self,
         points: impl IntoIterator<Item = impl Into<Point>>,
@@ -100,19 +102,19 @@ impl SystemBuilder {
         self.set("interpolate", curve.set(key, value).value())
     }
 
-    /// Adds a condensation set.
+    /// Appends a condensation set.
     pub fn condensation(mut self, set: Set) -> Self {
         self.condensation.push(set.0.value());
         self
     }
 
-    /// What approximant 0 draws.
+    /// Sets the initial set, which approximant 0 draws.
     pub fn initial(self, set: Set) -> Self {
         self.set("initial", set.0.value())
     }
 
-    /// Says which maps may be applied after a map, by name or by number from 1. If that is said of any
-    /// map, it is to be said of all.
+    /// Sets the maps that may be applied after the map `from`, by name or by number from 1. If one map
+    /// has edges, all maps need them.
     pub fn edges(self, from: impl ToString, to: impl IntoIterator<Item = impl ToString>) -> Self {
         let to = to.into_iter().map(|to| Value::Text(to.to_string()));
         Self {
@@ -121,7 +123,7 @@ impl SystemBuilder {
         }
     }
 
-    /// The same with weights of the maps that may follow.
+    /// Sets the maps that may be applied after the map `from`, with their weights.
     pub fn weighted_edges(
         self,
         from: impl ToString,
@@ -140,11 +142,11 @@ impl SystemBuilder {
 
     of_all_kinds!();
 
-    /// The system as a file that has been read.
+    /// Returns the system as a document.
     ///
     /// # Errors
     ///
-    /// What is wrong, as [`Document::read`] tells it.
+    /// Returns all mistakes that [`Document::read`] finds.
     pub fn document(&self) -> Result<Document, Diagnostics> {
         let mut entries = self.entries.clone();
         if self.maps.iter().any(|map| map.name.is_some()) {
@@ -167,11 +169,11 @@ impl SystemBuilder {
         )
     }
 
-    /// The validated system.
+    /// Returns the validated system.
     ///
     /// # Errors
     ///
-    /// All that is wrong with it: no maps, maps that do not contract, and so on.
+    /// Returns all mistakes: no maps, maps that do not contract, and so on.
     pub fn build(&self) -> Result<System, Diagnostics> {
         let Model::Ifs(system) = resolved(&self.document()?)? else {
             unreachable!("what is built says its kind")

@@ -1,4 +1,4 @@
-//! The values of a rule as a file writes them.
+//! Conversion of validated values to the nodes of a file.
 
 use crate::document::node::{Key, Node, Value};
 use crate::heading::Description;
@@ -7,12 +7,12 @@ use crate::style::{Colour, Named, Palette, Style, View, Width};
 
 use super::{Number, Point};
 
-/// A mapping that is being written.
+/// A mapping under construction.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Entries(Vec<(Key, Node)>);
 
 impl Entries {
-    /// With a key's value, in the place of another that it may have.
+    /// Sets the value of a key, replacing an existing one.
     pub(crate) fn set(mut self, key: &str, value: Value) -> Self {
         let node = Node::from(value);
         match self.0.iter_mut().find(|(known, _)| known.name == key) {
@@ -29,13 +29,13 @@ impl Entries {
         }
     }
 
-    /// With a name that must not be there: if it is, the reader of the file says so.
+    /// Appends an entry without a check: the reader of the file reports a duplicate name.
     pub(crate) fn add(mut self, name: impl Into<String>, value: Value) -> Self {
         self.0.push((Key::new(name), value.into()));
         self
     }
 
-    /// With the entries of another mapping behind its own.
+    /// Appends the entries of another mapping.
     pub(crate) fn and(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
@@ -45,7 +45,7 @@ impl Entries {
         self.0.is_empty()
     }
 
-    /// Without what another mapping has as well.
+    /// Removes the entries that another mapping has with equal values.
     fn without(mut self, other: &Self) -> Self {
         let same = |(key, node): &(Key, Node), (other, as_node): &(Key, Node)| {
             key.name == other.name && node.same_value(as_node)
@@ -67,7 +67,7 @@ pub(crate) fn sequence(values: impl IntoIterator<Item = Value>) -> Value {
 pub(crate) fn base_element(element: &BaseElement) -> Value {
     let start = element.start();
     let mut pieces = element.pieces();
-    // The last side of a polygon is what `closed` says.
+    // `closed` implies the last side of a polygon.
     if let (true, [others @ .., Piece::Line(_)]) = (element.is_closed(), pieces) {
         pieces = others;
     }
@@ -104,7 +104,7 @@ pub(crate) fn description(entries: Entries, description: &Description) -> Entrie
         .set_some("tags", tags)
 }
 
-/// What of a style is not as it is if nothing is said.
+/// Returns the entries of a style that differ from the defaults.
 pub(crate) fn style(style: &Style) -> Entries {
     let entries = |style: &Style| {
         let colour = |colour: Option<Colour>| colour.map(colour_text);
@@ -140,7 +140,7 @@ fn palette(palette: &Palette) -> Value {
     }
 }
 
-/// What of a view is not as it is if nothing is said.
+/// Returns the entries of a view that differ from the defaults.
 pub(crate) fn view(view: &View) -> Entries {
     let number = |value| Number::from(value).0;
     let entries = |view: &View| {

@@ -1,4 +1,4 @@
-//! Files that are read from outside the library.
+//! Opening of files outside the library.
 
 use std::fs::{self, File, FileType};
 use std::io;
@@ -6,12 +6,12 @@ use std::path::Path;
 
 use crate::diagnostic::Diagnostic;
 
-/// Opens a file that can be read to its end: a regular file, or a pipe.
+/// Opens a file that has an end: a regular file or a pipe.
 ///
 /// # Errors
 ///
-/// If there is none, or it cannot be read; if it is a folder, or a device, a terminal or a socket,
-/// which may have no end.
+/// Returns an error if the file does not exist or cannot be opened, or if it is a folder, a device, a
+/// terminal or a socket, which may have no end.
 pub fn open_file(path: &Path) -> Result<File, Diagnostic> {
     let name = path.display();
     let failed = |error| cannot_be_read(path, &error);
@@ -44,7 +44,7 @@ fn is_pipe(kind: FileType) -> bool {
     kind.is_fifo()
 }
 
-/// Pipes have no names among files.
+/// Returns false: other systems have no named pipes in the file system.
 #[cfg(not(unix))]
 fn is_pipe(_: FileType) -> bool {
     false

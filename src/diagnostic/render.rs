@@ -1,18 +1,18 @@
-//! The text of diagnostics, drawn by `annotate-snippets` in the manner of rustc.
+//! Rendering of diagnostics as text by `annotate-snippets`, in the style of rustc.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::{Diagnostic, Place, Range, Severity, Source};
 
-/// Columns of the text, the same whatever the terminal, so that it can be compared.
+/// Width of the text in columns, fixed so that outputs can be compared.
 const WIDTH: usize = 100;
-/// Mistakes that are shown in full.
+/// Maximum number of diagnostics that are shown in full.
 const SHOWN: usize = 100;
-/// Characters of a line before and after a place that are handed to the renderer, which trims them
-/// to [`WIDTH`]; a line of a megabyte would cost it a megabyte's work for each mistake.
+/// Number of characters of a line before and after a span that are handed to the renderer, which trims
+/// them to [`WIDTH`]. The renderer's time is linear in this length, for each diagnostic.
 const CONTEXT: usize = 2 * WIDTH;
 
-/// The text of the diagnostics, sorted.
+/// Renders the diagnostics, sorted by source and position.
 pub(super) fn render(diagnostics: &[Diagnostic], color: bool) -> String {
     let renderer = if color {
         Renderer::styled()
@@ -22,7 +22,7 @@ pub(super) fn render(diagnostics: &[Diagnostic], color: bool) -> String {
     let renderer = renderer.term_width(WIDTH);
     let mut sorted = sorted(diagnostics);
     if sorted.len() > SHOWN {
-        // No warning takes an error's place.
+        // A warning must not displace an error.
         sorted.sort_by_key(|diagnostic| diagnostic.severity == Severity::Warning);
     }
     let mut out = String::new();
@@ -37,7 +37,8 @@ pub(super) fn render(diagnostics: &[Diagnostic], color: bool) -> String {
     out
 }
 
-/// The diagnostics by source and place. What is reached twice, through an alias, is said once.
+/// Returns the diagnostics sorted by source and position, without adjacent duplicates, which arise from
+/// YAML aliases.
 fn sorted(diagnostics: &[Diagnostic]) -> Vec<&Diagnostic> {
     let mut sources: Vec<&Source> = Vec::new();
     let mut keyed: Vec<_> = diagnostics
@@ -91,11 +92,11 @@ fn one(renderer: &Renderer, diagnostic: &Diagnostic) -> String {
     }
 }
 
-/// The part of a place's first line that is shown.
+/// The visible part of the first line of a span.
 struct Window<'a> {
     name: &'a str,
     text: &'a str,
-    /// Bytes of `text`.
+    /// Byte range of the span within `text`.
     underlined: Range<usize>,
     line: usize,
     column: usize,
@@ -130,7 +131,8 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// The rendered text with the place's column where the renderer counted from the window's start.
+    /// Replaces the column in the rendered heading, which the renderer counts from the start of the
+    /// window, by the column in the line.
     fn mend_column(&self, rendered: &str) -> String {
         let (name, line) = (self.name, self.line);
         let counted = self.text[..self.underlined.start].chars().count() + 1;

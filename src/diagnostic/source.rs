@@ -1,24 +1,24 @@
-//! Texts and stretches of them.
+//! Source texts and source spans.
 
 use std::path::{Path, PathBuf};
 
 use super::{Arc, Diagnostic, Range, fmt};
 
-/// A text that was read and the name that messages call it by.
+/// A text and the name that messages use for it.
 pub struct Source {
     name: String,
-    /// The name as a path, exact where that of a file is not text.
+    /// The name as a path: exact for a file whose path is not valid UTF-8.
     path: PathBuf,
     text: String,
-    /// The byte offset at which each line starts.
+    /// Byte offset of the start of each line.
     line_starts: Vec<usize>,
 }
 
 impl Source {
-    /// The longest file that is read, in bytes: 4 MiB.
+    /// Maximum size of a file in bytes: 4 MiB.
     pub const MOST_BYTES: usize = 4 << 20;
 
-    /// A text and its name. A byte order mark at its start is not part of the text.
+    /// Creates a source from a name and a text. A leading byte order mark is removed from the text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
         let name = name.into();
         let path = PathBuf::from(&name);
@@ -30,7 +30,7 @@ impl Source {
             text.drain(..'\u{feff}'.len_utf8());
         }
         let bytes = text.as_bytes();
-        // As in YAML, a line ends with "\n", "\r\n" or "\r".
+        // Line ends as in YAML: "\n", "\r\n" or "\r".
         let ends_line = |i: usize| match bytes[i] {
             b'\n' => true,
             b'\r' => bytes.get(i + 1) != Some(&b'\n'),
@@ -47,18 +47,19 @@ impl Source {
         })
     }
 
-    /// The text that the bytes of a file are.
+    /// Creates a source from the bytes of a file.
     ///
     /// # Errors
     ///
-    /// If they are more than 4 MiB, or not text in UTF-8.
+    /// Returns an error if there are more than 4 MiB, if there is a NUL byte or a byte order mark of
+    /// UTF-16, or if the bytes are not valid UTF-8.
     pub fn read(name: impl Into<String>, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
         let name = name.into();
         let path = PathBuf::from(&name);
         Self::read_as(name, path, bytes)
     }
 
-    /// The text that the bytes of a file are, under the file's path.
+    /// Creates a source from the bytes of the file at `path`, as [`Source::read`] does.
     pub(crate) fn read_file(path: &Path, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
         Self::read_as(path.display().to_string(), path.to_path_buf(), bytes)
     }
@@ -87,7 +88,7 @@ impl Source {
         Diagnostic::error(format!("'{name}' is larger than 4 MiB"))
     }
 
-    /// The mistake of being too long to be read, if it is.
+    /// Returns an error if the text is longer than [`Source::MOST_BYTES`].
     pub(crate) fn check_size(&self) -> Result<(), Diagnostic> {
         if self.text.len() > Self::MOST_BYTES {
             Err(Self::too_large(&self.name))
@@ -96,24 +97,24 @@ impl Source {
         }
     }
 
-    /// The name that messages call the text by, such as the path of its file.
+    /// Returns the name that messages use for the text, such as the path of its file.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The path of its file, if it is a file's.
+    /// Returns the name as a path. A text that is not a file has such a path as well.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The text.
+    /// Returns the text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The line and the column of a byte offset, both counted from 1, columns in characters.
+    /// Returns the line and the column of a byte offset, both counted from 1; columns count characters.
     #[must_use]
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
         let offset = char_boundary(&self.text, offset);
@@ -124,17 +125,17 @@ impl Source {
         )
     }
 
-    /// Whether both are the same text under the same name.
+    /// Returns whether both sources have the same name and text.
     pub(super) fn is(&self, other: &Self) -> bool {
         std::ptr::eq(self, other) || (self.name == other.name && self.text == other.text)
     }
 
-    /// The line that holds the byte offset, counted from 0.
+    /// Returns the line that contains a byte offset, counted from 0.
     pub(super) fn line_of(&self, offset: usize) -> usize {
         self.line_starts.partition_point(|&start| start <= offset) - 1
     }
 
-    /// The bytes of a line counted from 0, without its end.
+    /// Returns the byte range of a line (counted from 0), without its line end.
     pub(super) fn line_range(&self, line: usize) -> Range<usize> {
         let start = self.line_starts[line];
         let end = self
@@ -153,7 +154,7 @@ impl fmt::Debug for Source {
     }
 }
 
-/// The nearest start of a character at or before the byte offset.
+/// Returns the largest character boundary that is not greater than `offset`.
 pub(super) fn char_boundary(text: &str, offset: usize) -> usize {
     let mut offset = offset.min(text.len());
     while !text.is_char_boundary(offset) {
@@ -162,7 +163,8 @@ pub(super) fn char_boundary(text: &str, offset: usize) -> usize {
     offset
 }
 
-/// A stretch of a source. It always lies inside the text and never splits a character.
+/// A source span: a byte range of a source that lies inside the text and starts and ends on character
+/// boundaries.
 #[derive(Clone)]
 pub struct Place {
     source: Arc<Source>,
@@ -171,8 +173,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// The bytes `range` of the source, moved inwards where they leave the text or split a
-    /// character.
+    /// Creates the span of the bytes `range`. Bounds beyond the end of the text or inside a character
+    /// are rounded down to a character boundary; a reversed range becomes empty.
     #[must_use]
     pub fn new(source: &Arc<Source>, range: Range<usize>) -> Self {
         let start = char_boundary(&source.text, range.start);
@@ -184,38 +186,38 @@ impl Place {
         }
     }
 
-    /// The source that this is a stretch of.
+    /// Returns the source of the span.
     #[must_use]
     pub fn source(&self) -> &Arc<Source> {
         &self.source
     }
 
-    /// The bytes of the source's text that it covers.
+    /// Returns the byte range of the span in the text of the source.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.start..self.end
     }
 
-    /// The line it starts in, counted from 1.
+    /// Returns the line in which the span starts, counted from 1.
     #[must_use]
     pub fn line(&self) -> usize {
         self.source.line_of(self.start) + 1
     }
 
-    /// The column it starts at, counted from 1 in characters.
+    /// Returns the column at which the span starts, counted from 1 in characters.
     #[must_use]
     pub fn column(&self) -> usize {
         self.source.line_column(self.start).1
     }
 
-    /// The text it covers.
+    /// Returns the text of the span.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.source.text[self.range()]
     }
 
-    /// The stretch `range` of this place's own text, cut to it: the place of a mistake inside a
-    /// scalar.
+    /// Returns the span of the bytes `range` of this span's own text, clipped to this span: the place
+    /// of a mistake inside a scalar.
     #[must_use]
     pub fn within(&self, range: Range<usize>) -> Self {
         let offset = |byte: usize| self.start.saturating_add(byte).min(self.end);

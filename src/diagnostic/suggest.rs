@@ -1,13 +1,14 @@
-//! The name that was probably meant.
+//! Spelling suggestions: the candidate nearest to an unknown name, by edit distance.
 
-/// Longer names are not compared, since comparing takes time proportional to both lengths.
+/// Maximum length in characters of names that are compared: the time is proportional to both lengths.
 const MAX_CHARS: usize = 64;
 
-/// More candidates than this are not compared with a name, and more names are not listed.
+/// Maximum number of candidates that are compared with a name.
 const MOST_CANDIDATES: usize = 1000;
+/// Maximum number of names in a list.
 const MOST_LISTED: usize = 30;
 
-/// Names for a message, with commas between them: the first ones if they are many.
+/// Joins names with commas for a message. Names beyond [`MOST_LISTED`] are replaced by `...`.
 pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
     let mut shown: Vec<&str> = names.by_ref().take(MOST_LISTED).collect();
@@ -17,12 +18,16 @@ pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     shown.join(", ")
 }
 
-/// Names that begin with the same letters, this many, are near: `parameters` and `params`.
+/// Number of equal leading characters that makes two names near: `parameters` and `params`.
 const SAME_BEGINNING: usize = 5;
 
-/// `did you mean 'x'?` for the nearest of the candidates, if one is near: at most a third of the
-/// letters differ (Damerau and Levenshtein's distance with adjacent letters swapped, case and the
-/// choice of `-` or `_` not counted). Of several equally near the first is taken.
+/// Returns `did you mean 'x'?` with the candidate nearest to `name`, or `None` if no candidate is near.
+///
+/// The distance is the optimal string alignment distance (Damerau–Levenshtein, where adjacent
+/// transpositions count once); case is ignored, and `-` equals `_`. A candidate is near if the distance
+/// is at most a third of the longer name's length, but at least 1, and less than that length. Of
+/// equally near candidates the first is taken. If no candidate is near, the first one that begins with
+/// the same five characters is taken. At most 1000 candidates are compared.
 pub fn did_you_mean<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -30,7 +35,7 @@ pub fn did_you_mean<'a>(
     nearest(name, candidates).map(|candidate| format!("did you mean '{candidate}'?"))
 }
 
-/// The name that [`did_you_mean`] offers.
+/// Returns the candidate that [`did_you_mean`] suggests.
 pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -53,7 +58,7 @@ pub(crate) fn nearest<'a>(
             let known = folded(candidate)?;
             let distance = strsim::osa_distance(&wanted, &known);
             let longest = letters.max(known.chars().count());
-            // A name of one letter is near to none.
+            // Otherwise every name of one letter would be near to every other.
             let near = distance == 0 || (distance <= (longest / 3).max(1) && distance < longest);
             near.then_some((distance, candidate))
         })

@@ -1,3 +1,5 @@
+//! Palettes: continuous colour scales with numbered entries.
+
 use std::fmt;
 use std::sync::Arc;
 
@@ -5,23 +7,23 @@ use colorgrad::{Gradient, GradientBuilder, LinearGradient, preset};
 
 use super::Colour;
 
-/// A scale of colours, from 0 to 1.
+/// A colour scale over 0 to 1, with numbered entries.
 #[derive(Clone)]
 pub struct Palette {
     name: String,
-    /// Those that it was made of; empty for a palette of the field.
+    /// The colours that define the scale; empty for a preset of `colorgrad`.
     colours: Vec<Colour>,
     gradient: Arc<dyn Gradient + Send + Sync>,
     /// Whether the scale runs from its end to its beginning.
     is_reversed: bool,
 }
 
-/// A palette of a name that does not exist.
+/// Error: no palette has the given name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no palette of this name")]
 pub struct UnknownPalette;
 
-/// Our own palettes, as colours at even distances, mixed in Oklab.
+/// The palettes of this crate: evenly spaced colours, interpolated in Oklab.
 const OWN: &[(&str, &[&str])] = &[
     (
         "earth-to-leaf",
@@ -37,7 +39,7 @@ const OWN: &[(&str, &[&str])] = &[
 
 type Preset = fn() -> Arc<dyn Gradient + Send + Sync>;
 
-/// The palettes of the field, with the names that it knows them by.
+/// The presets of `colorgrad`, by their established names.
 const PRESETS: &[(&str, Preset)] = &[
     ("viridis", || Arc::new(preset::viridis())),
     ("magma", || Arc::new(preset::magma())),
@@ -58,17 +60,17 @@ const PRESETS: &[(&str, Preset)] = &[
 ];
 
 impl Palette {
-    /// The names of all palettes.
+    /// Iterates over the names of all palettes.
     pub fn names() -> impl Iterator<Item = &'static str> {
         let own = OWN.iter().map(|(name, _)| *name);
         own.chain(PRESETS.iter().map(|(name, _)| *name))
     }
 
-    /// The palette with a name.
+    /// Returns the palette of the given name.
     ///
     /// # Errors
     ///
-    /// If no palette has it.
+    /// Returns [`UnknownPalette`] if no palette has the name.
     pub fn named(name: &str) -> Result<Self, UnknownPalette> {
         if let Some((_, colours)) = OWN.iter().find(|(own, _)| *own == name) {
             let colours: Vec<_> = colours
@@ -89,7 +91,7 @@ impl Palette {
         })
     }
 
-    /// A palette from colours at even distances, mixed in Oklab; black if there are none.
+    /// Creates a palette of evenly spaced colours, interpolated in Oklab; black if `colours` is empty.
     #[must_use]
     pub fn of_colours(name: &str, colours: &[Colour]) -> Self {
         let colours = match colours {
@@ -117,20 +119,20 @@ impl Palette {
         }
     }
 
-    /// The name; empty for a palette of one's own.
+    /// Returns the name; empty for a palette that a file defines by a list of colours.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The colours that it was made of, two or more; none if it is a palette of the field.
+    /// Returns the colours that define the palette, two or more; empty for a preset.
     #[must_use]
     pub fn colours(&self) -> &[Colour] {
         &self.colours
     }
 
-    /// A colour by its number, beginning again behind the last: one of those that it was made of, or of
-    /// eight of a palette of the field.
+    /// Returns the entry of the given number, modulo [`Palette::entries`]: one of the defining colours,
+    /// or one of eight evenly spaced colours of a preset.
     #[must_use]
     #[expect(
         clippy::cast_precision_loss,
@@ -146,7 +148,7 @@ impl Palette {
         }
     }
 
-    /// How many colours have numbers.
+    /// Returns the number of entries: that of the defining colours, or 8 for a preset.
     #[must_use]
     pub fn entries(&self) -> usize {
         match self.colours.len() {
@@ -155,7 +157,7 @@ impl Palette {
         }
     }
 
-    /// The same scale from its end to its beginning; numbers of colours stay.
+    /// Reverses the scale. The entries of a palette with defining colours keep their numbers.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -164,7 +166,7 @@ impl Palette {
         }
     }
 
-    /// The colour at a place from 0 to 1.
+    /// Returns the colour at `place`, which is clamped to 0 to 1.
     #[must_use]
     pub fn at(&self, place: f64) -> Colour {
         let place = if self.is_reversed { 1.0 - place } else { place };
