@@ -1,73 +1,78 @@
-//! Whether the maps of a system contract when they are applied one after the other.
+//! Decides whether a system contracts, by bounds of the joint spectral radius of its maps' linear parts.
 
 use super::Ifs;
 use super::Shrinking;
 use super::norm::{in_best_coordinates, spectral_radius, stretch};
 use crate::geometry::DMat2;
 
-/// No more products than this are formed unless asked for.
+/// Default limit of the number of products that are formed.
 const MOST_PRODUCTS: usize = 100_000;
 
-/// What is as close to 1 as this is 1.
+/// Tolerance of comparisons with 1, and of two factors that count as equal.
 const ROUNDING: f64 = 1e-12;
 
-/// Products are followed no longer that cannot raise the lower bound by this share of it.
+/// Relative gain of the lower bound below which a product is not extended.
 const SHARE: f64 = 1e-3;
 
-/// Whether a system contracts.
+/// Verdict on the contraction of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It does: there is one attractor.
+    /// The system contracts and has one attractor.
     Contracts,
-    /// It does not: applied over and over, the product [`Contraction::word`] does not shrink.
+    /// The system does not contract: iterated, the product [`Contraction::word`] does not shrink.
     Diverges,
-    /// Products of up to [`Contraction::length`] maps do not tell.
+    /// Products of up to [`Contraction::length`] maps do not decide.
     Undecided,
 }
 
-/// Bounds of the joint spectral radius of the maps' linear parts: the least factor such that long
-/// products, as far as the digraph admits them, shrink by it with every map. It is below 1 if and
-/// only if the system contracts, whether or not its maps do.
+/// Bounds of the joint spectral radius of the maps' linear parts: the least factor such that long products,
+/// as far as the digraph admits them, shrink by it with every map.
+///
+/// The radius is below 1 if and only if the system contracts. A system may contract although single maps of
+/// it do not, and may diverge although all of them do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contraction {
-    /// What the bounds say, to within 1e-12.
+    /// Conclusion from the bounds, to within 1e-12.
     pub verdict: Verdict,
-    /// The radius is not less: that of [`Contraction::word`], to the power 1 / its length.
+    /// Lower bound of the radius: the spectral radius of [`Contraction::word`], to the power 1 / its length.
     pub lower: f64,
-    /// The radius is not more: in a norm that was found, every long product falls into pieces, each of
+    /// Upper bound of the radius: in a norm that was found, every long product falls into pieces, each of
     /// which shrinks by this factor with every map.
     pub upper: f64,
-    /// The product that gives the lower bound, in the order in which its maps are applied; the first
-    /// map may follow the last. Where the system diverges, no shorter product does so. Empty where all
-    /// products that were formed and can be repeated are nilpotent.
+    /// The product that gives the lower bound, in the order in which its maps are applied; the first map may
+    /// follow the last. Where the system diverges, no shorter product does so. Empty where all products that
+    /// were formed and can be repeated are nilpotent.
     pub word: Vec<usize>,
-    /// All products of up to so many maps were looked at, or need not be.
+    /// Length of the longest products that the bounds account for: all products of up to this many maps were
+    /// formed, or need not be.
     pub length: u32,
 }
 
 impl Ifs {
-    /// Whether the system contracts, from products of up to 100 000 words (see
-    /// [`Ifs::contraction_within`]) and, if they do not tell, from the convex hulls of what all
-    /// products of a length make of a disc.
+    /// Determines whether the system contracts, from at most 100 000 products (see
+    /// [`Ifs::contraction_within`]) and, if they do not decide, from the convex hulls of a disc's images
+    /// under all products of a length.
     #[must_use]
     pub fn contraction(&self) -> Contraction {
         let (linear, successors) = self.linear();
         Contraction::of(&linear, successors)
     }
 
-    /// Whether the system contracts, from no more than so many products (and those of single maps).
+    /// Determines whether the system contracts, from at most `products` products. Single maps are always
+    /// formed.
     ///
-    /// Branch and bound (Gripenberg, "Computing the joint spectral radius", 1996), restricted to the
-    /// words that the digraph admits, in an ellipsoidal norm in which the maps stretch little: the
-    /// spectral radius of a product that can be repeated bounds from below, norms from above, and a
-    /// product of which some beginning shrinks below the lower bound is not followed.
+    /// The algorithm is branch and bound (Gripenberg, "Computing the joint spectral radius", 1996),
+    /// restricted to the words that the digraph admits, in an ellipsoidal norm in which the maps stretch
+    /// little. The spectral radius of a product that can be repeated bounds from below, norms bound from
+    /// above, and a product of which some beginning shrinks below the lower bound is not extended.
     #[must_use]
     pub fn contraction_within(&self, products: usize) -> Contraction {
         let (linear, successors) = self.linear();
         Contraction::within(&linear, successors, products)
     }
 
-    /// The linear parts, and the maps that may follow each, if not all may.
+    /// Returns the linear parts, and for each map the maps that may follow it, in ascending order; `None` if
+    /// any map may follow any.
     fn linear(&self) -> (Vec<DMat2>, Option<Vec<Vec<usize>>>) {
         let linear = self.maps().iter().map(|map| map.affine.matrix2);
         let mut successors = self.successors();
@@ -79,8 +84,8 @@ impl Ifs {
 }
 
 impl Contraction {
-    /// Whether linear maps contract, of which each may be followed by some: by any, if there are no
-    /// lists.
+    /// Determines whether linear maps contract. `successors` lists the maps that may follow each; with `None`
+    /// any map may follow any.
     pub(crate) fn of(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>) -> Self {
         let mut contraction = Self::within(linear, successors.clone(), MOST_PRODUCTS);
         if contraction.verdict == Verdict::Undecided {
@@ -106,7 +111,7 @@ impl Contraction {
         contraction
     }
 
-    /// The same from no more than so many products. The lists are in ascending order.
+    /// Determines the same from at most `products` products. The lists of successors are in ascending order.
     fn within(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>, products: usize) -> Self {
         let search = Search {
             all: (0..linear.len()).collect(),
@@ -118,30 +123,31 @@ impl Contraction {
 }
 
 struct Search {
-    /// In the coordinates of the norm and in the given ones.
+    /// The linear maps in the coordinates of the norm and in the given ones.
     matrices: [Vec<DMat2>; 2],
     all: Vec<usize>,
-    /// In ascending order.
+    /// The maps that may follow each, in ascending order.
     successors: Option<Vec<Vec<usize>>>,
 }
 
-/// A product that is followed.
+/// A product that is extended by further maps.
 #[derive(Clone, Copy)]
 struct Product {
-    /// In the coordinates of the norm and in the given ones, where eigenvalues keep more digits; both
-    /// to be multiplied by 2 to the power `exponent`.
+    /// Matrices of the product in the coordinates of the norm and in the given ones, where eigenvalues keep
+    /// more digits; both are to be multiplied by 2 to the power `exponent`.
     matrices: [DMat2; 2],
     exponent: i32,
-    /// The least norm to the power 1 / length of all its beginnings.
+    /// The least value of norm to the power 1 / length over the product's beginnings.
     factor: f64,
     first: usize,
     last: usize,
-    /// The product that is one map shorter, among those that were ever followed.
+    /// Index in the list of followed products of the product that is one map shorter.
     beginning: Option<usize>,
 }
 
 impl Product {
-    /// A size of the scaled matrix to the power 1 / length.
+    /// Returns `size` · 2^`exponent` to the power 1 / length, where `size` is a norm or spectral radius of
+    /// the scaled matrix.
     fn root(&self, size: f64, length: u32) -> f64 {
         if length == 1 {
             return libm::scalbn(size, self.exponent);
@@ -151,7 +157,7 @@ impl Product {
     }
 }
 
-/// The closed product with the largest radius so far.
+/// The closed product with the largest spectral radius, to the power 1 / length, so far.
 #[derive(Default)]
 struct Best {
     factor: f64,
@@ -164,7 +170,7 @@ impl Search {
         let mut formed = 0;
         let mut length = 0;
         let mut best = Best::default();
-        // Of the products that are followed no longer, the largest factor.
+        // The largest factor of the products that are not extended.
         let mut dropped: f64 = 0.0;
         let mut upper = f64::INFINITY;
         let mut followed: Vec<Product> = Vec::new();
@@ -233,7 +239,7 @@ impl Search {
         successors.is_none_or(|lists| lists[last].binary_search(&next).is_ok())
     }
 
-    /// A product with one map more, `None` if nothing is left of it.
+    /// Returns the product with one more map; `None` if it is zero.
     fn extended(
         &self,
         before: Option<Product>,
@@ -283,7 +289,7 @@ fn largest(least: f64, products: &[Product]) -> f64 {
 impl Best {
     fn try_product(&mut self, product: &Product, length: u32) {
         let factor = product.root(spectral_radius(product.matrices[1]), length);
-        // The first of several that are equal but for rounding.
+        // Of several that are equal but for rounding, the first is kept.
         if factor > self.factor * (1.0 + ROUNDING) {
             *self = Self {
                 factor,
@@ -297,7 +303,7 @@ impl Best {
         self.factor >= 1.0 - ROUNDING
     }
 
-    /// Products with a smaller factor are followed no longer. Any that may diverge are.
+    /// Returns the factor up to which products are not extended. Products that may diverge always are.
     fn bound(&self) -> f64 {
         let bound = self.factor * (1.0 + SHARE);
         if self.diverges() {
@@ -307,7 +313,7 @@ impl Best {
         }
     }
 
-    /// The least of the words that are this one when repeated.
+    /// Returns the best product as the lexicographically least of its rotations.
     fn word(&self, followed: &[Product]) -> Vec<usize> {
         if self.factor == 0.0 {
             return Vec::new();

@@ -1,15 +1,17 @@
+//! Errors of the definition of an iterated function system, and the checks that find all of them.
+
 use std::collections::HashMap;
 
 use super::{Definition, Edge, Shape};
 
-/// What a weight belongs to.
+/// Owner of a weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighted {
-    /// The map of this number.
+    /// The map with this index.
     Map(usize),
-    /// The edge of this number.
+    /// The edge with this index.
     Edge(usize),
-    /// The condensation set of this number.
+    /// The condensation set with this index.
     Condensation(usize),
 }
 
@@ -23,66 +25,66 @@ impl std::fmt::Display for Weighted {
     }
 }
 
-/// What makes the parts of a system no system. Numbers in values count from 0, in messages from 1.
+/// An error in the definition of a system. Indices count from 0 in fields, from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum IfsError {
     /// There are no maps.
     #[error("a system needs at least one map")]
     NoMaps,
-    /// A map has a number that is not finite.
+    /// A coefficient of a map is not finite.
     #[error("map {} is not finite", .map + 1)]
     MapNotFinite {
-        /// The map.
+        /// Index of the map.
         map: usize,
     },
     /// A weight is zero, negative or not finite.
     #[error("{of} has the weight {weight}; weights are positive numbers")]
     Weight {
-        /// What it belongs to.
+        /// Owner of the weight.
         of: Weighted,
         /// The weight.
         weight: f64,
     },
-    /// A map has no weight though others do.
+    /// A map has no weight although others have one.
     #[error("map {} has no weight; all maps have one, or none", .map + 1)]
     WeightMissing {
-        /// The map.
+        /// Index of the map.
         map: usize,
     },
     /// An edge starts or ends at a map that does not exist.
     #[error("edge {} names map {}, but there are only {maps}", .edge + 1, .map + 1)]
     NoSuchMap {
-        /// The edge.
+        /// Index of the edge.
         edge: usize,
-        /// The number that it names.
+        /// The index that the edge names.
         map: usize,
-        /// How many maps there are.
+        /// The number of maps.
         maps: usize,
     },
     /// An edge is listed twice.
     #[error("edge {} is the same as edge {}", .edge + 1, .first + 1)]
     EdgeTwice {
-        /// The second.
+        /// Index of the second edge.
         edge: usize,
-        /// The first.
+        /// Index of the first edge.
         first: usize,
     },
     /// No edge leads to a map.
     #[error("no edge leads to map {}, so it is never applied", .map + 1)]
     NothingEnters {
-        /// The map.
+        /// Index of the map.
         map: usize,
     },
     /// No edge leads away from a map.
     #[error("no edge leads away from map {}, so nothing can follow it", .map + 1)]
     NothingLeaves {
-        /// The map.
+        /// Index of the map.
         map: usize,
     },
-    /// A condensation set is not finite, or closed and without an area.
+    /// A condensation set is not finite, has no extent, or is closed and has no area.
     #[error("condensation set {} has no extent", .condensation + 1)]
     NoExtent {
-        /// The condensation set.
+        /// Index of the condensation set.
         condensation: usize,
     },
     /// The initial set is a point that is not finite.
@@ -90,7 +92,7 @@ pub enum IfsError {
     InitialNotFinite,
 }
 
-/// All that is wrong with a definition.
+/// Returns all errors of a definition, in the order maps, edges, condensation sets, initial set.
 pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
     let mut errors = Vec::new();
     let maps = &definition.maps;

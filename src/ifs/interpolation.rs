@@ -1,68 +1,68 @@
-//! Fractal interpolation: curves through points that look the same in every part (Barnsley,
-//! "Fractal functions and interpolation", 1986; Demko, Hodges & Naylor 1985, section 3.5).
+//! Fractal interpolation: self-affine graphs of functions through given points (Barnsley, "Fractal functions
+//! and interpolation", 1986; Demko, Hodges & Naylor 1985, section 3.5).
 
 use super::Map;
 use crate::geometry::{DAffine2, DVec2};
 
-/// Why there is no curve through the points. Numbers in values count from 0, in messages from 1.
+/// An error that leaves no curve through the points. Indices count from 0 in fields, from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum InterpolationError {
-    /// With fewer than three points there is nothing to repeat.
+    /// There are fewer than three points: a single piece would be the whole curve.
     #[error("a curve needs at least three points, not {points}")]
     TooFewPoints {
-        /// How many there are.
+        /// The number of points.
         points: usize,
     },
     /// A point is not finite.
     #[error("point {} is not finite", .point + 1)]
     PointNotFinite {
-        /// The point.
+        /// Index of the point.
         point: usize,
     },
-    /// A point does not lie to the right of the one before.
+    /// A point does not lie to the right of the preceding one.
     #[error("point {} does not lie to the right of the one before", .point + 1)]
     NotIncreasing {
-        /// The point.
+        /// Index of the point.
         point: usize,
     },
-    /// There is not one factor for all pieces, nor one for each.
+    /// The number of factors is neither 1 nor the number of pieces.
     #[error("there are {scales} factors for {pieces} pieces; one does for all")]
     NumberOfScales {
-        /// How many factors there are.
+        /// The number of factors.
         scales: usize,
-        /// How many pieces lie between the points.
+        /// The number of pieces between the points.
         pieces: usize,
     },
-    /// A vertical factor is not between −1 and 1.
+    /// A vertical factor does not lie between −1 and 1.
     #[error("factor {} is {scale}; the curve diverges unless it lies between -1 and 1", .number + 1)]
     Scale {
-        /// The factor's place in the list.
+        /// Index of the factor in the list.
         number: usize,
         /// The factor.
         scale: f64,
     },
-    /// No curve over an interval has this dimension.
+    /// No curve over an interval has the dimension.
     #[error("the dimension {dimension} is not possible; it is at least 1 and less than 2")]
     Dimension {
         /// The dimension.
         dimension: f64,
     },
-    /// Points on a line give that line, whatever the factors.
+    /// The points lie on a line: the curve is that line for all factors.
     #[error("the points lie on a line, so the curve is that line and has dimension 1")]
     OnALine,
 }
 
-/// The maps whose attractor is the graph of a continuous function through points, from left to right.
+/// Returns the maps whose attractor is the graph of a continuous function through points, from left to right.
 ///
-/// Map i takes the whole curve to the piece between points i and i + 1. It keeps vertical lines
-/// vertical and multiplies heights by its factor, of which there is one for all pieces or one for each.
-/// A map's weight is its piece's share of the width, so that random iteration visits equal widths
-/// equally often.
+/// Map i takes the whole curve to the piece between points i and i + 1. It keeps vertical lines vertical and
+/// multiplies heights by its factor; `scales` holds one factor for all pieces or one for each. The weight of
+/// a map is its piece's share of the width, so that random iteration visits equal widths equally often.
 ///
 /// # Errors
 ///
-/// If the points are fewer than three, not finite or not in order, or if the factors are of another
-/// number or not between −1 and 1.
+/// Returns an error if there are fewer than three points, if a point is not finite or not to the right of the
+/// preceding one, if the number of factors is neither 1 nor the number of pieces, or if a factor does not lie
+/// between −1 and 1.
 pub fn interpolate(points: &[DVec2], scales: &[f64]) -> Result<Vec<Map>, InterpolationError> {
     check_points(points)?;
     let pieces = points.len() - 1;
@@ -89,14 +89,15 @@ pub fn interpolate(points: &[DVec2], scales: &[f64]) -> Result<Vec<Map>, Interpo
     Ok(maps.collect())
 }
 
-/// The one factor with which the curve through points has a given box dimension D, at least 1 and
-/// less than 2: that with Σ |d| a_i^(D − 1) = 1, a_i being the pieces' shares of the width. The
-/// negative one does as well.
+/// Returns the vertical factor d with which the curve through points, with this one factor for all pieces,
+/// has a given box dimension D, at least 1 and less than 2: the positive solution of Σ |d| a_i^(D − 1) = 1,
+/// where a_i are the pieces' shares of the width. The factor −d gives the same dimension.
 ///
 /// # Errors
 ///
-/// If the points are fewer than three, not finite or not in order, if they lie on a line, or if
-/// there is no curve of that dimension.
+/// Returns an error if there are fewer than three points, if a point is not finite or not to the right of the
+/// preceding one, if the points lie on a line, or if the dimension is out of range or so close to 2 that the
+/// factor rounds to 1.
 pub fn scale_of_dimension(points: &[DVec2], dimension: f64) -> Result<f64, InterpolationError> {
     check_points(points)?;
     if !(1.0..2.0).contains(&dimension) {
@@ -109,20 +110,20 @@ pub fn scale_of_dimension(points: &[DVec2], dimension: f64) -> Result<f64, Inter
         / shares(points)
             .map(|share| libm::pow(share, dimension - 1.0))
             .sum::<f64>();
-    // So close to 2 that the factor rounds to 1.
+    // The dimension is so close to 2 that the factor rounds to 1.
     if scale >= 1.0 {
         return Err(InterpolationError::Dimension { dimension });
     }
     Ok(scale)
 }
 
-/// The box dimension of the curve through points with given factors, to some 15 digits: the D with
-/// Σ |d_i| a_i^(D − 1) = 1, or 1 if Σ |d_i| is no more than 1 or the points lie on a line (Barnsley &
+/// Returns the box dimension of the curve through points with given factors, to about 15 digits: the solution
+/// D of Σ |d_i| a_i^(D − 1) = 1, or 1 if Σ |d_i| is at most 1 or the points lie on a line (Barnsley &
 /// Harrington, "The calculus of fractal interpolation functions", 1989).
 ///
 /// # Errors
 ///
-/// Those of [`interpolate`].
+/// Returns the errors of [`interpolate`].
 pub fn interpolation_dimension(
     points: &[DVec2],
     scales: &[f64],
@@ -168,12 +169,12 @@ fn check_points(points: &[DVec2]) -> Result<(), InterpolationError> {
     Ok(())
 }
 
-/// From the first point to the last.
+/// Returns the vector from the first point to the last.
 fn span(points: &[DVec2]) -> DVec2 {
     points[points.len() - 1] - points[0]
 }
 
-/// The pieces' shares of the width.
+/// Iterates over the pieces' shares of the width.
 fn shares(points: &[DVec2]) -> impl Iterator<Item = f64> {
     let width = span(points).x;
     points

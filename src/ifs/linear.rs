@@ -1,14 +1,14 @@
-//! Small dense systems of linear equations.
+//! Small dense systems of linear equations, solved by Gaussian elimination with partial pivoting.
 
 /// Equations `matrix · x = constants`, for several right-hand sides at once.
 pub(super) struct Equations {
     unknowns: usize,
-    /// The rows of the matrix, each with its constants behind it.
+    /// The rows of the matrix, each followed by its constants, one for each right-hand side.
     rows: Vec<Vec<f64>>,
 }
 
 impl Equations {
-    /// As many equations as unknowns, all zero.
+    /// Returns as many equations as unknowns, all zero.
     pub(super) fn new(unknowns: usize, sides: usize) -> Self {
         Self {
             unknowns,
@@ -16,23 +16,24 @@ impl Equations {
         }
     }
 
-    /// Adds to the coefficient of an unknown.
+    /// Adds to the coefficient of an unknown in an equation.
     pub(super) fn add(&mut self, equation: usize, unknown: usize, coefficient: f64) {
         self.rows[equation][unknown] += coefficient;
     }
 
-    /// Makes an equation zero again.
+    /// Resets an equation to zero, constants included.
     pub(super) fn clear(&mut self, equation: usize) {
         self.rows[equation].fill(0.0);
     }
 
-    /// Adds to the constant of a right-hand side.
+    /// Adds to the constant of a right-hand side in an equation.
     pub(super) fn add_constant(&mut self, equation: usize, side: usize, constant: f64) {
         self.rows[equation][self.unknowns + side] += constant;
     }
 
-    /// The unknowns, one list for every right-hand side, by Gaussian elimination with partial
-    /// pivoting. `None` if the matrix is singular or the numbers leave the range of a double.
+    /// Returns the unknowns, one list for each right-hand side, by Gaussian elimination with partial
+    /// pivoting; `None` if the matrix is singular or the numbers leave the range of a double.
+    /// Returns the unknowns of the triangular matrix for a right-hand side, by back substitution.
     pub(super) fn solve(mut self) -> Option<Vec<Vec<f64>>> {
         let size = self.unknowns;
         for column in 0..size {

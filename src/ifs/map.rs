@@ -1,3 +1,5 @@
+//! Affine maps of an iterated function system, and constructors for common notations of them.
+
 use super::norm::spectral_radius;
 use crate::expression::degrees::{cos, sin};
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -5,16 +7,17 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 /// A map of a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// What it is called.
+    /// Name of the map, if it has one.
     pub name: Option<String>,
     /// The map of the plane.
     pub affine: DAffine2,
-    /// How often it is picked, relative to the other maps: a positive number, for all maps or none.
+    /// Weight of the map in random iteration, relative to the other maps: positive. Either all maps have one,
+    /// or none.
     pub weight: Option<f64>,
 }
 
 impl Map {
-    /// A map without name and weight.
+    /// Returns a map without name and weight.
     #[must_use]
     pub fn new(affine: DAffine2) -> Self {
         Self {
@@ -24,7 +27,7 @@ impl Map {
         }
     }
 
-    /// The same with a weight.
+    /// Returns the map with a weight.
     #[must_use]
     pub fn weighing(self, weight: f64) -> Self {
         Self {
@@ -33,13 +36,14 @@ impl Map {
         }
     }
 
-    /// The point that stays where it is; `None` if there is none, or more than one.
+    /// Returns the fixed point of the map; `None` if there is none, or more than one.
     #[must_use]
     pub fn fixed_point(&self) -> Option<DVec2> {
         fixed_point(&self.affine)
     }
 
-    /// Whether all points come together when it is applied over and over.
+    /// Returns whether the map contracts when it is iterated: whether the spectral radius of its linear part
+    /// is below 1.
     #[must_use]
     pub fn contracts(&self) -> bool {
         spectral_radius(self.affine.matrix2) < 1.0
@@ -50,7 +54,7 @@ pub(super) fn fixed_point(affine: &DAffine2) -> Option<DVec2> {
     let moving = DMat2::IDENTITY - affine.matrix2;
     let (x, y) = (moving.x_axis, moving.y_axis);
     let area = x.perp_dot(y);
-    // By Cramer's rule; the area is what rounding leaves of zero where the columns are parallel.
+    // Cramer's rule. Where the columns are parallel, rounding leaves a small area instead of zero.
     if area.abs() <= 1e-15 * x.length() * y.length() {
         return None;
     }
@@ -59,8 +63,10 @@ pub(super) fn fixed_point(affine: &DAffine2) -> Option<DVec2> {
     point.is_finite().then_some(point)
 }
 
-/// The linear map that scales the x and the y axis, then turns each by its own angle, in degrees and
-/// counter-clockwise (Demko, Hodges & Naylor 1985, section 4.3).
+/// Returns the linear map that scales the x and the y axis, then rotates each by its own angle, in degrees
+/// and counter-clockwise (Demko, Hodges & Naylor 1985, section 4.3).
+/// The image of (1, 0) is s_x (cos α, sin α) and that of (0, 1) is s_y (−sin β, cos β), so that equal angles
+/// rotate.
 ///
 /// (1, 0) goes to s_x (cos α, sin α) and (0, 1) to s_y (−sin β, cos β), so that equal angles rotate.
 #[must_use]
@@ -71,26 +77,27 @@ pub fn axes(scale: DVec2, angles: DVec2) -> DMat2 {
     )
 }
 
-/// A linear map about a point that stays where it is: x → c + L (x − c).
+/// Returns the map x → c + L (x − c) with a linear part L and a fixed point c.
 #[must_use]
 pub fn about(linear: DMat2, centre: DVec2) -> DAffine2 {
     DAffine2::from_mat2_translation(linear, centre - linear * centre)
 }
 
-/// z → s z + t in complex numbers.
+/// Returns the map z → s z + t of complex numbers.
 #[must_use]
 pub fn complex(s: DVec2, t: DVec2) -> DAffine2 {
     DAffine2::from_cols(s, s.perp(), t)
 }
 
-/// z → s conj z + t in complex numbers.
+/// Returns the map z → s conj z + t of complex numbers.
 #[must_use]
 pub fn complex_conjugate(s: DVec2, t: DVec2) -> DAffine2 {
     DAffine2::from_cols(s, -s.perp(), t)
 }
 
-/// x → f x + (1 − f) v: what is left of the way to the vertex v is the shrink factor f (Jones & Campa
-/// 1992, algorithm 3). f = 1/2 goes half the way, f = 1/3 two thirds of it.
+/// Returns the map x → f x + (1 − f) v, which moves points toward the vertex v (Jones & Campa 1992, algorithm
+/// 3). The factor f is the part of the distance to v that remains: f = 1/2 goes half of the way, f = 1/3 two
+/// thirds of it.
 #[must_use]
 pub fn toward(vertex: DVec2, factor: f64) -> DAffine2 {
     about(DMat2::from_diagonal(DVec2::splat(factor)), vertex)

@@ -1,4 +1,4 @@
-//! The moments of the measure that random iteration draws.
+//! Moments of the invariant measure that random iteration draws, by linear equations.
 
 use super::linear::Equations;
 use super::moments::square;
@@ -6,36 +6,36 @@ use super::walk::Step;
 use super::{Choice, Ifs, Moments};
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
-/// A part of the measure: where the points stand that one map has just moved.
+/// Part of the measure: the distribution of the points that one map has just moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// How much of its time the walk spends there.
+    /// Share of its time that the walk spends in this part.
     pub weight: f64,
-    /// Its own moments; `None` if the walk leaves it for ever.
+    /// Moments of the part alone; `None` if the walk leaves it for ever.
     pub moments: Option<Moments>,
 }
 
-/// The P-balanced measure (Demko, Hodges & Naylor 1985, section 3.1): how much of its time the walk
-/// of random iteration spends where.
+/// Moments of the P-balanced measure (Demko, Hodges & Naylor 1985, section 3.1): the share of its time that
+/// the walk of random iteration spends in each region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// The moments of the whole.
+    /// Moments of the whole measure.
     pub moments: Moments,
-    /// Its parts, one for every map.
+    /// Parts of the measure, one for each map.
     pub by_map: Vec<Part>,
 }
 
-/// Correlations above 1 by no more than this share come from rounding.
+/// Relative excess of a correlation over 1 that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl Ifs {
-    /// Mean and covariance of the P-balanced measure, from the equations that they solve: without a
-    /// digraph the mean m = Σ p_i (A_i m + t_i), second moments likewise.
+    /// Returns mean and covariance of the P-balanced measure, from the equations that they solve: without a
+    /// digraph the mean is m = Σ p_i (A_i m + t_i), and second moments follow likewise.
     ///
-    /// `None` if [there is no one measure](super::Walk::stationary) or its second moments are
-    /// infinite. They are finite where the system contracts, and wherever the expected square of a
-    /// product of maps goes to zero. The work grows with the third power of the number of states of
-    /// the [walk](Ifs::walk).
+    /// Returns `None` if [there is no unique measure](super::Walk::stationary), if a condensation set has no
+    /// moments, or if the second moments are infinite. They are finite where the system contracts, and
+    /// wherever the expected square of a product of maps goes to zero. The work grows with the third power of
+    /// the number of states of the [walk](Ifs::walk).
     #[must_use]
     pub fn measure(&self) -> Option<Measure> {
         let walk = self.walk();
@@ -46,7 +46,7 @@ impl Ifs {
             states: walk.states(),
             stationary: walk.stationary()?,
         };
-        // About the mean, lest distant attractors lose digits.
+        // Moments about the mean: those of distant attractors about the origin would lose digits.
         let centre: DVec2 = flow.first_moments()?.iter().sum();
         flow.centre(centre);
         let first = flow.first_moments()?;
@@ -64,7 +64,7 @@ impl Ifs {
     }
 }
 
-/// What flows from state to state in a step of the walk. Moments of a state are those of the points
+/// Flow of moments from state to state in a step of the walk. The moments of a state are those of the points
 /// that are in it, times its stationary weight.
 struct Flow<'a> {
     maps: Vec<DAffine2>,
@@ -79,7 +79,7 @@ impl Flow<'_> {
         states.flat_map(|(from, steps)| steps.iter().map(move |step| (from, step)))
     }
 
-    /// Moves the origin to a point.
+    /// Moves the origin of coordinates to a point.
     fn centre(&mut self, centre: DVec2) {
         for map in &mut self.maps {
             map.translation = map.transform_point2(centre) - centre;
@@ -89,7 +89,7 @@ impl Flow<'_> {
         }
     }
 
-    /// The first moments of all states.
+    /// Returns the first moments of all states; `None` if the equations are singular.
     fn first_moments(&self) -> Option<Vec<DVec2>> {
         let mut equations = Equations::new(2 * self.states.len(), 1);
         for row in 0..2 * self.states.len() {
@@ -113,11 +113,10 @@ impl Flow<'_> {
         Some(solution.chunks_exact(2).map(DVec2::from_slice).collect())
     }
 
-    /// The second moments of all states from the first; `None` if they are infinite.
+    /// Returns the second moments of all states, computed from the first; `None` if they are infinite.
     ///
-    /// A map from positive matrices to such has a spectral radius below 1 if and only if the
-    /// fixed point is positive that it has with the identity added, so these equations are solved
-    /// too.
+    /// A map of positive matrices to positive matrices has a spectral radius below 1 if and only if, with the
+    /// identity added, its fixed point is positive. A second right-hand side solves for that fixed point.
     fn second_moments(&self, first: &[DVec2]) -> Option<Vec<DMat2>> {
         let mut equations = Equations::new(3 * self.states.len(), 2);
         for state in 0..self.states.len() {
@@ -154,7 +153,8 @@ impl Flow<'_> {
         finite.then(|| second.chunks_exact(3).map(matrix).collect())
     }
 
-    /// First and second moments of what a step brings, from weight and moments of its state.
+    /// Returns first and second moments of the points that a step moves, given weight and moments of its
+    /// state.
     fn moved(&self, step: &Step, weight: f64, first: DVec2, second: DMat2) -> (DVec2, DMat2) {
         let (first, second) = match step.choice {
             Choice::Map(map) => {
@@ -178,7 +178,7 @@ impl Flow<'_> {
         (step.probability * first, second * step.probability)
     }
 
-    /// Where the points stand that each map has just moved.
+    /// Returns the part of every map: weight and moments of the points that it has just moved.
     fn parts(&self, first: &[DVec2], second: &[DMat2]) -> Vec<Part> {
         let mut sums = vec![(0.0, DVec2::ZERO, DMat2::ZERO); self.maps.len()];
         for (from, step) in self.steps() {
@@ -201,14 +201,14 @@ impl Flow<'_> {
     }
 }
 
-/// The symmetric matrices whose entries xx, xy, yy are 1, the others 0.
+/// The symmetric matrices in which one of the entries xx, xy and yy is 1 and the others are 0.
 const UNITS: [DMat2; 3] = [
     DMat2::from_cols(DVec2::X, DVec2::ZERO),
     DMat2::from_cols(DVec2::Y, DVec2::X),
     DMat2::from_cols(DVec2::ZERO, DVec2::Y),
 ];
 
-/// The entries xx, xy and yy of a symmetric matrix.
+/// Returns the entries xx, xy and yy of a symmetric matrix.
 fn entries(matrix: DMat2) -> [f64; 3] {
     [matrix.x_axis.x, matrix.x_axis.y, matrix.y_axis.y]
 }
@@ -219,7 +219,7 @@ fn add_constant(equations: &mut Equations, state: usize, side: usize, matrix: DM
     }
 }
 
-/// The matrix v wᵀ.
+/// Returns the matrix v wᵀ.
 fn outer(v: DVec2, w: DVec2) -> DMat2 {
     DMat2::from_cols(v * w.x, v * w.y)
 }

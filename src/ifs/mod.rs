@@ -1,34 +1,32 @@
-//! Iterated function systems: affine maps of the plane, a walk among them, condensation sets.
+//! Iterated function systems: affine maps of the plane, the walk of random iteration, condensation sets.
 //!
-//! An [`Ifs`] is the validated model of what Demko, Hodges & Naylor ("Iterated function systems",
-//! SIGGRAPH 1985) draw. Maps f_1 … f_n that contract have one compact set A with
-//! A = f_1(A) ∪ … ∪ f_n(A) ∪ C, the *attractor*; C is the union of the *condensation sets*. With a
-//! weight for every map and every condensation set, *random iteration* draws A: a point goes to its
-//! image under a map that is picked by weight, or is drawn anew from a condensation set.
+//! An [`Ifs`] is the validated model of the systems of Demko, Hodges & Naylor ("Iterated function systems",
+//! SIGGRAPH 1985). Maps f_1 … f_n that contract have one compact set A with A = f_1(A) ∪ … ∪ f_n(A) ∪ C, the
+//! *attractor*; C is the union of the *condensation sets*. With a weight for every map and every condensation
+//! set, *random iteration* draws A: a point moves to its image under a map that is picked by weight, or is
+//! drawn anew from a condensation set.
 //!
-//! # Which way an edge points
+//! # Direction of edges
 //!
-//! A *recurrent* system has a digraph too. An edge from i to j says that f_j may be applied **after**
-//! f_i in random iteration. With A_i the part of the attractor where points stand that f_i has just
-//! moved, A_j = f_j(C) ∪ ⋃ f_j(A_i) over the edges i → j, and A = C ∪ A_1 ∪ … ∪ A_n. This is
-//! equation (2) of Hart ("The object instancing paradigm for linear fractal modeling", 1992) and the
-//! convention of Barnsley, Elton & Hardin ("Recurrent iterated function systems", 1989), whose p_ij is
-//! the probability of going from i to j. As objects that instance each other the edge points
-//! backwards: object j holds an instance of object i under f_j. After a condensation set any map may
-//! follow.
+//! A *recurrent* system has a digraph too. An edge from i to j means that f_j may be applied **after** f_i in
+//! random iteration. Let A_i be the part of the attractor that holds the points that f_i has just moved. Then
+//! A_j = f_j(C) ∪ ⋃ f_j(A_i) over the edges i → j, and A = C ∪ A_1 ∪ … ∪ A_n. These are equation (2) of Hart
+//! ("The object instancing paradigm for linear fractal modeling", 1992) and the convention of Barnsley, Elton
+//! & Hardin ("Recurrent iterated function systems", 1989), whose p_ij is the probability of going from i to
+//! j. In the instancing graph the edge points backwards: object j holds an instance of object i under f_j.
+//! After a condensation set any map may follow.
 //!
 //! The digraph need not be strongly connected: the equations still have one solution where the maps
 //! contract and every vertex is entered. The walk then ends in a part of the digraph that it cannot
 //! leave; see [`Walk::stationary`].
 //!
-//! # What is guaranteed
+//! # Guarantees
 //!
-//! There is at least one map and all numbers are finite. All weights are positive. Edges lead from
-//! and to maps that exist, none is listed twice, and every map is entered and left by one.
-//! Condensation sets have an extent, or are points. Whether the maps contract is not guaranteed but
-//! told by [`Ifs::contraction`].
+//! There is at least one map and all numbers are finite. All weights are positive. Edges lead from and to
+//! existing maps, none is listed twice, and every map is entered and left by one. Condensation sets have an
+//! extent, or are points. Contraction of the maps is not guaranteed; [`Ifs::contraction`] reports it.
 //!
-//! Maps, edges and condensation sets are numbered from 0 here, and from 1 in messages.
+//! Maps, edges and condensation sets are numbered from 0 in this module, and from 1 in messages.
 
 mod contraction;
 mod error;
@@ -67,35 +65,35 @@ pub struct Edge {
     pub from: usize,
     /// The map that may be applied next.
     pub to: usize,
-    /// How likely it is, relative to the other edges from the same map; the weight of the map `to`
-    /// unless given.
+    /// Weight of the edge relative to the other edges from the same map; the weight of the map `to` if
+    /// `None`.
     pub weight: Option<f64>,
 }
 
-/// A set that belongs to the attractor with all its images.
+/// A condensation set: a set that belongs to the attractor together with all its images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condensation {
     /// The set.
     pub shape: Shape,
-    /// How often a point is drawn anew from it, relative to the weights of the maps; the mean of
-    /// these unless given.
+    /// Weight of drawing a point anew from the set, relative to the weights of the maps; the mean of these if
+    /// `None`.
     pub weight: Option<f64>,
 }
 
-/// The parts of a system, not checked yet.
+/// The parts of a system before validation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Definition {
     /// The maps.
     pub maps: Vec<Map>,
-    /// Which map may follow which; any may follow any unless given.
+    /// Edges of the digraph; if `None`, any map may follow any.
     pub edges: Option<Vec<Edge>>,
     /// The condensation sets.
     pub condensation: Vec<Condensation>,
-    /// What deterministic iteration starts from, in the coordinates of the plane.
+    /// Initial set of deterministic iteration, in the coordinates of the plane.
     pub initial: Option<Shape>,
 }
 
-/// An iterated function system; see the [module](self) for what it guarantees.
+/// An iterated function system; its guarantees are those of the [module](self).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ifs {
     definition: Definition,
@@ -105,15 +103,15 @@ pub struct Ifs {
 }
 
 impl Ifs {
-    /// The system of these parts.
+    /// Builds a system from its parts.
     ///
-    /// Maps without weights get them by their determinants: |det| or a twentieth of the mean |det| of
-    /// all maps, whatever is more, divided by the sum; equal ones if all determinants are 0. So a map
-    /// that flattens the plane (the fern's stem) is still visited, and the weights add up to 1.
+    /// Maps without weights get default ones: |det| of the linear part or a twentieth of the mean |det| of
+    /// all maps, whichever is larger, divided by the sum; equal weights if all determinants are 0. A map that
+    /// flattens the plane (the fern's stem) is thus still visited, and the weights add up to 1.
     ///
     /// # Errors
     ///
-    /// All that is wrong with the parts, in the order maps, edges, condensation sets, initial set.
+    /// Returns all errors of the parts, in the order maps, edges, condensation sets, initial set.
     pub fn new(definition: Definition) -> Result<Self, Vec<IfsError>> {
         let errors = check(&definition);
         if !errors.is_empty() {
@@ -133,45 +131,45 @@ impl Ifs {
         })
     }
 
-    /// The maps.
+    /// Returns the maps.
     #[must_use]
     pub fn maps(&self) -> &[Map] {
         &self.definition.maps
     }
 
-    /// The weight of every map.
+    /// Returns the weights of the maps: as given, or the defaults of [`Ifs::new`].
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// Whether the weights of the maps are those that [`Ifs::new`] gives.
+    /// Returns whether the weights of the maps are the defaults of [`Ifs::new`].
     #[must_use]
     pub fn has_default_weights(&self) -> bool {
         self.maps().iter().all(|map| map.weight.is_none())
     }
 
-    /// Whether maps or edges have weights that were given.
+    /// Returns whether weights of maps or edges were given.
     #[must_use]
     pub fn has_weights(&self) -> bool {
         let edges = self.definition.edges.iter().flatten();
         !self.has_default_weights() || { edges }.any(|edge| edge.weight.is_some())
     }
 
-    /// The edges of the digraph with their weights, in the order of listing; `None` where any map may
+    /// Returns the edges of the digraph with their weights, in the order of listing; `None` where any map may
     /// follow any other and itself, by its own weight.
     pub fn edges(&self) -> Option<impl Iterator<Item = (Edge, f64)>> {
         let edges = self.definition.edges.as_ref()?;
         Some(edges.iter().copied().zip(self.edge_weights.iter().copied()))
     }
 
-    /// Whether the system has a digraph.
+    /// Returns whether the system has a digraph.
     #[must_use]
     pub fn is_recurrent(&self) -> bool {
         self.definition.edges.is_some()
     }
 
-    /// The maps that may follow each map; `None` where all may.
+    /// Returns for each map the maps that may follow it, in the order of the edges; `None` where all may.
     pub(crate) fn successors(&self) -> Option<Vec<Vec<usize>>> {
         let mut successors = vec![Vec::new(); self.maps().len()];
         for edge in self.definition.edges.as_ref()? {
@@ -180,19 +178,19 @@ impl Ifs {
         Some(successors)
     }
 
-    /// The condensation sets.
+    /// Returns the condensation sets.
     #[must_use]
     pub fn condensation(&self) -> &[Condensation] {
         &self.definition.condensation
     }
 
-    /// The weight of every condensation set, on the scale of [`Ifs::weights`].
+    /// Returns the weight of every condensation set, on the scale of [`Ifs::weights`].
     #[must_use]
     pub fn condensation_weights(&self) -> &[f64] {
         &self.condensation_weights
     }
 
-    /// What deterministic iteration starts from.
+    /// Returns the initial set of deterministic iteration, if there is one.
     #[must_use]
     pub fn initial(&self) -> Option<&Shape> {
         self.definition.initial.as_ref()
@@ -215,7 +213,8 @@ impl Ifs {
         Some(within)
     }
 
-    /// About how many instances its graph has: of every map inside every map, and of all outlines there.
+    /// Estimates the number of instances in the system's graph: every map inside every map, and every outline
+    /// inside these.
     pub(crate) fn size(&self) -> usize {
         let sets = self.condensation().iter().map(|set| &set.shape);
         let outlines = sets.chain(self.initial()).map(Shape::count).sum::<usize>();
@@ -223,27 +222,28 @@ impl Ifs {
         maps.saturating_mul(maps).saturating_mul(1 + outlines)
     }
 
-    /// What maps do that are applied one after the other, the first of the list first.
+    /// Returns the composition of maps that are applied one after the other, the first of the list first.
     ///
     /// # Panics
     ///
-    /// If a number is not that of a map.
+    /// Panics if an index is not that of a map.
     #[must_use]
     pub fn composition(&self, word: &[usize]) -> DAffine2 {
         let maps = word.iter().map(|&map| self.maps()[map].affine);
         maps.fold(DAffine2::IDENTITY, |before, map| map * before)
     }
 
-    /// The fixed point of every map, `None` where there is no single one.
+    /// Returns the fixed point of every map; `None` where there is none, or more than one.
     ///
-    /// It lies on the attractor; in a recurrent system only if the map may follow itself.
+    /// The fixed point of a map lies on the attractor; in a recurrent system only if the map may follow
+    /// itself.
     #[must_use]
     pub fn fixed_points(&self) -> Vec<Option<DVec2>> {
         self.maps().iter().map(Map::fixed_point).collect()
     }
 }
 
-/// As given, or the default of [`Ifs::new`].
+/// Returns the weights of the maps: as given, or the defaults of [`Ifs::new`].
 fn map_weights(maps: &[Map]) -> Vec<f64> {
     let given: Option<Vec<f64>> = maps.iter().map(|map| map.weight).collect();
     given.unwrap_or_else(|| {
@@ -268,9 +268,9 @@ fn mean(values: &[f64]) -> f64 {
         .sum()
 }
 
-/// Weights divided by their sum; `None` if that is not possible.
+/// Returns weights divided by their sum; `None` if a share is not finite.
 fn shares(weights: &[f64]) -> Option<Vec<f64>> {
-    // The sum alone may be infinite.
+    // The sum alone may overflow.
     let largest = weights.iter().copied().fold(0.0, f64::max);
     let sum: f64 = weights.iter().map(|weight| weight / largest).sum();
     let shares = weights.iter().map(|weight| weight / largest / sum);

@@ -1,3 +1,5 @@
+//! Mean and covariance of distributions of points in the plane.
+
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
 /// Mean and covariance of a distribution of points.
@@ -5,12 +7,13 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 pub struct Moments {
     /// The mean.
     pub mean: DVec2,
-    /// The covariance matrix: variances of x and y, and their covariance twice.
+    /// The covariance matrix, symmetric: the variances of x and y on its diagonal, their covariance beside
+    /// it.
     pub covariance: DMat2,
 }
 
 impl Moments {
-    /// All at one point.
+    /// Returns the moments of a distribution that is concentrated at one point.
     #[must_use]
     pub fn point(mean: DVec2) -> Self {
         Self {
@@ -19,7 +22,7 @@ impl Moments {
         }
     }
 
-    /// Those of the image under a map.
+    /// Returns the moments of the distribution's image under a map.
     #[must_use]
     pub fn transformed(&self, map: &DAffine2) -> Self {
         let linear = map.matrix2;
@@ -30,7 +33,7 @@ impl Moments {
     }
 }
 
-/// The matrix v vᵀ.
+/// Returns the matrix v vᵀ.
 pub(super) fn square(v: DVec2) -> DMat2 {
     DMat2::from_cols(v * v.x, v * v.y)
 }

@@ -1,8 +1,9 @@
-//! Norms of matrices of the plane.
+//! Norms and spectral radii of matrices of the plane, and coordinates in which several matrices stretch
+//! least.
 
 use crate::geometry::{DMat2, DVec2};
 
-/// The largest of the eigenvalues' moduli.
+/// Returns the spectral radius: the largest modulus of an eigenvalue.
 pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
     let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
     let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
@@ -15,20 +16,21 @@ pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
     }
 }
 
-/// The largest singular value: how much a matrix lengthens a vector at most.
+/// Returns the largest singular value: the largest factor by which a matrix lengthens a vector.
 pub(super) fn stretch(matrix: DMat2) -> f64 {
     let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
     let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
     (libm::hypot(a + d, c - b) + libm::hypot(a - d, c + b)) / 2.0
 }
 
-/// The matrices in coordinates in which the largest stretch is about as small as it can be: where
-/// the unit disk is the ellipse that all of them shrink best.
+/// Returns the matrices in coordinates in which their largest stretch is nearly minimal: the unit disc of
+/// these coordinates is the ellipse that all of the matrices shrink best.
 ///
-/// The ellipses are a half-plane, by the shear and the ratio of their axes, and the ellipses that all
-/// matrices stretch no more than by a given factor are a convex set. So steps downhill lead to the
-/// least stretch; they are taken in directions that turn by the golden angle, which find the way out of
-/// an edge of the function. How well they do so makes no bound wrong, only wider.
+/// Ellipses form a half-plane, by their shear and the ratio of their axes, and the ellipses that all matrices
+/// stretch by at most a given factor form a convex set. Descent therefore leads to the least stretch. Steps
+/// are tried in directions that turn by the golden angle, which find the way out of an edge of the function.
+/// An imperfect minimum makes no bound wrong, only wider.
+/// Coordinates (x + shear · y, ratio · y).
 pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
     const DIRECTIONS: u32 = 8;
     const GOLDEN: f64 = 2.399_963_229_728_653;
@@ -75,7 +77,7 @@ impl Coordinates {
         ratio: 1.0,
     };
 
-    /// A step in the hyperbolic geometry of the half-plane.
+    /// Returns the coordinates after a step in the hyperbolic geometry of the half-plane.
     fn stepped(&self, step: DVec2) -> Self {
         Self {
             shear: self.shear + step.x * self.ratio,
@@ -83,7 +85,7 @@ impl Coordinates {
         }
     }
 
-    /// Whether products would leave the range of a double.
+    /// Returns whether products could leave the range of a double.
     fn is_flat(&self) -> bool {
         !(1e-100..1e100).contains(&self.ratio) || self.shear.abs() > 1e100
     }

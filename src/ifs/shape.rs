@@ -1,3 +1,5 @@
+//! Condensation sets and initial sets: points, outlines and unions of outlines, with exact moments.
+
 use std::sync::Arc;
 
 use super::Moments;
@@ -12,17 +14,17 @@ use crate::rule::{BaseElement, Piece, arc};
 pub enum Shape {
     /// A point.
     Point(DVec2),
-    /// A line if it is open, and what it encloses if it is closed.
+    /// An outline: a curve if it is open, the enclosed area if it is closed.
     Outline(BaseElement),
-    /// Several of them: an approximant of another fractal. Never none.
+    /// Several outlines: an approximant of another fractal. Never empty.
     Union(Arc<[BaseElement]>),
 }
 
-/// A curve is measured in so many parts.
+/// Number of parts into which the quadrature divides a curve.
 const PARTS: u32 = 16;
 
-/// The nodes and weights of Gauss's quadrature over [0, 1], exact for polynomials of degree 11, as
-/// the area's moments of a cubic outline are.
+/// Nodes and weights of the Gauss–Legendre quadrature over [0, 1] with 6 nodes: exact for polynomials up to
+/// degree 11, which the area moments of a cubic outline have.
 const GAUSS: [(f64, f64); 6] = [
     (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
     (0.169_395_306_766_867_74, 0.180_380_786_524_069_3),
@@ -33,13 +35,13 @@ const GAUSS: [(f64, f64); 6] = [
 ];
 
 impl Shape {
-    /// A line through points, `None` if it has no length or ends where it starts.
+    /// Returns the open polyline through points; `None` if it has no length or ends where it starts.
     #[must_use]
     pub fn polyline(points: &[DVec2]) -> Option<Self> {
         Self::through(points, false)
     }
 
-    /// What a line through points and back to the first encloses; `None` if it has no length.
+    /// Returns the polygon through points; `None` if it has no length.
     #[must_use]
     pub fn polygon(points: &[DVec2]) -> Option<Self> {
         Self::through(points, true)
@@ -51,10 +53,10 @@ impl Shape {
         BaseElement::new(start, pieces, closed).map(Self::Outline)
     }
 
-    /// An ellipse with its half axes, of which the first is turned by an angle in degrees,
-    /// counter-clockwise, from the x axis. `None` if it has no extent.
+    /// Returns an ellipse with its half axes; the first is rotated by an angle in degrees, counter-clockwise,
+    /// from the x axis. `None` if it has no extent.
     ///
-    /// The outline is within 1e-7 of the ellipse, as a multiple of the longer half axis.
+    /// The outline deviates from the ellipse by at most 1e-7 times the longer half axis.
     #[must_use]
     pub fn ellipse(centre: DVec2, half_axes: DVec2, angle: f64) -> Option<Self> {
         let (cosine, sine) = (degrees::cos(angle), degrees::sin(angle));
@@ -69,13 +71,14 @@ impl Shape {
         shape.moments().is_some().then_some(shape)
     }
 
-    /// Mean and covariance of the uniform distribution: along an open outline by length, within a
-    /// closed one by area; in a union by area where all are closed, else by length, to which closed ones
-    /// add their circumference. `None` if something is not finite or a closed outline has no area.
+    /// Returns mean and covariance of the uniform distribution on the shape: along an open outline by length,
+    /// within a closed one by area. In a union it is by area where all outlines are closed, else by length,
+    /// where closed ones contribute their circumference. `None` if a number is not finite, an outline has no
+    /// extent, or a closed outline has no area.
     ///
-    /// Exact to rounding for the outline as it is, but for lengths of curves, where some 9 digits are
-    /// right unless they have sharp bends. A closed outline must not cross itself, else parts count as often as it turns
-    /// around them.
+    /// The moments are exact to rounding, except for lengths of curves, which have about 9 correct digits
+    /// unless the curves have sharp bends. A closed outline must not cross itself; a region counts as often
+    /// as the outline winds around it.
     #[must_use]
     pub fn moments(&self) -> Option<Moments> {
         match self {
@@ -114,7 +117,7 @@ impl Shape {
         }
     }
 
-    /// The number of outlines, or points.
+    /// Returns the number of outlines of a union; 1 for any other shape.
     pub(crate) fn count(&self) -> usize {
         match self {
             Self::Union(outlines) => outlines.len(),
@@ -122,9 +125,10 @@ impl Shape {
         }
     }
 
-    /// The outlines of a union, each with its share of the uniform distribution on it: by area where
-    /// all are closed, else by length, which is the circumference of closed ones; equal shares of
-    /// points. Any other shape has no parts.
+    /// Returns the outlines of a union, each with its weight in the uniform distribution: its area where all
+    /// are closed, else its length, which is the circumference of closed ones; 1 if all stand for points. The
+    /// weights are not normalised. Returns an empty list for any other shape, and where an outline has no
+    /// moments.
     pub(crate) fn shares(&self) -> Vec<(f64, &BaseElement)> {
         let Self::Union(outlines) = self else {
             return Vec::new();
@@ -139,22 +143,23 @@ impl Shape {
     }
 }
 
-/// How large an outline is, and the moments of the uniform distribution on it.
+/// Size of an outline, and the moments of the uniform distribution on it.
 struct Measured {
     length: f64,
-    /// What a closed outline encloses.
+    /// The enclosed area of a closed outline.
     area: Option<f64>,
     moments: Moments,
 }
 
 impl Measured {
-    /// `None` if something is not finite, or a closed outline has no area.
+    /// Measures an outline; `None` if a number is not finite, it has no extent, or it is closed and has no
+    /// area.
     fn of(outline: &BaseElement) -> Option<Self> {
-        // In units of its own, lest squares leave the range of doubles.
+        // The outline is measured in units of its own size: squares could leave the range of doubles.
         let mut bounds = Bounds::EMPTY;
         outline.control_points().for_each(|point| bounds.add(point));
         let size = bounds.size().max_element();
-        // A smaller one is that of a point, rounded.
+        // A subnormal size is that of a point after rounding.
         if !size.is_normal() {
             return None;
         }
@@ -171,7 +176,7 @@ impl Measured {
             for part in 0..parts {
                 for (node, weight) in GAUSS {
                     let (point, velocity) = at(from, piece, (f64::from(part) + node) * share);
-                    // From the start, lest distant shapes lose digits.
+                    // Coordinates relative to the start keep the digits of distant shapes.
                     let (point, velocity) = ((point - outline.start()) / unit, velocity / unit);
                     length.add(point, weight * share * velocity.length());
                     around.add_around(point, weight * share * velocity);
@@ -201,13 +206,14 @@ impl Measured {
         })
     }
 
-    /// Whether it stands for a point: is the shortest line that there is.
+    /// Returns whether the outline stands for a point: whether its length is that of rounding errors at its
+    /// place.
     fn is_point(&self) -> bool {
         self.length <= 1e-15 * (1.0 + self.moments.mean.abs().max_element())
     }
 }
 
-/// As [`Shape::shares`].
+/// Returns the weights of [`Shape::shares`].
 fn shares(measured: &[Measured]) -> Vec<f64> {
     if measured.iter().all(Measured::is_point) {
         return vec![1.0; measured.len()];
@@ -216,7 +222,7 @@ fn shares(measured: &[Measured]) -> Vec<f64> {
     areas.unwrap_or_else(|| measured.iter().map(|outline| outline.length).collect())
 }
 
-/// The moments of a mixture.
+/// Returns the moments of the mixture of outlines; `None` if they are not finite.
 fn union(measured: &[Measured]) -> Option<Moments> {
     let shares = shares(measured);
     let total: f64 = shares.iter().sum();
@@ -237,7 +243,7 @@ fn union(measured: &[Measured]) -> Option<Moments> {
     })
 }
 
-/// Point and velocity of a piece at the time `t` from 0 to 1.
+/// Returns point and velocity of a piece at the parameter `t` from 0 to 1.
 fn at(from: DVec2, piece: &Piece, t: f64) -> (DVec2, DVec2) {
     match *piece {
         Piece::Line(end) => (from.lerp(end, t), end - from),
@@ -250,7 +256,7 @@ fn at(from: DVec2, piece: &Piece, t: f64) -> (DVec2, DVec2) {
     }
 }
 
-/// The integrals of 1, of the points and of their squares.
+/// Integrals of 1, of the points and of their squares.
 struct Sums {
     total: f64,
     first: DVec2,
@@ -270,7 +276,7 @@ impl Sums {
         self.second += square(point) * weight;
     }
 
-    /// Adds what the triangle between a short way and the origin encloses (Green's theorem).
+    /// Adds the integrals over the triangle between a short step `way` and the origin (Green's theorem).
     fn add_around(&mut self, point: DVec2, way: DVec2) {
         let area = point.perp_dot(way) / 2.0;
         self.total += area;

@@ -1,31 +1,33 @@
-//! How much products of linear maps stretch, all of a length at once.
+//! Bounds of the stretch of products of linear maps, for all products of a length at once.
 
 use crate::geometry::{DMat2, DVec2, convex_hull, thinned};
 
-/// Corners that may be mapped, and the longest products.
+/// Limit of the number of corners that are mapped.
 const MOST_WORK: usize = 1 << 20;
+/// Limit of the length of products.
 const MOST_LENGTH: u32 = 20_000;
 
-/// Corners nearer to a side than this multiple of the size are left out.
+/// Distance from a side, as a share of the size, below which corners are left out.
 const FLAT: f64 = 1e-9;
 
-/// Products of a length, of which each shrinks to less than a half.
+/// A length at which every product of linear maps shrinks to at most a half.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shrinking {
     pub(crate) length: u32,
-    /// The most that one of them stretches anything.
+    /// Upper bound of the stretch of a product of this length.
     pub(crate) stretch: f64,
-    /// No less than the sum over all n of the most that products of n maps stretch anything.
+    /// Upper bound of the sum over all n ≥ 0 of the largest stretch of a product of n maps.
     pub(crate) sum: f64,
 }
 
 impl Shrinking {
-    /// The shortest length that is found. In the place of every kind there are images of others, by
-    /// number.
+    /// Returns the shortest length at which the bound is at most 1/2; `None` if none is found within the
+    /// limits. `images` lists for every kind of object the linear maps of its instances and the kinds that
+    /// they instance.
     ///
-    /// The most that products of n maps stretch is how far the images of a disc reach under all of
-    /// them, so the convex hulls of the images are carried on. Once they reach less than 1/2, the rest of
-    /// the sum is no more than what came before.
+    /// The largest stretch of a product of n maps is the reach of a disc's images under all such products, so
+    /// the convex hulls of the images are carried on. Once they reach at most 1/2, the rest of the sum is at
+    /// most the sum so far.
     pub(crate) fn found(images: &[Vec<(DMat2, usize)>]) -> Option<Self> {
         let square = [DVec2::ONE, DVec2::NEG_X + DVec2::Y];
         let square = square.into_iter().flat_map(|corner| [corner, -corner]);
@@ -47,7 +49,7 @@ impl Shrinking {
                 thinned(&convex_hull(points, 0.0), FLAT * size)
             });
             polygons = next.collect();
-            // What was left out may have been stretched as much as anything.
+            // The corners left out may have been stretched by as much as any product.
             let stretch = longest + most * lost;
             lost += dropped;
             if !stretch.is_finite() || work > MOST_WORK {

@@ -1,17 +1,17 @@
-//! A system as a file has it.
+//! An iterated function system with the metadata and the options of its file.
 
 use super::{Contraction, Ifs, IfsError, Shape};
 use crate::geometry::{DVec2, Homothety, convex_hull};
 use crate::heading::Heading;
 
-/// A system, and what its file says beside its mathematics.
+/// A system with the data of its file that do not belong to its mathematics.
 ///
-/// Guarantees: the system does not diverge.
+/// Guarantee: the system does not diverge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
     pub(crate) heading: Heading,
     pub(crate) ifs: Ifs,
-    /// Whether the images of the initial set, in the order of the maps, make one line.
+    /// Whether the images of the initial set, in the order of the maps, form one line.
     pub(crate) chained: bool,
     /// Whether the maps are those of [`interpolate`](super::interpolate).
     pub(crate) interpolates: bool,
@@ -19,25 +19,25 @@ pub struct System {
 }
 
 impl System {
-    /// What files of all kinds say.
+    /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn heading(&self) -> &Heading {
         &self.heading
     }
 
-    /// The system itself.
+    /// Returns the system of maps.
     #[must_use]
     pub fn ifs(&self) -> &Ifs {
         &self.ifs
     }
 
-    /// Whether it contracts, or whether that is undecided.
+    /// Returns the bounds by which the system contracts, or by which contraction is undecided.
     #[must_use]
     pub fn contraction(&self) -> &Contraction {
         &self.contraction
     }
 
-    /// Whether the maps are those of a curve through points, with the weights that
+    /// Returns whether the maps are those of a curve through points, with the weights that
     /// [`interpolate`](super::interpolate) gives them.
     #[must_use]
     pub fn is_interpolation(&self) -> bool {
@@ -55,16 +55,17 @@ impl System {
         })
     }
 
-    /// The system without some maps, and without the edges from and to them. What approximant 0 draws
-    /// stays.
+    /// Returns the system without some maps, and without the edges from and to them. Approximant 0 is
+    /// unchanged.
     ///
     /// # Errors
     ///
-    /// Where what is left is no system: without maps, or with maps that nothing enters or leaves.
+    /// Returns an error where the remaining parts are not a system: no maps, or maps that no edge enters or
+    /// leaves.
     pub fn omitting(&self, maps: &[usize]) -> Result<Self, Vec<IfsError>> {
         let mut definition = self.ifs.definition.clone();
         let stays = |map: usize| !maps.contains(&map);
-        // The new numbers of those that stay.
+        // The new indices of the remaining maps.
         let numbers: Vec<usize> = (0..definition.maps.len())
             .map(|map| (0..map).filter(|&map| stays(map)).count())
             .collect();
@@ -88,7 +89,7 @@ impl System {
 }
 
 impl Ifs {
-    /// `map 2`, or its name.
+    /// Returns a map's name for messages: `map 'name'`, or `map 2` without a name.
     pub(crate) fn map_name(&self, map: usize) -> String {
         let name = self.maps().get(map).and_then(|map| map.name.as_ref());
         name.map_or_else(
@@ -97,14 +98,14 @@ impl Ifs {
         )
     }
 
-    /// `map 2, then map 1`: maps one after the other.
+    /// Returns the name of a product for messages: `map 2, then map 1`.
     pub(crate) fn product_name(&self, word: &[usize]) -> String {
         let names: Vec<_> = word.iter().map(|&map| self.map_name(map)).collect();
         names.join(", then ")
     }
 }
 
-/// The convex hull of points, as a polygon, a segment or a point.
+/// Returns the convex hull of points as a polygon, a segment or a point.
 pub(crate) fn hull(points: &[DVec2]) -> Shape {
     let around = convex_hull(points.to_vec(), 0.0);
     let shape = match around[..] {

@@ -1,43 +1,43 @@
-//! The walk of random iteration as a Markov chain.
+//! The walk of random iteration as a Markov chain, and its stationary weights.
 
 use super::linear::Equations;
 use super::{Ifs, shares};
 use crate::digraph::components;
 
-/// What happens to the point in a step of the walk.
+/// Move of the point in a step of the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// It goes to its image under the map of this number.
+    /// The point goes to its image under the map with this index.
     Map(usize),
-    /// It is drawn anew, uniformly, from the condensation set of this number.
+    /// The point is drawn anew, uniformly, from the condensation set with this index.
     Condensation(usize),
 }
 
 /// A step that the walk may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// What happens.
+    /// Move of the point.
     pub choice: Choice,
-    /// How likely it is, above 0 and up to 1.
+    /// Probability of the step, above 0 and at most 1.
     pub probability: f64,
-    /// The state that the walk is in then.
+    /// State of the walk after the step.
     pub to: usize,
 }
 
-/// The walk of random iteration: states, and from each the steps that may be taken.
+/// The walk of random iteration: states, and the possible steps from each.
 ///
-/// Without a digraph there is one state only. With one, state i is that in which map i was applied
-/// last, and there is one more, in which the point was drawn from a condensation set, if there are
-/// any. A condensation set is picked as often from any state: with the sum of all weights of maps and
-/// condensation sets W, the set with weight w is picked with probability w / W. Else an edge is
-/// picked by its weight, after a condensation set a map by its own.
+/// Without a digraph there is only one state. With one, the walk is in state i after map i was applied, and
+/// in one more state after the point was drawn from a condensation set, if there are any. The probability of
+/// a condensation set is the same in every state: w / W, where w is its weight and W is the sum of all
+/// weights of maps and condensation sets. Otherwise an edge is picked by its weight, or after a condensation
+/// set a map by its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Walk {
     states: Vec<Vec<Step>>,
 }
 
 impl Ifs {
-    /// The walk of random iteration.
+    /// Returns the walk of random iteration.
     #[must_use]
     pub fn walk(&self) -> Walk {
         let maps = self.maps().len();
@@ -55,7 +55,7 @@ impl Ifs {
             })
             .collect();
         let followed: f64 = all[..maps].iter().sum();
-        // Steps to these maps by these weights, or else a condensation set.
+        // Steps to these maps by these weights, and to the condensation sets.
         let steps = |weighted: &[(usize, f64)], state: &dyn Fn(usize) -> usize| {
             let weights: Vec<f64> = weighted.iter().map(|&(_, weight)| weight).collect();
             let shares = shares(&weights).unwrap_or_default();
@@ -87,17 +87,17 @@ impl Ifs {
 }
 
 impl Walk {
-    /// The steps that may be taken from every state; their probabilities add up to 1.
+    /// Returns the possible steps from every state; their probabilities add up to 1.
     #[must_use]
     pub fn states(&self) -> &[Vec<Step>] {
         &self.states
     }
 
-    /// How much of its time a long walk spends in every state: the weights that stay as they are.
+    /// Returns the stationary weights: the share of its time that a long walk spends in every state.
     ///
-    /// They are 0 for states that the walk leaves for ever. `None` if there are several parts of the
-    /// digraph that it cannot leave: where it ends depends on where it starts. The work grows with
-    /// the third power of the number of states.
+    /// The weights of states that the walk leaves for ever are 0. Returns `None` if there are several parts
+    /// of the digraph that the walk cannot leave: its end then depends on its start. The work grows with the
+    /// third power of the number of states.
     #[must_use]
     pub fn stationary(&self) -> Option<Vec<f64>> {
         let size = self.states.len();
@@ -109,7 +109,7 @@ impl Walk {
                 equations.add(step.to, state, -step.probability);
             }
         }
-        // One of the equations follows from the others: the sum takes its place.
+        // One of the equations follows from the others; the sum of all weights replaces it.
         let replaced = final_states.iter().position(|&last| last)?;
         equations.clear(replaced);
         for state in 0..size {
@@ -123,7 +123,8 @@ impl Walk {
         Some(weights)
     }
 
-    /// Which states belong to the part that cannot be left, if there is one only.
+    /// Returns for each state whether it belongs to the part that cannot be left; `None` if there are several
+    /// such parts.
     fn final_states(&self) -> Option<Vec<bool>> {
         let targets = self.states.iter();
         let targets = targets.map(|steps| steps.iter().map(|step| step.to).collect());
