@@ -1,19 +1,19 @@
-//! How large an SVG or a PNG will be, and how long drawing it takes, before anything is grown.
+//! Estimates the size of an SVG or a PNG, and the time that drawing it takes, before anything is grown.
 //!
-//! Path data are whole hundredths of a pixel, written as differences. A side of ℓ hundredths that
-//! runs in any direction has
+//! Path data are whole hundredths of a pixel, written as differences. A side of ℓ hundredths that runs in any
+//! direction has
 //!
-//! - 1 + Σ (2/π) arccos(10^k / ℓ) digits a coordinate, over the k ≥ 1 with 10^k < ℓ, and a sign or
-//!   a space before each;
-//! - the chance (4ℓ − ℓ²)/π, up to 1, to end in another hundredth than it starts (Buffon's needle on a
-//!   square grid); else it is not written at all.
+//! - 1 + Σ (2/π) arccos(10^k / ℓ) digits a coordinate, over the k ≥ 1 with 10^k < ℓ, and a sign or a space
+//!   before each;
+//! - the probability (4ℓ − ℓ²)/π, for ℓ below 1, to end in another hundredth than it starts (Buffon's needle
+//!   on a square grid); sides that do not are not written at all.
 //!
-//! The lengths of an object's elements are taken to be distributed log-normally, with their true mean
-//! and mean square. From 1,000 elements on, the estimate of an SVG's size is within a factor of 1.5 for
-//! the rules of the library.
+//! The lengths of an object's elements are taken to be distributed log-normally, with their true mean and
+//! mean square. From 1,000 elements on, the estimate of an SVG's size is within a factor of 1.5 for the rules
+//! of the library.
 //!
-//! A PNG takes a byte for every thousand or so of one colour, the most that its compression makes of
-//! runs, and some three for every pixel of an edge between two.
+//! A PNG takes a byte for about every thousand pixels of one colour, the maximum that its compression makes
+//! of runs, and about three bytes for every pixel of an edge between two colours.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 use std::io::{self, Write};
@@ -25,48 +25,48 @@ use crate::render::{self, Canvas, Format, Options};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Width};
 
-/// What drawing an approximant takes.
+/// Cost of drawing an approximant: sizes of the files and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The size of the SVG in bytes.
+    /// Size of the SVG in bytes.
     pub svg_bytes: f64,
-    /// The size of a PNG in bytes, within a factor of some 3; much less is needed where lines lie over
-    /// each other, shapes side by side, or edges along rows and columns.
+    /// Size of a PNG in bytes, within a factor of about 3. Much less is needed where lines lie over each
+    /// other, shapes lie side by side, or edges run along rows and columns.
     pub png_bytes: f64,
-    /// The time that making the SVG takes, in seconds: a guess within a factor of
-    /// some 3, for one processor of 2026.
+    /// Time to make the SVG, in seconds: a guess within a factor of about 3, for one processor of 2026.
     pub seconds: f64,
 }
 
-/// Units of path data to a pixel.
+/// Units of path data per pixel.
 const FINE: f64 = 100.0;
 
-/// Elements that one processor of 2026 walks over in a second, one by one and by blocks, and bytes
-/// that it writes.
+/// Elements per second that one processor of 2026 walks over singly (`WALK`) and by blocks (`BLOCKS`), and
+/// bytes per second that it writes (`TEXT`).
 const WALK: f64 = 1.5e7;
 const BLOCKS: f64 = 1e8;
 const TEXT: f64 = 2.5e8;
 
-/// What it takes to pass over a block that has nothing of the class that is being drawn.
+/// Cost of passing over a block without elements of the class that is being drawn, relative to walking over
+/// it.
 const PASSED: f64 = 0.02;
 
-/// Pixels of one colour that a byte stands for, and bytes of a pixel of an edge.
+/// Pixels of one colour per byte of a PNG, and bytes per pixel of an edge.
 const RUN: f64 = 1_000.0;
 const EDGE: f64 = 2.8;
-/// Strokes of more pixels have two edges.
+/// Widest stroke, in pixels, that counts as one edge; wider ones have two.
 const THIN: f64 = 3.0;
 
-/// The frame of a document: its tags, its labels and the attributes of its groups.
+/// Bytes of an SVG document without paths: its tags, its labels and the attributes of its groups.
 const DOCUMENT: f64 = 1_000.0;
-/// The tag of a path, and of one with a width of its own.
+/// Bytes of the tag of a path, and of one with a width of its own.
 const PATH: f64 = 14.0;
 const WIDE_PATH: f64 = 34.0;
 
-/// About the bytes of an SVG of nested instances, of which few are written to know it; `None` where it
-/// cannot be made, or not without growing more than that.
+/// Estimates the bytes of an SVG of nested instances by writing one of at most 32 steps to a counter. Returns
+/// `None` where the file cannot be made, or not without growing more than 20,000 elements.
 #[must_use]
 pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
-    /// From so many steps on, as many more take as much more as the last ones did.
+    /// Beyond twice this number of steps, the size is extrapolated linearly from the last `SPAN` steps.
     const SPAN: u32 = 16;
     let [before, known] = [steps.min(SPAN), steps.min(2 * SPAN)];
     let bytes = instanced_bytes_written(graph, options, known)?;
@@ -105,23 +105,23 @@ fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Opti
     Some(DOCUMENT + length.0 as f64)
 }
 
-/// Estimates what pictures of a graph take.
+/// Estimates the cost of pictures of a graph.
 pub struct Estimator<'a> {
     graph: &'a Graph,
     options: &'a Options,
 }
 
 impl<'a> Estimator<'a> {
-    /// An estimator of pictures that are made with these options.
+    /// Creates an estimator of pictures that are made with these options.
     #[must_use]
     pub fn new(graph: &'a Graph, options: &'a Options) -> Self {
         Self { graph, options }
     }
 
-    /// What an approximant takes whose box, without strokes, is known (give or take a little).
+    /// Estimates the cost of an approximant whose box, without strokes, is known approximately.
     ///
-    /// `None` where lengths depend on draws, where there is no room for a picture, or where numbers
-    /// are beyond a double's range.
+    /// Returns `None` where lengths depend on draws, where the canvas has no room for a picture, or where
+    /// numbers exceed the range of a double.
     #[must_use]
     pub fn at(&self, forecast: &Forecast<'_>, bounds: &Bounds) -> Option<Estimate> {
         let view = &self.options.view;
@@ -135,7 +135,7 @@ impl<'a> Estimator<'a> {
         let mut bytes = DOCUMENT + PATH * fractals;
         if let Width::Relative(width) = self.options.style.width {
             let [count, length] = forecast.new_lengths();
-            // Widths below a hundredth of a pixel are all the same.
+            // All widths below a hundredth of a pixel are written alike.
             if width * length * canvas.scale() * FINE > count {
                 bytes += WIDE_PATH * count;
             }
@@ -157,7 +157,7 @@ impl<'a> Estimator<'a> {
         let walk = if !self.graph.counts_index() {
             (1.0 + PASSED * classes) / BLOCKS
         } else {
-            // The survey is a walk as well.
+            // The prepass is a walk as well.
             (1.0 + classes) / WALK
         };
         let seconds = elements * walk + bytes / TEXT;
@@ -169,15 +169,15 @@ impl<'a> Estimator<'a> {
         })
     }
 
-    /// The bytes of a PNG with outlines of a length in pixels.
+    /// Estimates the bytes of a PNG with outlines of a total length in pixels.
     fn png(&self, canvas: &Canvas, outlines: f64) -> f64 {
         let [width, height] = canvas.size().map(f64::from);
         let edges = match self.options.style.width {
             Width::Pixels(width) if width > THIN => 2.0,
             _ => 1.0,
         };
-        // Of many colours, each pixel is told by three bytes, else by one; where edges lie along rows and
-        // columns, three are no more than one.
+        // A pixel takes three bytes where there are many colours, else one; where edges run along rows and
+        // columns, three compress as well as one.
         let [bytes, edges] = match self.options.style.color_by {
             ColorBy::None => [1.0, EDGE * edges],
             _ => [3.0, 2.0 * EDGE * edges],
@@ -186,7 +186,7 @@ impl<'a> Estimator<'a> {
         bytes * pixels / RUN + (edges * outlines).min(bytes * pixels)
     }
 
-    /// The number of classes of colour, each of which is a walk.
+    /// Returns the number of classes of colour, each of which takes a walk; at most 64.
     fn classes(&self, step: u32, fractals: f64) -> f64 {
         let classes = match self.options.style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => 1.0,
@@ -201,7 +201,7 @@ impl<'a> Estimator<'a> {
         classes.min(64.0)
     }
 
-    /// The bytes that elements of one object take.
+    /// Estimates the bytes that the elements of one object take.
     fn population(&self, population: &Population, canvas: &Canvas) -> f64 {
         let object = &self.graph.objects()[population.object];
         if !object.visible || population.count == 0.0 {
@@ -216,7 +216,7 @@ impl<'a> Estimator<'a> {
         let apart = ((population.apart + parted) / population.count).min(1.0);
         let mean = population.length / population.count;
         let variance = libm::log(population.square / population.count / (mean * mean)).max(0.0);
-        // Three nodes of Gauss and Hermite.
+        // Gauss–Hermite quadrature with three nodes.
         let deviations = [(-3.0f64.sqrt(), 1.0), (0.0, 4.0), (3.0f64.sqrt(), 1.0)];
         let sum = deviations.iter().map(|(deviation, weight)| {
             let length = mean * libm::exp(deviation * variance.sqrt() - variance / 2.0);
@@ -226,7 +226,7 @@ impl<'a> Estimator<'a> {
     }
 }
 
-/// The length of an outline as a multiple of its element's, curves as their chords.
+/// Returns the length of an outline as a multiple of its element's length; curves count as their chords.
 fn around(base_element: &BaseElement) -> f64 {
     let mut pen = base_element.start();
     let sides = base_element.pieces().iter().map(|piece| {
@@ -237,11 +237,11 @@ fn around(base_element: &BaseElement) -> f64 {
     sides.sum()
 }
 
-/// The bytes of an element of a length in hundredths of a pixel, whose line begins with it at a
-/// probability.
+/// Estimates the bytes of an element of a length in hundredths of a pixel; `apart` is the probability that a
+/// new line begins with it.
 fn element(base_element: &BaseElement, length: f64, apart: f64, canvas: &Canvas) -> f64 {
     let [width, height] = canvas.size().map(f64::from);
-    // M, two numbers, a space, and the letter of what follows.
+    // M, two numbers, a space, and the letter of the next command.
     let start = 3.5 + digits_below(width * FINE) + digits_below(height * FINE);
     let mut pen = base_element.start();
     let mut bytes = if base_element.is_closed() {
@@ -268,7 +268,7 @@ fn element(base_element: &BaseElement, length: f64, apart: f64, canvas: &Canvas)
     bytes
 }
 
-/// The chance that a side of a length ends in another hundredth of a pixel than it starts.
+/// Returns the probability that a side of a length ends in another hundredth of a pixel than it starts.
 fn moves(length: f64) -> f64 {
     if length < 1.0 {
         length * (4.0 - length) / PI
@@ -277,7 +277,7 @@ fn moves(length: f64) -> f64 {
     }
 }
 
-/// The bytes of the differences along a side.
+/// Returns the expected bytes of the two differences along a side.
 fn pair(length: f64) -> f64 {
     let mut digits = 1.0;
     let mut power = 10.0;
@@ -288,7 +288,7 @@ fn pair(length: f64) -> f64 {
     2.0 * (digits + 1.0)
 }
 
-/// The mean number of digits of the numbers from 0 to a largest one.
+/// Returns the mean number of digits of the numbers from 0 to `largest`.
 fn digits_below(largest: f64) -> f64 {
     let mut digits = 1.0;
     let mut power = 10.0;

@@ -8,17 +8,17 @@ use crate::grow::{Progress, WalkError};
 
 use super::Format;
 
-/// Rows between two looks at whether to go on.
+/// Rows between two checks for cancellation.
 const MANY: u64 = 1 << 12;
 
-/// Writes the points of a walk, a row each in their order: where a point lies, and by which map it
-/// has come there, from 1; the condensation sets follow the maps.
+/// Writes the points of a random walk as rows, in their order: the point's coordinates, and the number, from
+/// 1, of the map that produced it; condensation sets are numbered after the maps.
 ///
 /// Coordinates are the shortest decimals that read back as the same doubles.
 ///
 /// # Errors
 ///
-/// If it is cancelled, or if `out` fails.
+/// Returns an error if the walk is cancelled, or if `out` fails.
 pub fn write_points(
     points: impl Iterator<Item = Point>,
     format: Format,

@@ -10,19 +10,19 @@ use crate::grow::{
 };
 use crate::parallel::with_team;
 
-/// How the rows of a table are written.
+/// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Comma-separated values with a header.
     Csv,
-    /// One JSON object a line.
+    /// One JSON object per line.
     JsonLines,
 }
 
-/// The columns: the fractal's number and age; the element's rank in it, its first and last point
-/// of traversal in the model's units, whether it is fertile, its direction, whether it is visible.
+/// Columns: the number and age of the fractal; the element's rank in it, its first and last point of
+/// traversal in the model's units, whether it is fertile, its direction, whether it is visible.
 ///
-/// Where maps may be any affine ones, six columns follow: x' = a x + c y + e, y' = b x + d y + f.
+/// Where maps may be arbitrary affine ones, six columns follow: x' = a x + c y + e, y' = b x + d y + f.
 const COLUMNS: [&str; 16] = [
     "fractal",
     "age",
@@ -42,17 +42,17 @@ const COLUMNS: [&str; 16] = [
     "f",
 ];
 
-/// The columns of what has similarities only.
+/// Number of columns of a table of similarities.
 const WITHOUT_MAPS: usize = 10;
 
-/// Grows a graph and writes the elements of the approximant, a row each, in order of traversal.
+/// Grows a graph and writes the elements of the approximant as rows, in order of traversal.
 ///
-/// Coordinates are the shortest decimals that read back as the same doubles. The bytes do not depend
-/// on the number of threads.
+/// Coordinates are the shortest decimals that read back as the same doubles. The bytes do not depend on the
+/// number of threads.
 ///
 /// # Errors
 ///
-/// If growing ends early, if an element has no finite coordinates, or if `out` fails.
+/// Returns an error if growing ends early, if an element has no finite coordinates, or if `out` fails.
 pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -102,10 +102,10 @@ pub fn write(
     })
 }
 
-/// About so many rows are written at once.
+/// Approximate number of rows that are written at once.
 const MANY: u64 = 1 << 12;
 
-/// What a row tells.
+/// The cells of a row.
 struct Row {
     fractal: Fractal,
     index: u128,
@@ -116,7 +116,7 @@ struct Row {
     map: Option<[f64; 6]>,
 }
 
-/// Rows, and the text that they become.
+/// Rows, and the text that is made of them.
 struct Rows {
     format: Format,
     rows: Vec<Row>,
@@ -144,7 +144,7 @@ impl Rows {
     }
 }
 
-/// Writes the cells of rows.
+/// Writes the cells of rows as text.
 struct Cells<'t> {
     format: Format,
     text: &'t mut Vec<u8>,
@@ -207,7 +207,7 @@ impl Cells<'_> {
 struct Collector<'g> {
     graph: &'g Graph,
     fractal: Fractal,
-    /// The number of rows whose fractal has not begun in the span.
+    /// Number of leading rows whose fractal began before the span.
     goes_on: usize,
     rows: Vec<Row>,
 }

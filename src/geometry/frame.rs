@@ -1,14 +1,16 @@
+//! Frames: the placement of an element in the plane, as a map of the unit frame and a direction.
+
 use glam::{DAffine2, DMat2, DVec2};
 
 use super::Direction;
 
-/// The message about elements whose frames are not [in range](Frame::is_in_range).
+/// Message for an element whose frame is not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
 
-/// Where an element stands: the map from the unit frame, and the direction along the element's path.
+/// The frame of an element: the map from the unit frame, and the direction along the element's path.
 ///
-/// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of
-/// traversal p0 and p1 and the direction d, the map is M(z) = p0 + (p1 − p0)·τ_d(z).
+/// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of traversal p0
+/// and p1 and the direction d, the map is M(z) = p0 + (p1 − p0)·τ_d(z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The map from the unit frame to the plane.
@@ -24,7 +26,7 @@ impl Frame {
         direction: Direction::Normal,
     };
 
-    /// The frame of an element that runs from `from` to `to`, as listed, with a direction.
+    /// Returns the frame of an element that runs from `from` to `to`, as listed, with a direction.
     #[must_use]
     pub fn between(from: DVec2, to: DVec2, direction: Direction) -> Self {
         Self {
@@ -33,7 +35,7 @@ impl Frame {
         }
     }
 
-    /// The frame of an element that stands at `inner` in this frame's unit frame.
+    /// Returns the frame, in the plane, of an element whose frame relative to this one is `inner`.
     #[inline]
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
@@ -43,7 +45,7 @@ impl Frame {
         }
     }
 
-    /// The first and the last point of traversal, p0 and p1.
+    /// Returns the first and the last point of traversal, p0 and p1.
     #[inline]
     #[must_use]
     pub fn ends(&self) -> [DVec2; 2] {
@@ -56,8 +58,8 @@ impl Frame {
         }
     }
 
-    /// Returns `true` if the squares of all entries are within the range of doubles, as lengths and areas
-    /// need.
+    /// Returns `true` if the squares of all entries of the map are within the range of doubles, as lengths
+    /// and areas need.
     #[inline]
     #[must_use]
     pub fn is_in_range(&self) -> bool {
@@ -65,11 +67,11 @@ impl Frame {
         let largest = self.map.translation.abs().max_element();
         let linear = self.map.matrix2;
         let largest = largest.max(linear.x_axis.abs().max(linear.y_axis.abs()).max_element());
-        // Minima and maxima pass over what is not a number.
+        // Minima and maxima ignore NaN.
         largest < LARGEST && self.map.is_finite()
     }
 
-    /// |p1 − p0|.
+    /// Returns |p1 − p0|.
     #[inline]
     #[must_use]
     pub fn length(&self) -> f64 {
@@ -78,13 +80,13 @@ impl Frame {
         if length.is_finite() {
             length
         } else {
-            // The square alone may be beyond the range of doubles.
+            // The square alone may overflow.
             libm::hypot(axis.x, axis.y)
         }
     }
 
-    /// The most that the map makes anything longer: its larger singular value. For a similarity it
-    /// is the length.
+    /// Returns the largest factor by which the map lengthens a vector: its larger singular value. For a
+    /// similarity it is the length.
     #[inline]
     #[must_use]
     pub fn stretch(&self) -> f64 {
@@ -92,11 +94,11 @@ impl Frame {
     }
 }
 
-/// The most that a linear map makes anything longer: its larger singular value.
+/// Returns the larger singular value of a linear map: the largest factor by which it lengthens a vector.
 #[inline]
 pub(crate) fn stretch(matrix: &DMat2) -> f64 {
     let (x, y) = (matrix.x_axis, matrix.y_axis);
-    // The parts that keep and that reverse the sense of rotation; of a similarity one is zero.
+    // The components that preserve and that reverse the sense of rotation; one is zero for a similarity.
     let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
     let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
     if reversed == 0.0 {
@@ -106,7 +108,7 @@ pub(crate) fn stretch(matrix: &DMat2) -> f64 {
     }
 }
 
-/// The similarity z → from + (to − from)·τ_d(z) that puts an element of a generator into place.
+/// Returns the similarity z → from + (to − from)·τ_d(z) that puts an element of a generator into place.
 #[must_use]
 pub fn placement(from: DVec2, to: DVec2, direction: Direction) -> DAffine2 {
     let along = to - from;

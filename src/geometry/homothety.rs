@@ -56,7 +56,7 @@ impl Homothety {
         point * self.ratio() + self.shift
     }
 
-    /// Returns the image of a box; that of the empty box is empty.
+    /// Returns the image of a box, which is empty if the box is.
     #[must_use]
     pub fn bounds(&self, bounds: &Bounds) -> Bounds {
         if bounds.is_empty() {
@@ -68,7 +68,7 @@ impl Homothety {
     /// Returns the preimage of a point.
     #[must_use]
     pub fn origin_of(&self, point: DVec2) -> DVec2 {
-        // Both are small enough by then for their difference not to overflow.
+        // After the division the difference of the two cannot overflow, but before it can.
         (point - self.shift) / self.ratio()
     }
 
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn maps_about_a_far_point_are_maps_about_the_origin() {
-        // Of a third, the double is wrong by 1e-17, and its shift by as much of 10¹².
+        // A third is wrong by 1e-17 as a double, and its multiple by 10¹² by as much times 10¹².
         let at = DVec2::new(1e12, -3e11);
         for part in [0.5, 0.3, -0.7] {
             let linear = DMat2::from_cols(DVec2::new(part, 0.1), DVec2::new(-0.1, part));

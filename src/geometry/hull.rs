@@ -1,8 +1,12 @@
+//! Convex hulls of points, and distances to polygons and segments.
+
 use glam::DVec2;
 
-/// The corners of the convex hull of points, counter-clockwise from the leftmost (Andrew's monotone
-/// chain, 1979). Points nearer each other than `tolerance` are one, and corners nearer than that to the
-/// line past them are none.
+/// Computes the corners of the convex hull of points, counter-clockwise from the leftmost (Andrew's monotone
+/// chain, 1979).
+///
+/// A point within `tolerance` of its predecessor in the order of x is dropped, and so is a corner within
+/// `tolerance` of the line through its neighbours.
 pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup_by(|a, b| a.distance(*b) <= tolerance);
@@ -30,8 +34,7 @@ pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> 
     corners
 }
 
-/// Leaves out corners of a convex polygon that are no farther than `tolerance` from the sides that
-/// take their place.
+/// Drops corners of a convex polygon that are no farther than `tolerance` from the sides that replace them.
 pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut kept: Vec<DVec2> = Vec::with_capacity(corners.len());
     let mut first = 0;
@@ -51,7 +54,7 @@ pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     kept
 }
 
-/// How far a point is from a convex polygon, which it may lie in.
+/// Returns the distance of a point to a convex polygon given counter-clockwise: 0 inside.
 pub(crate) fn distance_to_hull(point: DVec2, corners: &[DVec2]) -> f64 {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let (mut nearest, mut is_inside) = (f64::INFINITY, corners.len() > 2);
@@ -62,7 +65,7 @@ pub(crate) fn distance_to_hull(point: DVec2, corners: &[DVec2]) -> f64 {
     if is_inside { 0.0 } else { nearest }
 }
 
-/// How far a point is from a segment.
+/// Returns the distance of a point to a segment.
 pub(crate) fn distance_to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
     let along = to - from;
     let square = along.length_squared();

@@ -1,8 +1,8 @@
-//! Sets of boxes as bits: the boxes of one size that hold something, folded to larger boxes.
+//! Sets of boxes as bits: the occupied boxes of one size, which can be folded to larger boxes.
 
 mod dilation;
 
-/// Boxes in rows, a bit for each: set where the box holds something.
+/// Boxes in rows, a bit for each: set where the box is occupied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
     width: usize,
@@ -12,7 +12,7 @@ pub struct Bits {
 }
 
 impl Bits {
-    /// No box of so many in a row and so many rows holds anything.
+    /// Creates a set of `width` × `height` empty boxes.
     #[must_use]
     pub fn new(width: usize, height: usize) -> Self {
         Self {
@@ -22,11 +22,12 @@ impl Bits {
         }
     }
 
-    /// The boxes whose bytes are at a threshold or above; rows follow each other without gaps.
+    /// Creates the set of the boxes whose bytes are at or above a threshold; rows follow each other without
+    /// gaps.
     ///
     /// # Panics
     ///
-    /// If there are not width × height bytes.
+    /// Panics if there are not width × height bytes.
     #[must_use]
     pub fn of_bytes(bytes: &[u8], width: usize, height: usize, threshold: u8) -> Self {
         assert_eq!(bytes.len(), width * height, "a byte for every box");
@@ -49,40 +50,40 @@ impl Bits {
         bits
     }
 
-    /// Boxes in a row.
+    /// Returns the number of boxes in a row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Says that a box holds something.
+    /// Sets a box.
     ///
     /// # Panics
     ///
-    /// If there is no such box.
+    /// Panics, or sets another bit, if the place is outside.
     #[inline]
     pub fn set(&mut self, column: usize, row: usize) {
         self.words[row * self.width.div_ceil(64) + column / 64] |= 1 << (column % 64);
     }
 
-    /// Whether a box holds something.
+    /// Returns `true` if a box is set.
     ///
     /// # Panics
     ///
-    /// If there is no such box.
+    /// Panics, or reads another bit, if the place is outside.
     #[inline]
     #[must_use]
     pub fn get(&self, column: usize, row: usize) -> bool {
         self.words[row * self.width.div_ceil(64) + column / 64] >> (column % 64) & 1 == 1
     }
 
-    /// Sets a box, if there is such a one.
+    /// Sets a box, if it is inside.
     #[inline]
     pub(super) fn mark(&mut self, place: [i64; 2]) {
         if let Some([column, row]) = self.inside(place) {
@@ -90,7 +91,7 @@ impl Bits {
         }
     }
 
-    /// Whether all boxes from one to another are set, as far as there are such.
+    /// Returns `true` if all boxes from `low` to `high` that are inside are set.
     #[inline]
     pub(super) fn are_marked(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         let is_marked = |place| {
@@ -108,22 +109,22 @@ impl Bits {
         (column < self.width && row < self.height).then_some([column, row])
     }
 
-    /// The words of a row.
+    /// Returns the words of a row.
     #[must_use]
     pub fn row(&self, row: usize) -> &[u64] {
         let stride = self.width.div_ceil(64);
         &self.words[row * stride..][..stride]
     }
 
-    /// How many boxes hold something.
+    /// Returns the number of boxes that are set.
     #[must_use]
     pub fn count(&self) -> u64 {
         let ones = self.words.iter().map(|word| u64::from(word.count_ones()));
         ones.sum()
     }
 
-    /// Boxes twice as large: the first of a row or column holds two smaller ones, or only one where
-    /// the grid is shifted.
+    /// Returns the set in boxes twice as large. The first box of a row or column covers two smaller ones, or
+    /// only one where the grid is shifted.
     #[must_use]
     pub fn folded(&self, shift: [bool; 2]) -> Self {
         let [left, top] = shift.map(usize::from);
@@ -139,7 +140,7 @@ impl Bits {
             .chunks_exact_mut(width.div_ceil(64))
             .enumerate()
         {
-            // Of the two rows, one may lie outside.
+            // One of the two rows may lie outside.
             let below = 2 * number + 1 - top;
             let upper = match below.checked_sub(1) {
                 Some(above) => self.row(above),
@@ -155,12 +156,12 @@ impl Bits {
         folded
     }
 
-    /// Boxes `side` times as large, on a grid that begins `shift` boxes (fewer than `side`) before
-    /// these in both directions.
+    /// Returns the set in boxes `side` times as large, on a grid that begins `shift` boxes (fewer than
+    /// `side`) before this one in both directions.
     ///
     /// # Panics
     ///
-    /// If the side is 0 or the shift too large.
+    /// Panics if a shift is not smaller than the side.
     #[must_use]
     pub fn coarser(&self, side: usize, shift: [usize; 2]) -> Self {
         assert!(
@@ -193,13 +194,14 @@ impl Bits {
     }
 }
 
-/// Of eight bytes, whether each is at a threshold or above, as bits: all at once in one word.
+/// Compares eight bytes with a threshold: bit n is set if byte n is at or above it. All eight are compared in
+/// one word.
 #[inline]
 fn flags(bytes: [u8; 8], threshold: u8) -> u64 {
     const ONES: u64 = 0x0101_0101_0101_0101;
     const HIGH: u64 = 0x80 * ONES;
     let bytes = u64::from_le_bytes(bytes);
-    // The lower seven bits are compared by a subtraction that takes nothing from the next byte.
+    // The lower seven bits are compared by a subtraction that borrows nothing from the next byte.
     let lower = (bytes | HIGH) - u64::from(threshold & 0x7f) * ONES;
     let reached = if threshold < 0x80 {
         bytes | lower
@@ -210,7 +212,7 @@ fn flags(bytes: [u8; 8], threshold: u8) -> u64 {
     ((reached & HIGH) >> 7).wrapping_mul(0x0102_0408_1020_4080) >> 56
 }
 
-/// Whether a bit from one place to before another is set.
+/// Returns `true` if a bit in `from..to` is set.
 fn any(words: &[u64], from: usize, to: usize) -> bool {
     if from >= to {
         return false;
@@ -228,7 +230,7 @@ fn any(words: &[u64], from: usize, to: usize) -> bool {
     })
 }
 
-/// Folds two rows to one of boxes twice as large.
+/// Folds two rows to one row of boxes twice as large.
 fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
     let mut carried = 0;
     let mut both = upper.iter().zip(lower).map(|(upper, lower)| {
@@ -243,14 +245,14 @@ fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
         *word = low.unwrap_or_default() | high.unwrap_or_default() << 32;
     }
     drop(both);
-    // The last box may hold nothing but what was shifted out.
+    // The last box may hold only the bit that was shifted out.
     if carried == 1 {
         let words = upper.len();
         folded[words / 2] |= 1 << (32 * (words % 2));
     }
 }
 
-/// Every other bit, from the lowest on, in the lower half.
+/// Gathers every other bit, from the lowest on, in the lower half.
 #[inline]
 fn halved(word: u64) -> u64 {
     let mut word = word & 0x5555_5555_5555_5555;

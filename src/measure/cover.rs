@@ -1,4 +1,4 @@
-//! Covers by boxes of many sizes, on grids that are moved and turned.
+//! Covers by boxes of many sizes, on grids that are shifted and turned.
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,45 +7,46 @@ use std::thread;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::whole::whole;
 
-/// How a set is covered by boxes of one size.
+/// Cover of a set by boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// The side of a box, in the units of the set.
+    /// Side of a box, in the units of the set.
     pub size: f64,
-    /// The number of boxes of the least cover that was found, or what a sample tells it to be.
+    /// Number of boxes of the smallest cover that was found, or its estimate from a sample.
     pub count: u64,
-    /// The standard deviation of the natural logarithm of the count among all grids.
+    /// Standard deviation of the natural logarithm of the count over all grids.
     pub scatter: f64,
-    /// How much the logarithm of the count grows since the size before: of the least covers, or on the
-    /// mean of all grids where counts come from a sample.
+    /// Growth of the natural logarithm of the count since the previous size: of the smallest covers, or of
+    /// the mean over all grids where counts come from a sample.
     pub growth: f64,
-    /// The standard error of the growth.
+    /// Standard error of the growth.
     pub growth_error: f64,
-    /// Whether the count comes from a sample of boxes.
+    /// Whether the count is estimated from a sample of boxes.
     pub sampled: bool,
 }
 
-/// How a grid lies on a set.
+/// Position of a grid relative to a set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// By how much the set is turned against the grid: radians, counter-clockwise, below π/2.
+    /// Angle by which the set is turned against the grid: radians, counter-clockwise, from 0 to below π/2.
     pub angle: f64,
-    /// How far the grid begins below and left of the set, in parts of the largest box, from 0 to 1.
+    /// Distance at which the grid begins left of and below the set, as a fraction of the largest box, from 0
+    /// to 1.
     pub shift: DVec2,
 }
 
 impl Grid {
-    /// Along the axes, from the lower left corner of the set.
+    /// The grid along the axes, from the lower left corner of the set.
     pub const ALONG: Self = Self {
         angle: 0.0,
         shift: DVec2::ZERO,
     };
 
-    /// So many grids: the first along the axes from the lower left corner of the set, the others
-    /// spread evenly (by the golden section and its like in two dimensions).
+    /// Creates `count` grids: the first along the axes from the lower left corner of the set, the others
+    /// spread evenly (by the golden section and its analogue in two dimensions).
     #[must_use]
     pub fn spread(count: NonZero<usize>) -> Vec<Self> {
-        // The positive roots of x² = x + 1 and x³ = x + 1, inverted.
+        // The reciprocals of the positive roots of x² = x + 1 and x³ = x + 1.
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         const PLASTIC: f64 = 0.754_877_666_246_692_7;
         let spread = (0..count.get()).map(|number| {
@@ -59,10 +60,10 @@ impl Grid {
         spread.collect()
     }
 
-    /// The map from the plane to a grid of boxes of side 1 that covers a turned box, and the numbers
-    /// of its columns and rows. The largest box has a side of `largest`.
+    /// Returns the map from the plane to a grid of boxes of side 1 that covers a turned box, and the numbers
+    /// of its columns and rows. Before the map, boxes have the side `size`, and the largest ones `largest`.
     pub(super) fn map(&self, turned: &Bounds, size: f64, largest: f64) -> (DAffine2, [usize; 2]) {
-        // What lies on the rim of the set must not open new boxes because of rounding.
+        // Points on the rim of the set must not open new boxes because of rounding.
         const HAIR: f64 = 1e-9;
         let hair = HAIR * turned.size().max_element();
         let corner = turned.min() - hair - self.shift * largest;
@@ -73,14 +74,14 @@ impl Grid {
         (map, extent.to_array().map(boxes))
     }
 
-    /// The turn alone.
+    /// Returns the rotation by which the set is turned.
     pub(super) fn turn(&self) -> crate::geometry::DMat2 {
         let (sin, cos) = libm::sincos(self.angle);
         crate::geometry::DMat2::from_cols(DVec2::new(cos, sin), DVec2::new(-sin, cos))
     }
 }
 
-/// How many boxes hold an extent.
+/// Returns the number of boxes of side 1 that cover an extent.
 fn boxes(extent: f64) -> usize {
     whole(extent.ceil()).max(1)
 }
@@ -119,10 +120,10 @@ pub(super) fn on_all<G: Sync, T: Send>(
     told.into_iter().map(|(_, told)| told).collect()
 }
 
-/// Counts the boxes of all sizes on all grids, and keeps the least count of every size.
+/// Counts the boxes of all sizes on all grids, and keeps the smallest count of every size.
 ///
-/// `count` tells the counts for the sizes on one grid; where it ends early, so do the sizes. The result
-/// does not depend on the threads.
+/// `count` returns the counts for the sizes on one grid; sizes beyond the shortest of these lists are
+/// dropped. The result does not depend on the number of threads.
 pub(super) fn least(
     sizes: &[f64],
     grids: &[Grid],
@@ -157,7 +158,7 @@ fn logarithm(count: u64) -> f64 {
     libm::log(count.max(1) as f64)
 }
 
-/// The standard deviation of some values; 0 of fewer than two.
+/// Returns the standard deviation of values; 0 for fewer than two.
 pub(super) fn deviation(values: impl Iterator<Item = f64>) -> f64 {
     let values: Vec<f64> = values.collect();
     if values.len() < 2 {
@@ -170,7 +171,7 @@ pub(super) fn deviation(values: impl Iterator<Item = f64>) -> f64 {
     (squares.sum::<f64>() / freedom).sqrt()
 }
 
-/// The mean of some values.
+/// Returns the mean of values.
 #[expect(clippy::cast_precision_loss, reason = "grids are few")]
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64

@@ -1,4 +1,4 @@
-//! How far two sets are apart: both are covered by points, and the points compared.
+//! The Hausdorff distance of two sets: both are covered by points, and the points are compared.
 
 mod cover;
 mod hausdorff;

@@ -1,4 +1,5 @@
-//! Points near a limit set that has to be grown: where maps are drawn, or change from step to step.
+//! Points near a limit set that has to be grown because its maps are drawn by chance or change from step to
+//! step.
 
 use std::convert::Infallible;
 
@@ -6,22 +7,24 @@ use crate::geometry::DVec2;
 use crate::graph::{Graph, Replacement};
 use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, WalkError, walk};
 
-/// Points near the limit set of one draw, and how near.
+/// Points near the limit set of one draw, and their resolution.
 #[derive(Clone, Debug)]
 pub struct Grown {
-    /// The middles of fertile elements that are no longer than the detail.
+    /// Midpoints of fertile elements that are no longer than the detail.
     pub points: Vec<DVec2>,
-    /// The length at which elements have not been replaced any more, in the rule's units.
+    /// Length down to which elements have been replaced, in the rule's units.
     pub detail: f64,
 }
 
-/// Grows fertile elements down to a length that halves again and again, as long as there are no more
-/// than `most` of them.
+/// Grows fertile elements down to a length that is halved repeatedly, as long as there are at most `most` of
+/// them.
+///
+/// The length starts at an eighth of the longest element of the initiator and ends at about 1/4096 of it.
 ///
 /// # Errors
 ///
-/// If the walk ends early, or if there are more at once. Where indices are counted, nothing can be
-/// cut off, and all elements of the last step are taken.
+/// Returns an error if the walk ends early, or if the first length already gives more than `most` elements.
+/// Where indices are counted, nothing can be cut off, and all elements of the last step are taken.
 pub fn grown(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -55,7 +58,7 @@ pub fn grown(
         detail /= 2.0;
         match at(detail) {
             Ok(Some(finer)) => best = finer,
-            // What is known is as fine as it gets.
+            // The finest length that is possible has been reached.
             Ok(None) | Err(WalkError::TooManyElements { .. } | WalkError::TooLong { .. }) => break,
             Err(error) => return Err(error),
         }
@@ -63,7 +66,7 @@ pub fn grown(
     Ok(best)
 }
 
-/// There are as many points as may be.
+/// Stops a walk that has found the maximum number of points.
 struct Enough;
 
 struct Tips<'g> {

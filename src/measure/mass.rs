@@ -1,4 +1,4 @@
-//! How a set's mass is spread over boxes, and its lacunarity.
+//! The distribution of a set's mass over boxes, and its lacunarity.
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::whole::whole;
@@ -9,21 +9,22 @@ use super::limit::LimitSet;
 use super::points::Points;
 use super::sample::histogram;
 
-/// Boxes in a row of the finest grid, at most.
+/// Maximum number of boxes in a row of the finest grid.
 const MOST_BOXES: usize = 2048;
 
-/// Boxes in a row of grids for limit sets; where one cannot be filled, the next is tried.
+/// Numbers of boxes in a row of grids for limit sets, in the order of trial: where a grid cannot be filled,
+/// the next one is tried.
 pub const FINENESS: [usize; 4] = [1024, 512, 256, 128];
 
-/// The largest boxes that tell a spectrum, as a part of the extent.
+/// Side of the largest boxes from which a spectrum is computed, as a fraction of the extent.
 pub(super) const COARSEST: f64 = 1.0 / 4.0;
 
-/// The mass in every box of a grid.
+/// Mass in every box of a grid.
 #[derive(Clone, Debug)]
 pub struct Masses {
     width: usize,
     height: usize,
-    /// The side of a box, in the units of the set.
+    /// Side of a box, in the units of the set.
     size: f64,
     masses: Vec<u32>,
 }
@@ -31,16 +32,17 @@ pub struct Masses {
 /// Lacunarity for boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lacunarity {
-    /// The side of the gliding box, in the units of the set.
+    /// Side of the gliding box, in the units of the set.
     pub size: f64,
-    /// ⟨m²⟩ / ⟨m⟩² over all places of the box in the grid, where m is the mass in it; at least 1.
+    /// ⟨m²⟩ / ⟨m⟩² over all positions of the box in the grid, where m is the mass in it; at least 1.
     pub value: f64,
-    /// The number of places.
+    /// Number of positions.
     pub places: u64,
 }
 
 impl Masses {
-    /// Of a picture: every set pixel has a mass of 1. The grid begins so many pixels before it.
+    /// Computes the masses of a picture, in which every set pixel has a mass of 1. The grid begins `before`
+    /// pixels left of the picture and `above` pixels above it.
     #[must_use]
     pub fn of_pixels(pixels: &Bits, [before, above]: [usize; 2]) -> Self {
         let longest = pixels.width().max(pixels.height());
@@ -69,10 +71,11 @@ impl Masses {
         grid
     }
 
-    /// Of points: every one has a mass of 1.
+    /// Computes the masses of points, each of which has a mass of 1.
     #[must_use]
     pub fn of_points(points: &Points) -> Self {
-        // As many boxes as there may be points in them.
+        // The number of boxes in a row is a quarter of the number of places, from 4 to 2048, rounded up to a
+        // power of two.
         let few = (points.places().count() / 4).clamp(4, MOST_BOXES);
         let (own, turned) = points.own(&Grid::ALONG);
         let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(MOST_BOXES));
@@ -84,8 +87,9 @@ impl Masses {
         grid
     }
 
-    /// Of a limit set: every box of a grid of so many in a row that the set meets has a mass of 1.
-    /// `None` where the set cannot be covered by so small boxes.
+    /// Computes the masses of a limit set: every box that the set meets, on a grid with `boxes` boxes along
+    /// its longer side, has a mass of 1. Returns `None` where the set cannot be covered by boxes of this
+    /// size.
     #[must_use]
     pub fn of_limit(set: &LimitSet, grid: &Grid, boxes: usize) -> Option<Self> {
         let (map, mut masses) = Self::over(grid, &set.turned_bounds(grid), boxes);
@@ -107,7 +111,7 @@ impl Masses {
         }
     }
 
-    /// A grid with so many boxes along what is turned against it, and the map to it.
+    /// Creates an empty grid with `boxes` boxes along the longer side of a turned box, and the map to it.
     fn over(grid: &Grid, turned: &Bounds, boxes: usize) -> (DAffine2, Self) {
         let extent = turned.size().max_element();
         #[expect(clippy::cast_precision_loss, reason = "grids are small")]
@@ -121,7 +125,7 @@ impl Masses {
         row.min(self.height - 1) * self.width + column.min(self.width - 1)
     }
 
-    /// The masses in boxes twice as large.
+    /// Returns the masses in boxes twice as large.
     pub(super) fn folded(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut folded = Self::empty(width, height, 2.0 * self.size);
@@ -134,15 +138,15 @@ impl Masses {
         folded
     }
 
-    /// The side of a box, in the units of the set.
+    /// Returns the side of a box, in the units of the set.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
 
-    /// The Rényi entropies of some orders of the masses (Rényi 1961), in nats.
+    /// Computes the Rényi entropies of the masses for several orders (Rényi 1961), in nats.
     pub(super) fn entropies(&self, orders: &[f64]) -> Vec<f64> {
         let total: f64 = self.masses.iter().map(|&mass| f64::from(mass)).sum();
-        // Few masses are different where there are many boxes.
+        // There are few distinct masses where there are many boxes.
         let masses = self.masses.iter().copied();
         let masses = histogram(masses.filter(|&mass| mass > 0));
         let of = |&order: &f64| {
@@ -166,11 +170,12 @@ impl Masses {
         orders.iter().map(of).collect()
     }
 
-    /// Lacunarity by gliding boxes (Allain & Cloitre 1991), of 1, 2, 4 … boxes of the grid.
+    /// Computes the lacunarity by gliding boxes (Allain & Cloitre 1991) with sides of 1, 2, 4 … boxes of the
+    /// grid.
     #[must_use]
     pub fn lacunarity(&self) -> Vec<Lacunarity> {
         let stride = self.width + 1;
-        // Sums over all that is left of and above a corner.
+        // The sums of the masses left of and above every corner.
         let mut sums = vec![0u64; stride * (self.height + 1)];
         for (row, masses) in self.masses.chunks_exact(self.width).enumerate() {
             let mut along = 0;

@@ -1,20 +1,23 @@
-//! Dimensions: exact where the graph tells them, measured by boxes where it does not.
+//! Dimensions of fractals: exact where the graph determines them, else measured by box counting.
 //!
-//! Three kinds of sets are covered by boxes: the pixels of a picture ([`Bits`]), [`Points`] of the
-//! plane, and the [`LimitSet`] of a graph, with nothing drawn in between (or what is [`grown`] of it,
-//! where maps are drawn by chance). Every size of boxes is counted on several [`Grid`]s, of which the
-//! least cover counts; boxes of a limit set that are too many to be counted are told by a sample of
-//! them, which is followed down to 10⁻⁹ of its extent. Points are taken for a [`Sample`] of a set.
-//! Of pictures, the mean counts over all grids are told as well, and extrapolated.
-//! [`BoxCounting`] is the slope of the counts with its error and its evidence, [`Generalised`] are the
-//! other dimensions D_q; [`Masses`] tell lacunarity. [`hausdorff`] tells how far two sets are apart.
+//! Three kinds of sets are covered by boxes: the pixels of a picture ([`Bits`]), [`Points`] of the plane, and
+//! the [`LimitSet`] of a graph, which is covered directly, with nothing drawn. Where maps are drawn by
+//! chance, [`grown`] computes points near the limit set instead. Boxes of every size are counted on several
+//! [`Grid`]s, and the smallest count of each size is kept. Boxes of a limit set that are too many to be
+//! counted are estimated from a sample of boxes, which is refined down to 10⁻⁹ of the set's extent. Points
+//! are treated as a [`Sample`] of a set. For pictures, the mean counts over all grids are computed as well,
+//! and extrapolated.
 //!
-//! The D_q of a limit set are those of a measure on it, a [`Cascade`]: what its weights give, or the
-//! natural one. Of every entry of the library whose dimension is decided, what is measured lies within 0.03 and
-//! three standard errors of it for q from −2 to 5 (`cargo run --release --example spectra`): within 0.01 but
-//! for sets whose rim has nearly their own dimension, as the Lévy curve's of 1.934.
+//! A [`BoxCounting`] is the slope of the counts with its error and its evidence, [`Generalised`] holds the
+//! generalised dimensions D_q, and [`Masses`] gives lacunarity. The function [`hausdorff`] computes the
+//! distance of two sets.
 //!
-//! The axes are those of the sets: x to the right and y up, but rows of pictures from the top down.
+//! The D_q of a limit set are those of a measure on it, a [`Cascade`]: the measure that the weights define,
+//! or the natural one. For every entry of the library whose dimension is decided, the measured D_q lie within
+//! 0.03 and three standard errors of it for q from −2 to 5 (`cargo run --release --example spectra`), and
+//! within 0.01 except for sets whose rim has nearly their own dimension, as the Lévy curve's of 1.934.
+//!
+//! The axes are those of the sets: x to the right and y up. Rows of pictures run from the top down.
 //!
 #![doc = include_str!("library.md")]
 

@@ -3,25 +3,26 @@
 /// An entry of a matrix: row, column, value.
 pub(super) type Entry = (usize, usize, f64);
 
-/// The spectral radius of a matrix, and the vector that it lengthens by that.
+/// Spectral radius of a matrix, and its eigenvector.
 #[derive(Clone, Debug)]
 pub(super) struct Perron {
     pub(super) radius: f64,
-    /// Positive, the largest of its entries about 1.
+    /// The eigenvector: positive, with its largest entry near 1.
     pub(super) vector: Vec<f64>,
 }
 
-/// Rounds that narrow the enclosure, at most.
+/// Maximum number of iterations.
 const MOST_ROUNDS: usize = 100_000;
 
-/// An enclosure that is so narrow, relatively, is a value.
+/// Relative width at which an enclosure counts as a value.
 const NARROW: f64 = 4e-16;
 
-/// The spectral radius of a strongly connected matrix, by power iteration on the matrix plus the
-/// identity, which has one dominant eigenvalue even where the matrix is periodic. The quotients of
-/// successive vectors enclose it (Collatz 1942, Wielandt 1950).
+/// Computes the spectral radius of a strongly connected matrix, by power iteration on the matrix plus the
+/// identity, which has one dominant eigenvalue even where the matrix is periodic. The quotients of successive
+/// vectors enclose it (Collatz 1942, Wielandt 1950).
 ///
-/// It is narrowed until it is `enough`, or to all digits.
+/// The enclosure [low, high] is narrowed until `enough` returns `true` for it, or to the precision of a
+/// double.
 pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -> bool) -> Perron {
     let mut vector = vec![1.0; size];
     let mut enclosed = [0.0, f64::INFINITY];
@@ -51,13 +52,13 @@ pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -
     }
 }
 
-/// Whether an enclosure decides on which side of 1 a radius lies.
+/// Returns `true` if an enclosure decides on which side of 1 a radius lies.
 pub(super) fn beside_one([low, high]: [f64; 2]) -> bool {
     low > 1.0 || high < 1.0
 }
 
-/// Where a function of a number crosses 1, by halving what lies between a number where it does not
-/// lie above 1 and another one where it does, to all digits.
+/// Finds the argument at which a function crosses 1, by bisection to the precision of a double, between
+/// `below`, where the function is not above 1, and `above`, where it is.
 pub(super) fn crossing(mut below: f64, mut above: f64, radius: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = below + (above - below) / 2.0;

@@ -1,42 +1,42 @@
-//! Points of the plane, covered by boxes.
+//! Points of the plane, and the boxes that they occupy.
 
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
 
 use super::bits::Bits;
 use super::cover::Grid;
 
-/// Why points cannot be measured.
+/// Reason why points cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoExtent {
-    /// There are none.
+    /// The set of points is empty.
     #[error("there are no points")]
     None,
-    /// They lie at one place.
+    /// All points are equal.
     #[error(
         "all points are equal: a single point has no sizes to be measured at, and the dimension 0"
     )]
     One,
-    /// They lie too far from each other for a double.
+    /// The extent of the points exceeds the range of a double.
     #[error("the points lie farther apart than numbers can tell")]
     Infinite,
 }
 
 /// Points of the plane that lie at more than one place.
 ///
-/// They are kept on a lattice of 2³⁰ places a side, in the order of Morton, so that the order in which
-/// they came is forgotten. Grids lie on them along their own principal axes, and are laid in units of
-/// their extent from the lower left corner of their box: however the points are moved, turned or
-/// scaled, and however far from the origin they lie, the same boxes hold the same points.
+/// Points are kept on a lattice of 2³⁰ places a side, in Morton order, which does not depend on the order of
+/// the input. Grids are aligned with the principal axes of the points, and are laid in units of their extent
+/// from the lower left corner of their box. However the points are moved, turned or scaled, and however far
+/// from the origin they lie, the same boxes therefore hold the same points.
 #[derive(Clone, Debug)]
 pub struct Points {
     places: Vec<Place>,
     bounds: Bounds,
-    /// The direction of the longest principal axis, in radians.
+    /// Direction of the longest principal axis, in radians.
     angle: f64,
     levels: u32,
 }
 
-/// A place of the lattice, and how many points lie at it.
+/// A place of the lattice, with the number of points at it.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     column: u32,
@@ -44,21 +44,21 @@ struct Place {
     points: u32,
 }
 
-/// Boxes in a row that are still marked as bits (32 MiB); where there are more, keys are sorted.
+/// Maximum number of boxes in a row that are marked as bits (32 MiB); where there are more, keys are sorted.
 const MOST_BITS: usize = 1 << 14;
 
-/// Halvings of the extent beyond which doubles say little.
+/// Number of halvings of the extent beyond which the precision of doubles is exhausted.
 const MOST_LEVELS: u32 = 30;
 
-/// Sizes are listed down to where there are no more points a box than so many.
+/// Mean number of points per occupied box below which no smaller sizes are listed.
 const POINTS_A_BOX: u64 = 8;
 
 impl Points {
-    /// Points, if there are two that differ.
+    /// Creates the set of points, of which two must differ.
     ///
     /// # Errors
     ///
-    /// If there are not, or if their box is not finite.
+    /// Returns an error if there are no points, if all are equal, or if their box is not finite.
     pub fn new(points: Vec<DVec2>) -> Result<Self, NoExtent> {
         let mut bounds = Bounds::EMPTY;
         points.iter().for_each(|&point| bounds.add(point));
@@ -92,23 +92,24 @@ impl Points {
         Ok(points)
     }
 
-    /// The box that holds them.
+    /// Returns the bounding box of the points.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// The longer side of that box.
+    /// Returns the longer side of the bounding box.
     pub(super) fn extent(&self) -> f64 {
         self.bounds.size().max_element()
     }
 
-    /// How many halvings of the extent lead to boxes that are too many for the points.
+    /// Returns the number of halvings of the extent that lead to boxes too many for the points.
     pub(super) fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// Where points lie in their box, in parts of its longer side, and how many at each place.
+    /// Iterates over the places of the points in their box, as fractions of its longer side, and the number
+    /// of points at each.
     pub(super) fn places(&self) -> impl Iterator<Item = (DVec2, u32)> {
         let places = self.places.iter();
         places.map(|place| {
@@ -117,8 +118,8 @@ impl Points {
         })
     }
 
-    /// A grid that lies on the principal axes as the given one lies on the axes of the plane, and the
-    /// box of all [places](Self::places) turned against it.
+    /// Returns the grid that lies on the principal axes as `grid` lies on the axes of the plane, and the box
+    /// of all [places](Self::places) turned against it.
     pub(super) fn own(&self, grid: &Grid) -> (Grid, Bounds) {
         let own = Grid {
             angle: grid.angle - self.angle,
@@ -130,8 +131,8 @@ impl Points {
         (own, bounds)
     }
 
-    /// The direction in which points are spread the most, and farther out on its positive side; 0 if
-    /// there is no such direction.
+    /// Returns the direction of largest variance, oriented towards positive skewness, in radians; 0 if there
+    /// is no such direction.
     fn principal_axis(&self) -> f64 {
         const ROUND: f64 = 1e-9;
         let mean = |of: &dyn Fn(DVec2) -> f64| {
@@ -161,10 +162,10 @@ impl Points {
     }
 }
 
-/// Places of the lattice in a row.
+/// Number of places of the lattice in a row.
 const LATTICE: f64 = (1u64 << MOST_LEVELS) as f64;
 
-/// The key of the place at some parts of the extent.
+/// Returns the Morton key of the place at fractions of the extent.
 fn key(part: DVec2) -> u64 {
     let [column, row] = boxed(
         &DAffine2::from_mat2(DMat2::from_diagonal(DVec2::splat(LATTICE))),
@@ -173,7 +174,7 @@ fn key(part: DVec2) -> u64 {
     spread(column) | spread(row) << 1
 }
 
-/// How many halvings lead to fewer points a box than are listed.
+/// Returns the number of halvings that lead to fewer points per box than [`POINTS_A_BOX`].
 fn levels(points: &[DVec2], bounds: &Bounds) -> u32 {
     let most = points.len() as u64 / POINTS_A_BOX;
     let extent = bounds.size().max_element() * (1.0 + 4e-9);
@@ -190,14 +191,14 @@ fn levels(points: &[DVec2], bounds: &Bounds) -> u32 {
         .unwrap_or(MOST_LEVELS)
 }
 
-/// The numbers of boxes that hold points: on a grid, and on those of boxes 2, 4, 8 … times as large,
-/// `levels` of them.
+/// Counts the boxes that hold points, on a grid and on those of boxes 2, 4, 8 … times as large: `levels`
+/// counts.
 ///
-/// `map` leads from the plane to the grid, whose boxes have side 1 and corners at whole numbers from
-/// (0, 0) to `boxes`.
+/// `map` leads from the plane to the grid, whose boxes have side 1 and corners at whole numbers from (0, 0)
+/// to `boxes`.
 #[must_use]
 pub fn counts(points: &[DVec2], map: &DAffine2, boxes: [usize; 2], levels: u32) -> Vec<u64> {
-    // A grid begins beyond the set, so it may be some wider than it is deep.
+    // A grid begins before the set, and may be somewhat wider than it.
     if boxes[0].max(boxes[1]) > 3 * MOST_BITS {
         return sorted_counts(points, map, levels);
     }
@@ -216,7 +217,7 @@ pub fn counts(points: &[DVec2], map: &DAffine2, boxes: [usize; 2], levels: u32) 
     counts
 }
 
-/// The same by sorting the keys of boxes (Morton 1966): those of larger boxes are their beginnings.
+/// Counts boxes by sorting their keys (Morton 1966): keys of larger boxes are prefixes.
 fn sorted_counts(points: &[DVec2], map: &DAffine2, levels: u32) -> Vec<u64> {
     let key = |&point: &DVec2| {
         let [column, row] = boxed(map, point);
@@ -246,7 +247,7 @@ fn boxed(map: &DAffine2, point: DVec2) -> [u32; 2] {
     [at.x as u32, at.y as u32]
 }
 
-/// The bits of a number, with a free one above each.
+/// Spreads the bits of a number to the even positions.
 #[inline]
 fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number);
@@ -257,7 +258,7 @@ fn spread(number: u32) -> u64 {
     (bits | bits << 1) & 0x5555_5555_5555_5555
 }
 
-/// Every other bit of a key, as a number.
+/// Gathers the bits at even positions of a key.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are left")]
 fn gathered(key: u64) -> u32 {
@@ -268,7 +269,7 @@ fn gathered(key: u64) -> u32 {
     bits as u32
 }
 
-/// Where bits lie after each step of gathering.
+/// Masks of the bits after each step of gathering.
 const GATHERED: [u64; 5] = [
     0x3333_3333_3333_3333,
     0x0f0f_0f0f_0f0f_0f0f,

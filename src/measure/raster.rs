@@ -1,4 +1,4 @@
-//! The pixels of a picture, covered by boxes.
+//! Box counting on the pixels of a picture.
 
 mod sliding;
 
@@ -9,14 +9,14 @@ pub(super) use sliding::{Mean, means, thickness};
 use super::bits::Bits;
 use super::cover::{Grid, Scale, least, mean};
 
-/// How the set pixels of a picture are covered by boxes of `base`, base², … pixels, and of one.
+/// Covers the set pixels of a picture by boxes with sides of …, `base`², `base` and 1 pixels.
 ///
-/// The sides of boxes are in pixels. Grids are moved by whole pixels and not turned: pixels are
-/// squares of the grid themselves. None has boxes larger than the picture's long side.
+/// The sides of boxes are in pixels, from the largest to the smallest. Grids are shifted by whole pixels and
+/// not turned: pixels are squares of the grid themselves. No box is larger than the picture's long side.
 ///
 /// # Panics
 ///
-/// If the base is 1.
+/// Panics if the base is 1.
 #[must_use]
 pub fn raster_scales(
     pixels: &Bits,
@@ -40,7 +40,7 @@ pub fn raster_scales(
     })
 }
 
-/// How far a grid begins before a picture, in pixels.
+/// Returns the distance at which a grid begins before a picture, in pixels.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
@@ -53,7 +53,7 @@ pub(super) fn whole(shift: crate::geometry::DVec2, largest: usize) -> [usize; 2]
         .map(|shift| shift as usize)
 }
 
-/// The counts of boxes of 1, `base`, base² … pixels whose grid begins so many pixels before the picture.
+/// Counts the boxes of 1, `base`, base² … pixels on the grid that begins `shift` pixels before the picture.
 fn pyramid(pixels: &Bits, mut shift: [usize; 2], base: usize, levels: usize) -> Vec<u64> {
     let mut counts = vec![pixels.count()];
     let mut coarser: Option<Bits> = None;
@@ -71,10 +71,11 @@ fn pyramid(pixels: &Bits, mut shift: [usize; 2], base: usize, levels: usize) -> 
     counts
 }
 
-/// The number that boxes of a picture grow by such that their counts on the picture's own grid are a power of
-/// the size all along, if there is one: the picture is one of a set of squares that are divided by it.
+/// Returns the base for which the counts on the picture's own grid follow a power of the size throughout, if
+/// there is one: the picture then shows a set of squares that are divided by this number.
 ///
-/// Tried are 2, and other numbers up to 10 of which a high power divides the long side.
+/// Bases from 2 to 10 are tried, if the highest power of the base that is not larger than the long side
+/// divides it.
 pub(super) fn own_base(pixels: &Bits) -> Option<NonZero<usize>> {
     const LARGEST: usize = 10;
     let longest = pixels.width().max(pixels.height());
@@ -90,8 +91,8 @@ pub(super) fn own_base(pixels: &Bits) -> Option<NonZero<usize>> {
     })
 }
 
-/// The slope of counts, and how far local slopes lie from it at most, where they are all the same as
-/// far as pixels can tell.
+/// Returns the mean of the local slopes of counts, and the largest deviation from it, where all slopes are
+/// equal to the precision of pixels.
 pub(super) fn regular(scales: &[Scale]) -> Option<(f64, f64)> {
     const LEAST_SLOPES: usize = 4;
     const TOLERANCE: f64 = 0.004;

@@ -1,54 +1,55 @@
-//! Points as a sample of a set: what its boxes hold, and how many of them the sample misses.
+//! Points as a sample of a set: the contents of boxes, and the number of boxes that the sample misses.
 //!
-//! A box that the set meets is seen if a point of the sample lies in it, so the counts of small boxes
-//! fall short. What is missed is told from what a half and a quarter of the points would miss
-//! (rarefaction: Hurlbert 1971): it dies out as a power of their number, by a half where a smooth
-//! density is cut by the rims of boxes, by less where the set is thin there.
+//! A box that the set meets is seen if a point of the sample lies in it, and the counts of small boxes are
+//! therefore too low. The number of missed boxes is estimated from those that a half and a quarter of the
+//! points would miss (rarefaction: Hurlbert 1971). The number decreases as a power of the number of points:
+//! by a half for each doubling where a smooth density is cut by the rims of boxes, by less where the set is
+//! thin there.
 
 use std::num::NonZero;
 
 use super::cover::{Grid, Scale, deviation, mean, on_all};
 use super::points::Points;
 
-/// Where half of the points would miss a larger part of the boxes, points are too few.
+/// Maximum part of the boxes that half of the points may miss; beyond it, there are too few points.
 const MOST_MISSED: f64 = 0.08;
 
-/// What part of the missed boxes is missed with twice the points.
+/// Bounds of the part of the missed boxes that twice the points would still miss.
 const LEFT: [f64; 2] = [1.0 / 2.0, 2.0 / 3.0];
 
-/// What boxes of several sizes hold, on several grids.
+/// The contents of boxes of several sizes, on several grids.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// From the largest on.
+    /// Sides of the boxes, from the largest on.
     sizes: Vec<f64>,
-    /// By grid and size.
+    /// Contents by grid and size.
     tallies: Vec<Vec<Tally>>,
 }
 
 /// The boxes of one size on one grid.
 #[derive(Clone, Debug)]
 struct Tally {
-    /// Numbers of different places in a box, and of boxes with so many.
+    /// Numbers of distinct places in a box, with the number of boxes for each.
     places: Vec<(u32, u32)>,
-    /// Numbers of points in a box, and of boxes with so many.
+    /// Numbers of points in a box, with the number of boxes for each.
     points: Vec<(u32, u32)>,
 }
 
 /// A box that holds points.
 #[derive(Clone, Copy)]
 struct Held {
-    /// Its row and column.
+    /// Row (upper half) and column (lower half) of the box.
     key: u64,
     places: u32,
     points: u32,
 }
 
 impl Points {
-    /// What boxes hold whose sides are the extent divided by powers of a base.
+    /// Returns the contents of boxes whose sides are the extent divided by powers of a base.
     ///
     /// # Panics
     ///
-    /// If the base is 1.
+    /// Panics if the base is 1.
     #[must_use]
     pub fn sample(&self, base: NonZero<usize>, grids: &[Grid], threads: NonZero<usize>) -> Sample {
         assert!(base.get() > 1, "boxes get smaller");
@@ -72,7 +73,8 @@ impl Points {
         }
     }
 
-    /// What boxes hold that are no smaller than a size, in parts of the extent.
+    /// Returns the contents of boxes of `sizes` sizes on one grid, from the largest on. The smallest has a
+    /// side of `size`, in units of the extent.
     fn tallies(&self, grid: &Grid, size: f64, largest: f64, base: u32, sizes: usize) -> Vec<Tally> {
         let (own, turned) = self.own(grid);
         let (map, _) = own.map(&turned, size, largest);
@@ -109,7 +111,7 @@ impl Points {
     }
 }
 
-/// Puts a box behind others, or what it holds into the last of them, if that is the same.
+/// Appends a box to others, or adds its contents to the last of them if that has the same key.
 fn join(boxes: &mut Vec<Held>, held: Held) {
     match boxes.last_mut() {
         Some(last) if last.key == held.key => {
@@ -120,7 +122,7 @@ fn join(boxes: &mut Vec<Held>, held: Held) {
     }
 }
 
-/// The box `base` times as large that holds a box.
+/// Returns the key of the box `base` times as large that holds a box.
 fn coarser(key: u64, base: u32) -> u64 {
     let base = u64::from(base);
     let (row, column) = (key >> 32, key & 0xffff_ffff);
@@ -135,7 +137,7 @@ impl Tally {
         }
     }
 
-    /// How many boxes a part of the places would meet, on the mean of all choices.
+    /// Returns the expected number of boxes that a random part of the places meets.
     fn met_by(&self, part: f64) -> f64 {
         let met = |places| 1.0 - libm::pow(1.0 - part, f64::from(places));
         let boxes = self.places.iter();
@@ -145,7 +147,7 @@ impl Tally {
     }
 }
 
-/// Numbers, and how often each of them comes.
+/// Returns the distinct numbers in increasing order, with the frequency of each.
 pub(super) fn histogram(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
     let mut numbers: Vec<u32> = numbers.collect();
     numbers.sort_unstable();
@@ -154,20 +156,20 @@ pub(super) fn histogram(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
     counted.collect()
 }
 
-/// How many boxes of one size are met on every grid.
+/// Numbers of boxes of one size that are met, by grid.
 struct Met {
     seen: Vec<f64>,
-    /// With those that the points have missed.
+    /// Estimated numbers that include the boxes that the points miss.
     all: Vec<f64>,
-    /// The part of the boxes that half of the points would miss.
+    /// Part of the boxes that half of the points would miss.
     missed_by_half: f64,
-    /// The variance of the logarithm of a number among samples: a box that half of the points would
-    /// miss is there by chance.
+    /// Variance of the logarithm of a number between samples, if every box that half of the points would miss
+    /// is present by chance.
     chance: f64,
 }
 
 impl Met {
-    /// The least cover, and the growth since the size before.
+    /// Returns the smallest cover, and its growth since the previous size.
     fn scale(&self, size: f64, before: Option<&Self>) -> Scale {
         let (growth, growth_error) = before.map(|it| self.growth(it)).unwrap_or_default();
         let least = self.seen.iter().copied().fold(f64::INFINITY, f64::min);
@@ -187,7 +189,7 @@ impl Met {
         }
     }
 
-    /// How the logarithm grows on the mean of all grids, and the standard error of that.
+    /// Returns the growth of the logarithm in the mean over all grids, and its standard error.
     fn growth(&self, before: &Self) -> (f64, f64) {
         let by = |this: &[f64], last: &[f64]| -> Vec<f64> {
             let both = this.iter().zip(last);
@@ -195,7 +197,7 @@ impl Met {
         };
         let growth = by(&self.all, &before.all);
         let of_grids = deviation(growth.iter().copied()) / count(growth.len()).sqrt();
-        // What is added for the boxes that are missed is believed by half.
+        // Half of the correction for missed boxes counts as an error.
         let of_missed = (mean(&growth) - mean(&by(&self.seen, &before.seen))) / 2.0;
         let of_chance = (self.chance + before.chance).sqrt();
         let error = libm::hypot(libm::hypot(of_grids, of_missed), of_chance);
@@ -204,12 +206,12 @@ impl Met {
 }
 
 impl Sample {
-    /// The sides of the boxes, from the largest on.
+    /// Returns the sides of the boxes, from the largest on.
     pub(super) fn sizes(&self) -> &[f64] {
         &self.sizes
     }
 
-    /// The number of sizes at which there are enough points.
+    /// Returns the number of sizes, from the largest on, for which there are enough points.
     pub(super) fn enough(&self) -> usize {
         let missed = |number: &usize| self.met(*number).missed_by_half;
         let all = 0..self.sizes.len();
@@ -238,7 +240,8 @@ impl Sample {
         }
     }
 
-    /// The least covers, and how counts grow on the mean of all grids, with the boxes that are missed.
+    /// Returns the smallest covers, and the growth of the counts in the mean over all grids, with a
+    /// correction for missed boxes.
     #[must_use]
     pub fn scales(&self) -> Vec<Scale> {
         let met: Vec<Met> = (0..self.sizes.len())
@@ -251,16 +254,16 @@ impl Sample {
             .collect()
     }
 
-    /// The entropies of an order of the points' distribution over boxes of a size, by grid.
+    /// Estimates the Rényi entropies of the points' distribution over boxes of a size, by grid.
     ///
-    /// Sums of powers are told without bias by falling factorials (Grassberger 1988).
+    /// Sums of powers are estimated without bias by falling factorials (Grassberger 1988).
     pub(super) fn entropies(&self, number: usize, order: f64) -> Vec<f64> {
         let entropy = |tallies: &Vec<Tally>| entropy(&tallies[number].points, order);
         self.tallies.iter().map(entropy).collect()
     }
 }
 
-/// The Rényi entropy of boxes with so many points, in nats.
+/// Estimates the Rényi entropy from numbers of points in a box and the number of boxes for each, in nats.
 fn entropy(boxes: &[(u32, u32)], order: f64) -> f64 {
     let boxes = || {
         boxes
@@ -277,7 +280,7 @@ fn entropy(boxes: &[(u32, u32)], order: f64) -> f64 {
     libm::log(parts.sum::<f64>()) / (1.0 - order)
 }
 
-/// The logarithm of n (n − 1) … (n − q + 1), or Γ(n + 1) / Γ(n + 1 − q) where q is not whole.
+/// Returns the logarithm of n (n − 1) … (n − q + 1), or of Γ(n + 1) / Γ(n + 1 − q) where q is not an integer.
 fn falling(number: f64, order: f64) -> f64 {
     if number + 1.0 - order <= 0.0 {
         return f64::NEG_INFINITY;
@@ -285,7 +288,7 @@ fn falling(number: f64, order: f64) -> f64 {
     libm::lgamma(number + 1.0) - libm::lgamma(number + 1.0 - order)
 }
 
-/// The derivative of ln Γ (Abramowitz & Stegun 6.3.5 and 6.3.18), to some 12 digits.
+/// Returns the derivative of ln Γ (Abramowitz & Stegun 6.3.5 and 6.3.18), to about 12 digits.
 fn digamma(mut at: f64) -> f64 {
     let mut before = 0.0;
     while at < 12.0 {

@@ -10,12 +10,12 @@ use crate::rule::Placement;
 
 use super::perron::{beside_one, crossing, perron};
 
-/// A similarity dimension, or why there is none.
+/// A similarity dimension, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Similarity {
-    /// The dimension.
+    /// The dimension; `None` if it is not defined.
     pub value: Option<f64>,
-    /// What is to be said about it.
+    /// The reason why there is no dimension, or a remark on it.
     pub note: Option<String>,
 }
 
@@ -28,10 +28,10 @@ impl Similarity {
     }
 }
 
-/// The similarity dimension of what a graph's fertile elements become.
+/// Computes the similarity dimension of the limit set of a graph's fertile elements.
 ///
-/// Infertile elements do not count: the trunk of a tree adds nothing. The value is exact to some
-/// 12 digits; copies that overlap are counted as often as they occur.
+/// Infertile elements do not count: the trunk of a tree adds nothing. The value is exact to about 12 digits;
+/// overlapping copies are counted with their multiplicity.
 #[must_use]
 pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if graph.draws() {
@@ -55,7 +55,7 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     };
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
     let parts = parts(graph.behaviours().count(), &edges);
-    // What ends need not shrink.
+    // Where nothing stays fertile, maps need not contract.
     if parts.is_empty() {
         return Similarity::none("nothing stays fertile");
     }
@@ -72,8 +72,8 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
     }
 }
 
-/// The similarity dimension of a strongly connected part, given the ratios between its objects, and
-/// whether Moran's equation gives it: all objects have the same ratios.
+/// Returns the similarity dimension of a strongly connected part, given the ratios between its objects, and
+/// whether it follows from Moran's equation: whether all objects have the same ratios.
 pub(super) fn dimension_of_part(
     size: usize,
     ratios: impl Iterator<Item = (usize, usize, f64)>,
@@ -90,8 +90,8 @@ struct Edge {
     ratio: f64,
 }
 
-/// The fertile instances of what is fertile, between behaviours: objects of one behaviour are
-/// replaced by the same. `None` if one of them is a reset.
+/// Returns the fertile instances of fertile objects as edges between behaviours: objects of one behaviour are
+/// replaced alike. Returns `None` if one of them is a reset (seeds placed as the initiator).
 fn edges(graph: &Graph) -> Option<Vec<Edge>> {
     let mut edges = Vec::new();
     let fertile = |object: usize| !matches!(graph.objects()[object].replacement, Replacement::Kept);
@@ -119,14 +119,14 @@ fn edges(graph: &Graph) -> Option<Vec<Edge>> {
     Some(edges)
 }
 
-/// A strongly connected part of the graph: objects that lead to each other.
+/// A strongly connected part of the graph: objects that reach each other.
 struct Part {
     size: usize,
-    /// Between the part's objects, numbered from 0.
+    /// Edges between the part's objects, numbered from 0.
     edges: Vec<Edge>,
 }
 
-/// The strongly connected parts that have an edge inside.
+/// Returns the strongly connected parts that contain an edge.
 fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
     let mut targets = vec![Vec::new(); size];
     for edge in edges {
@@ -161,8 +161,9 @@ fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
 }
 
 impl Part {
-    /// The part without the objects that have one instance only: whoever instances such an object
-    /// instances what it leads to, by the product of the ratios. The D stays the same.
+    /// Returns the part without the objects that have one instance only: an edge to such an object is
+    /// replaced by one to the object that it instances, with the product of the ratios. The dimension is
+    /// unchanged.
     fn contracted(mut self) -> Self {
         for object in 0..self.size {
             let mut leaving = self.edges.iter().filter(|edge| edge.from == object);
@@ -190,7 +191,7 @@ impl Part {
         }
     }
 
-    /// The D for which the part's matrix has spectral radius 1.
+    /// Returns the D for which the part's matrix has spectral radius 1.
     fn dimension(&self) -> f64 {
         let moran = self.moran_ratios();
         let radius = |dimension: f64| match &moran {
@@ -200,7 +201,7 @@ impl Part {
                 .sum(),
             None => self.spectral_radius(dimension),
         };
-        // A cycle without branches leads to a point.
+        // The limit set of a cycle without branches is a point.
         if self.edges.len() == self.size {
             return 0.0;
         }
@@ -211,7 +212,7 @@ impl Part {
         crossing(high, low, radius)
     }
 
-    /// The ratios of Moran's equation, if all objects have the same ones.
+    /// Returns the ratios of Moran's equation, if all objects have the same ones.
     fn moran_ratios(&self) -> Option<Vec<f64>> {
         let mut ratios = vec![Vec::new(); self.size];
         for edge in &self.edges {
@@ -227,7 +228,7 @@ impl Part {
             .then_some(first)
     }
 
-    /// The spectral radius of the matrix of Σ ratio^D.
+    /// Returns the spectral radius of the matrix of Σ ratio^D.
     fn spectral_radius(&self, dimension: f64) -> f64 {
         let edges = self.edges.iter();
         let entries = edges.map(|edge| (edge.from, edge.to, libm::pow(edge.ratio, dimension)));

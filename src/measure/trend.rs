@@ -1,27 +1,27 @@
-//! Whether local slopes drift: a dimension is a limit, and they may not have come to it.
+//! The drift of local slopes. A dimension is a limit, which local slopes that drift have not reached.
 
 use super::regression::{Points, Reading};
 
-/// How local slopes of a logarithm change as boxes get smaller.
+/// Change of the local slopes of a logarithm as boxes get smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trend {
-    /// By how much they rise from boxes to those ten times smaller.
+    /// Rise of the slopes from boxes to boxes ten times smaller.
     pub per_decade: f64,
-    /// Its standard error.
+    /// Standard error of the rise.
     pub std_error: f64,
 }
 
-/// Of so many local slopes, a trend can be told.
+/// Minimum number of local slopes for a trend.
 const LEAST_SLOPES: usize = 4;
 
-/// A trend that is so many standard errors from 0 is significant.
+/// Number of standard errors from 0 beyond which a trend is significant.
 const SIGNIFICANT: f64 = 4.0;
 
-/// A local slope is not believed to be known better.
+/// Lower bound of the standard error of a growth between sizes, in nats.
 const LEAST_ERROR: f64 = 0.001;
 
 impl Trend {
-    /// That of readings, from the largest size to the smallest; none if there are too few.
+    /// Fits a trend to readings, from the largest size to the smallest. Returns `None` if there are too few.
     pub(super) fn of(readings: &[Reading]) -> Option<Self> {
         let slope = |pair: &[Reading]| {
             let [coarse, fine] = [pair[0], pair[1]];
@@ -40,14 +40,14 @@ impl Trend {
         })
     }
 
-    /// By how much slopes drift over readings.
+    /// Returns the drift of the slopes over the range of the readings.
     pub(super) fn over(&self, readings: &[Reading]) -> f64 {
         let ends = readings.first().zip(readings.last());
         let decades = ends.map(|(coarse, fine)| libm::log10(coarse.size / fine.size));
         self.per_decade * decades.unwrap_or_default()
     }
 
-    /// Whether slopes drift by more than chance would have them.
+    /// Returns `true` if slopes drift by more than four standard errors.
     #[must_use]
     pub fn is_significant(&self) -> bool {
         self.per_decade.abs() > SIGNIFICANT * self.std_error

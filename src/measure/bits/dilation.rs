@@ -1,4 +1,4 @@
-//! Sets of boxes made larger and smaller by squares, and cut to their extent.
+//! Dilation and erosion of sets of boxes by squares, and their restriction to their extent.
 
 use std::borrow::Cow;
 use std::num::NonZero;
@@ -6,11 +6,11 @@ use std::thread;
 
 use super::Bits;
 
-/// Rows that are worth a thread of their own.
+/// Minimum number of rows per thread.
 const ROWS: usize = 1 << 9;
 
 impl Bits {
-    /// The part that holds all boxes that are set; empty if none is.
+    /// Returns the smallest part that holds all boxes that are set; empty if none is.
     pub(in crate::measure) fn cropped(&self) -> Cow<'_, Self> {
         let is_empty = |row: &usize| self.row(*row).iter().all(|&word| word == 0);
         let above = (0..self.height).take_while(is_empty).count();
@@ -43,11 +43,12 @@ impl Bits {
                 };
             }
         }
-        // Beyond the right side there is nothing, so no bit beyond the width is set.
+        // There is nothing beyond the right side, so no bit beyond the width is set.
         Cow::Owned(cropped)
     }
 
-    /// Bands of rows, evenly spread and parted by empty rows, where there are too many words.
+    /// Returns bands of rows, evenly spread and separated by empty rows, if there are more than 2¹⁸ words;
+    /// else the set itself.
     pub(in crate::measure) fn bands(&self) -> Cow<'_, Self> {
         const MOST_WORDS: usize = 1 << 18;
         const BAND: usize = 256;
@@ -67,12 +68,12 @@ impl Bits {
         Cow::Owned(some)
     }
 
-    /// Every box joined with those that lie `more` to the right, below, and both: of squares with a side
-    /// of `more` boxes or longer, squares that are longer by so many.
+    /// Joins every box with the boxes that lie `more` to the right, below, and both: squares with a side of
+    /// at least `more` boxes grow by `more`.
     ///
     /// # Panics
     ///
-    /// If `more` is not from 1 to 63.
+    /// Panics if `more` is not from 1 to 63.
     pub(in crate::measure) fn dilated(&self, more: usize, threads: NonZero<usize>) -> Self {
         assert!((1..64).contains(&more), "words are shifted by less than 64");
         let mut dilated = Self::new(self.width + more, self.height + more);
@@ -92,7 +93,7 @@ impl Bits {
         dilated
     }
 
-    /// Fills rows of a dilated set from one on.
+    /// Fills the rows of a dilated set from row `from` on.
     fn dilate(&self, more: usize, from: usize, words: &mut [u64], stride: usize) {
         let empty = vec![0; self.width.div_ceil(64)];
         let row = |row: Option<usize>| match row {
@@ -114,11 +115,11 @@ impl Bits {
         }
     }
 
-    /// The upper left boxes of all squares of `side` boxes that are set all over.
+    /// Returns the upper left boxes of all filled squares of `side` boxes.
     ///
     /// # Panics
     ///
-    /// If the side is not from 1 to 63.
+    /// Panics if the side is not from 1 to 63.
     pub(in crate::measure) fn eroded(&self, side: usize) -> Self {
         assert!((1..64).contains(&side), "words are shifted by less than 64");
         let mut eroded = self.clone();
@@ -128,7 +129,7 @@ impl Bits {
         }
         let mut inner = vec![0; stride];
         for row in 0..self.height {
-            // What lies outside is not set.
+            // Boxes outside are not set.
             inner.fill(if row + side <= self.height {
                 u64::MAX
             } else {

@@ -1,5 +1,5 @@
-//! Points that stand for a set: none of the set is farther than a radius from them, nor are they from
-//! it.
+//! Covers of a set by points: every point of the set is within a radius of one of them, and each of them is
+//! within the radius of the set.
 
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, NoLimit, Replacement};
@@ -8,16 +8,16 @@ use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, extent, walk};
 use super::region::{Region, TooMany, radius_of};
 use super::squares::Squares;
 
-/// Why a set is not covered.
+/// Reason why a set is not covered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoCover {
-    /// There is no limit set, or it is not known.
+    /// The limit set does not exist, or is not known.
     #[error(transparent)]
     NoLimit(#[from] NoLimit),
-    /// It takes more points than are allowed.
+    /// The cover takes more points than are allowed.
     #[error(transparent)]
     TooMany(#[from] TooMany),
-    /// The approximant is not grown.
+    /// Growing the approximant failed.
     #[error(transparent)]
     Walk(WalkError<TooMany>),
     /// Nothing is visible in the approximant.
@@ -25,18 +25,18 @@ pub enum NoCover {
     Nothing,
 }
 
-/// What is compared of a graph.
+/// The set of a graph that is compared.
 #[derive(Clone, Copy, Debug)]
 pub enum Set<'a> {
     /// The limit set.
     Limit,
-    /// What an approximant draws.
+    /// The visible elements of an approximant.
     Approximant(Growth<'a>),
 }
 
-/// A set of points of the plane: what a graph comes to.
+/// A set of points of the plane that a graph defines.
 ///
-/// Closed outlines count with what they enclose.
+/// Closed outlines include the region that they enclose.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     graph: &'a Graph,
@@ -45,11 +45,11 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// The set of a graph.
+    /// Creates the set of a graph.
     ///
     /// # Errors
     ///
-    /// If there is no such set.
+    /// Returns an error if there is no such set.
     pub fn new(graph: &'a Graph, set: Set<'a>) -> Result<Self, NoCover> {
         let bounds = match &set {
             Set::Limit => {
@@ -72,33 +72,33 @@ impl<'a> Subject<'a> {
         Ok(Self { graph, set, bounds })
     }
 
-    /// A box that holds the set: the smallest, wherever the graph tells it.
+    /// Returns a box that holds the set: the smallest one, wherever the graph determines it.
     #[must_use]
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// Points no farther than `radius` from the set, such that all of the set is within `radius` of
-    /// one.
+    /// Returns points no farther than `radius` from the set, such that every point of the set is within
+    /// `radius` of one of them.
     ///
-    /// Copies that are smaller than that become one point each, in the middle of a disc that holds
-    /// the copy, and of points that are near each other one is kept. Where copies overlap a lot, squares
-    /// of grids that they come to stand for them.
+    /// Copies that are small enough become one point each, in the centre of a disc that holds the copy, and
+    /// of points that are near each other one is kept. Limit sets whose copies overlap heavily are covered by
+    /// squares of grids instead.
     ///
     /// # Errors
     ///
-    /// If it takes more than `most` points.
+    /// Returns an error if the cover takes more than `most` points.
     pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<DVec2>, NoCover> {
         let mut points = Vec::new();
         self.visit(radius, most, &mut |point| points.push(point))?;
         Ok(points)
     }
 
-    /// The same points one by one, which takes little memory.
+    /// Visits the points of [`cover`](Self::cover) one by one, which takes little memory.
     ///
     /// # Errors
     ///
-    /// If it takes more than `most` points.
+    /// Returns an error if the cover takes more than `most` points.
     pub fn visit(
         &self,
         radius: f64,
@@ -123,7 +123,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// A box around discs that hold what becomes of the initiator.
+/// Returns a box around discs that hold the limit set of every instance of the initiator.
 fn discs(graph: &Graph) -> Bounds {
     let reaches = reaches(graph);
     let mut bounds = Bounds::EMPTY;
@@ -136,7 +136,7 @@ fn discs(graph: &Graph) -> Bounds {
     bounds
 }
 
-/// The radius of a disc about the graph's middle that holds what becomes of each object.
+/// Returns, for each object, the radius of a disc about the graph's centre that holds the object's limit set.
 pub(super) fn reaches(graph: &Graph) -> Vec<f64> {
     let middle = graph.middle();
     graph.reaches(|object| match object.replacement {
@@ -145,15 +145,15 @@ pub(super) fn reaches(graph: &Graph) -> Vec<f64> {
     })
 }
 
-/// Where more copies are looked at for each point, they overlap too much. Ferns, with some ten, take
-/// less time and a fifth of the points by copies.
+/// Number of copies examined per point of the cover beyond which copies overlap too much. Ferns, with about
+/// ten, take less time and a fifth of the points by copies.
 const OVERLAPPING: usize = 12;
 
-/// So many copies do not tell.
+/// Number of copies that are examined before overlaps are judged.
 const FEW: usize = 4096;
 
-/// Covers a limit set by its copies that are as small as the radius, or by squares where these overlap
-/// a lot.
+/// Covers a limit set by its copies that are as small as the radius, or by squares where copies overlap
+/// heavily.
 fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<(), NoCover> {
     let alive = graph.alive(true);
     let middle = graph.middle();
@@ -166,7 +166,7 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
         looked_at += 1;
         if may_be_squares && looked_at > FEW + OVERLAPPING * region.visited() {
             may_be_squares = false;
-            // Where it takes too many of them, copies may do.
+            // Where squares fail because there are too many of them, copies may suffice.
             if let Ok(Some(squares)) = Squares::found(graph, region.radius, most) {
                 return Ok(squares.visit(region)?);
             }

@@ -1,16 +1,16 @@
-//! The Hausdorff distance of two sets: how far a point of one can be from the other.
+//! The Hausdorff distance of two sets: the maximum distance of a point of one from the other.
 
 use crate::geometry::DVec2;
 
 use super::cover::{NoCover, Subject};
 use super::nearest::{Nearest, Open};
 
-/// How exactly a distance is told, and for how much work.
+/// Precision of a distance, and the effort allowed for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Precision {
-    /// The error, as a multiple of the long side of a box that holds both sets.
+    /// Error, as a multiple of the long side of a box that holds both sets.
     pub tolerance: f64,
-    /// The most points that may stand for a set; where they do not suffice, the error is larger.
+    /// Maximum number of points by which a set is covered; where they do not suffice, the error is larger.
     pub most_points: usize,
 }
 
@@ -23,60 +23,61 @@ impl Default for Precision {
     }
 }
 
-/// The distance of two sets.
+/// Distance of two sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// The farthest that a point of the first set is from the second, to within the error.
+    /// Maximum distance of a point of the first set from the second, to within the error.
     pub there: f64,
-    /// The farthest that a point of the second set is from the first, to within the error.
+    /// Maximum distance of a point of the second set from the first, to within the error.
     pub back: f64,
-    /// No figure is off by more: a bound, not a guess.
+    /// Upper bound of the error of both distances.
     pub error: f64,
-    /// The error that was asked for.
+    /// Error that was asked for.
     pub wanted: f64,
-    /// The points that stood for each set.
+    /// Number of points that cover each set.
     pub points: [usize; 2],
 }
 
 impl Distance {
-    /// The Hausdorff distance.
+    /// Returns the Hausdorff distance, the larger of the two.
     #[must_use]
     pub fn value(&self) -> f64 {
         self.there.max(self.back)
     }
 
-    /// Whether the error is as small as was asked for: otherwise that would have taken more points than
-    /// are allowed.
+    /// Returns `true` if the error is as small as was asked for. Otherwise that would have taken more points
+    /// than are allowed.
     #[must_use]
     pub fn is_reached(&self) -> bool {
         self.error <= self.wanted
     }
 
-    /// Whether the sets may be the same: the distance is not more than its error.
+    /// Returns `true` if the sets may be equal: the distance is not larger than its error.
     #[must_use]
     pub fn may_be_same(&self) -> bool {
         self.value() <= self.error
     }
 }
 
-/// Covers are made finer by this factor.
+/// Factor by which each cover is finer than the previous one.
 const FINER: f64 = 2.0;
 
-/// The first covers have discs of this radius, as a multiple of the size.
+/// Radius of the discs of the first covers, as a multiple of the size of both sets.
 const COARSE: f64 = 1.0 / 16.0;
 
-/// Rounding adds no more than this, as a multiple of the farthest coordinate.
+/// Upper bound of the error by rounding, as a multiple of the largest coordinate.
 const ROUNDING: f64 = 1e-12;
 
-/// The Hausdorff distance of two sets.
+/// Computes the Hausdorff distance of two sets.
 ///
-/// Both sets are covered by discs of one radius ε about points, of which no point is farther from the
-/// set than ε. So the distance of the points, which is found exactly, is that of the sets to within 2 ε.
-/// Covers are made finer until that is as small as asked for, or takes too many points.
+/// Both sets are covered by discs of one radius ε about points, each of which is no farther than ε from the
+/// set. The distance of the points, which is computed exactly, is therefore that of the sets to within 2 ε.
+/// Covers are refined until 2 ε is as small as asked for, or until the next one takes too many points.
 ///
 /// # Errors
 ///
-/// If a set cannot be covered even by large discs: its number, 0 or 1, and why.
+/// Returns an error if a set cannot be covered even by large discs: the number of the set, 0 or 1, and the
+/// reason.
 pub fn hausdorff(
     sets: [&Subject<'_>; 2],
     precision: &Precision,
@@ -116,11 +117,11 @@ pub fn hausdorff(
     })
 }
 
-/// The farthest that a point of one set is from the nearest of another.
+/// Returns the maximum distance of a point of one set from the nearest of another.
 fn farthest(from: &Nearest, to: &Nearest) -> f64 {
     let (mut farthest, mut near, mut open) = (0.0, 0, Open::new());
     for &point in from.points() {
-        // A point that is near enough does not matter, so its nearest need not be found.
+        // A point that is nearer than the maximum does not matter, and its nearest need not be found.
         let (place, square) = to.find(point, farthest, near, &mut open);
         near = place;
         farthest = f64::max(farthest, square);

@@ -1,20 +1,19 @@
-//! The nearest of many points: a k-d tree (Bentley 1975).
+//! Nearest-neighbour search among points, by a k-d tree (Bentley 1975).
 
 use crate::geometry::{Bounds, DVec2};
 
-/// Points to look for the nearest among. The tree is the order of the points: the middle one of a
-/// range parts it.
+/// A k-d tree of points. The tree is the order of the points: the median of a range splits it.
 pub(super) struct Nearest {
     points: Vec<DVec2>,
-    /// Whether the point at this place parts its range by height.
+    /// Whether the point at this index splits its range by y instead of x.
     by_height: Vec<bool>,
 }
 
-/// Ranges that are still to be looked into, with the square of the least distance that their points may
-/// have: memory that one search after the other uses.
+/// Ranges that remain to be searched, with the square of a lower bound of the distance of their points. The
+/// memory is reused by successive searches.
 pub(super) type Open = Vec<(usize, usize, f64)>;
 
-/// Ranges of no more points than this are looked through.
+/// Ranges of at most this many points are searched one by one.
 const FEW: usize = 8;
 
 impl Nearest {
@@ -41,13 +40,13 @@ impl Nearest {
         Self { points, by_height }
     }
 
-    /// The points, in an order in which neighbours are mostly near each other.
+    /// Returns the points, in an order in which neighbours are mostly near each other.
     pub(super) fn points(&self) -> &[DVec2] {
         &self.points
     }
 
-    /// The place of the nearest point and the square of its distance, or of one that is within the
-    /// distance whose square is `enough`; `guess` is the place of a point that may be near.
+    /// Returns the index of the nearest point and the square of its distance, or those of any point whose
+    /// squared distance is at most `enough`. `guess` is the index of a point that may be near.
     pub(super) fn find(
         &self,
         point: DVec2,

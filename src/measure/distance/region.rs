@@ -1,40 +1,40 @@
-//! Outlines, and what they enclose, as points.
+//! Covers of outlines, and of the regions that they enclose, by points.
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 use crate::whole::whole;
 
-/// A set that takes more points than are allowed.
+/// Error of a set whose cover takes more points than are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it takes more than {most} points to tell the set that exactly")]
 pub struct TooMany {
-    /// The most that are allowed.
+    /// Maximum number of points.
     pub most: usize,
 }
 
-/// The points of a set, so far.
+/// The points of a cover that have been visited so far.
 pub(super) struct Region<'a> {
     visit: &'a mut dyn FnMut(DVec2),
-    /// None of the set may be farther from a point, nor a point from the set.
+    /// Maximum distance of the set from a point of the cover, and of a point from the set.
     pub(super) radius: f64,
-    /// How near points that are added must be to what they stand for.
+    /// Maximum distance of an added point from the part of the set that it covers.
     pub(super) near: f64,
     most: usize,
-    /// The points that have been visited.
+    /// Number of points that have been visited.
     visited: usize,
-    /// What has been done, in points that were added or copies that were looked into.
+    /// Work done so far: the number of points that were added and of copies that were examined.
     worked: usize,
     covered: Option<Covered>,
 }
 
-/// More is not done, as a multiple of the points that are allowed.
+/// Maximum work, as a multiple of the maximum number of points.
 const WORK_A_POINT: usize = 16;
 
-/// What a point stands for is no farther from it than this multiple of the radius within which the set
-/// must be of points. The rest is left for what is covered by points nearby.
+/// Maximum distance of a point from the part of the set for which it is added, as a multiple of the radius of
+/// the cover. The rest of the radius remains for parts that are covered by points nearby.
 const NEAR: f64 = 0.5;
 
-/// Squares of a grid of which nothing is farther from a point than a radius.
+/// The squares of a grid that lie within the radius of a visited point.
 struct Covered {
     corner: DVec2,
     side: f64,
@@ -44,13 +44,13 @@ struct Covered {
 }
 
 impl Covered {
-    /// The side of squares, as a multiple of the radius.
+    /// Side of the squares, as a multiple of the radius.
     const SIDE: f64 = 0.15;
 
-    /// Larger discs are not looked for, nor are rows of squares that do not fit into a word.
+    /// Discs of this many squares across are not looked up; a row of a smaller one fits into two words.
     const WIDEST: usize = 40;
 
-    /// Grids of more squares than this are not made: 128 mebibytes.
+    /// Maximum number of squares: about 120 mebibytes.
     const MOST: f64 = 1e9;
 
     fn new(bounds: &Bounds, radius: f64) -> Option<Self> {
@@ -72,7 +72,8 @@ impl Covered {
         })
     }
 
-    /// Whether all squares are covered that a disc comes near to, of which there are few.
+    /// Returns `true` if all squares in the bounding box of a disc are covered; `false` for discs of too many
+    /// squares.
     fn has(&self, middle: DVec2, radius: f64) -> bool {
         let middle = (middle - self.corner) / self.side;
         let radius = radius / self.side;
@@ -103,7 +104,7 @@ impl Covered {
             let away = below.abs().max((below + 1.0).abs());
             let half = (radius * radius - away * away).sqrt();
             let (left, right) = ((middle.x - half).ceil(), (middle.x + half).floor());
-            // Of a row that the disc does not hold, the half is no number.
+            // The half is NaN for a row that lies partly outside the disc.
             if right - left >= 1.0 {
                 let left = within(left, self.columns);
                 let count = within(right, self.columns) - left;
@@ -117,7 +118,7 @@ impl Covered {
         }
     }
 
-    /// The word that holds a square, and its bit.
+    /// Returns the index of the word that holds a square, and that of its bit.
     fn place(&self, row: usize, column: usize) -> (usize, usize) {
         let square = row * self.columns + column;
         (square / 64, square % 64)
@@ -128,12 +129,14 @@ impl Covered {
     }
 }
 
-/// The square of a row, or the row, that a coordinate lies in; the nearest for those beyond.
+/// Returns the index, below `count`, of the row or column that a coordinate lies in; the nearest one for
+/// coordinates outside.
 fn within(coordinate: f64, count: usize) -> usize {
     whole(coordinate).min(count - 1)
 }
 
-/// The radius of a disc about a point that holds an outline.
+/// Returns the radius of the smallest disc about a point that holds the control points of an outline, and
+/// with them the outline.
 pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
     let points = outline.control_points();
     points
@@ -142,8 +145,8 @@ pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
 }
 
 impl<'a> Region<'a> {
-    /// No point yet of a set in a box. In the end, none of the set may be farther than `radius` from
-    /// a point that has been visited, nor any point from the set.
+    /// Creates an empty cover of a set in a box. In the end, no point of the set may be farther than `radius`
+    /// from a visited point, and no visited point farther than that from the set.
     pub(super) fn new(
         bounds: &Bounds,
         radius: f64,
@@ -161,7 +164,7 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// The same where every point is visited, also those that are near others.
+    /// Creates an empty cover in which every point is visited, including points near others.
     pub(super) fn of_all(radius: f64, most: usize, visit: &'a mut dyn FnMut(DVec2)) -> Self {
         Self {
             visit,
@@ -174,12 +177,12 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// Adds a point that stands for some of the set.
+    /// Adds a point that covers a part of the set within the distance [`near`](Self::near).
     pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
         self.add_within(point, self.near)
     }
 
-    /// Adds a point of which what it stands for is no farther than a distance less than the radius.
+    /// Adds a point that covers a part of the set within `near`, which is less than the radius.
     pub(super) fn add_within(&mut self, point: DVec2, near: f64) -> Result<(), TooMany> {
         if !self.covers(point, near) {
             self.visited += 1;
@@ -194,13 +197,13 @@ impl<'a> Region<'a> {
         self.work(1)
     }
 
-    /// Whether a disc is covered already: where copies overlap, few must be looked into.
+    /// Returns `true` if a disc is covered already: where copies overlap, few have to be examined.
     pub(super) fn covers(&self, middle: DVec2, radius: f64) -> bool {
         let covered = self.covered.as_ref();
         covered.is_some_and(|covered| covered.has(middle, radius))
     }
 
-    /// The number of points that have been visited.
+    /// Returns the number of points that have been visited.
     pub(super) fn visited(&self) -> usize {
         self.visited
     }
@@ -213,13 +216,14 @@ impl<'a> Region<'a> {
         Ok(())
     }
 
-    /// Adds the image of an outline; of a closed one, with what it encloses.
+    /// Adds the image of an outline, and the enclosed region if it is closed.
     pub(super) fn add_outline(
         &mut self,
         outline: &BaseElement,
         map: &DAffine2,
     ) -> Result<(), TooMany> {
-        // The inside is known to half the radius from the line, and that to the other half.
+        // The inside is covered only up to half the distance from the outline, which must be covered to the
+        // other half.
         let radius = if outline.is_closed() {
             self.near / 2.0
         } else {
@@ -263,8 +267,8 @@ impl<'a> Region<'a> {
         Ok(())
     }
 
-    /// Adds points of a cubic Bézier curve, in its order: halves it (de Casteljau) until a disc about
-    /// the point in its middle holds all control points, and so the curve.
+    /// Adds points of a cubic Bézier curve, in their order along it. The curve is halved (de Casteljau) until
+    /// a disc about its midpoint holds all control points, and with them the curve.
     fn add_curve(
         &mut self,
         curve: [DVec2; 4],
@@ -288,8 +292,8 @@ impl<'a> Region<'a> {
         Ok(())
     }
 
-    /// Adds points of a grid that lie in a polygon, under the nonzero rule. What is in the polygon
-    /// has a point of the grid within half the distance, or the outline is as near as that.
+    /// Adds the points of a grid that lie in a polygon, by the nonzero rule. Every place in the polygon is
+    /// within half of [`near`](Self::near) of a point of the grid or of the outline.
     fn add_inside(&mut self, corners: &[DVec2]) -> Result<(), TooMany> {
         let step = self.near * std::f64::consts::FRAC_1_SQRT_2;
         let mut bounds = Bounds::EMPTY;
@@ -313,7 +317,7 @@ impl<'a> Region<'a> {
                 if turns == 0 {
                     continue;
                 }
-                // The next point of the grid.
+                // The first point of the grid that is not left of the crossing.
                 let mut x = min.x + ((pair[0].0 - min.x) / step).ceil() * step;
                 while x <= pair[1].0 {
                     self.add(DVec2::new(x, y))?;

@@ -1,4 +1,4 @@
-//! Limit sets as squares of grids: where copies overlap, a place is looked at once.
+//! Covers of limit sets by squares of grids: where copies overlap, each place is examined once.
 
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
@@ -8,69 +8,69 @@ use crate::whole::whole;
 use super::cover::reaches;
 use super::region::{Region, TooMany};
 
-/// The limit sets of all objects that the initiator leads to, each as squares of a grid in its own unit
-/// frame.
+/// The limit sets of all objects that the initiator reaches, each covered by squares of a grid in the
+/// object's own unit frame.
 ///
-/// Where the map of an instance takes the middle of a square that holds something, a square of the other
-/// object holds something as well, and so on until there are no new ones. Let no middle be farther than
-/// δ u(o) from what the squares of an object o stand for, where products of n maps from an object c to o
-/// stretch by N(n) u(o) / u(c) at most, and S be the sum of all N(n). Then the middles and the set are
-/// within S δ u(o) of each other (Hutchinson 1981; Barnsley's collage theorem).
+/// Where the map of an instance takes the centre of an occupied square, the square of the instancing object
+/// is occupied as well; images are marked until there are no new ones. Let every point that an occupied
+/// square of an object o represents lie within δ u(o) of the square's centre, let products of n maps from an
+/// object c to o stretch by at most N(n) u(o) / u(c), and let S be the sum of all N(n). The centres and the
+/// limit set are then within S δ u(o) of each other (Hutchinson 1981; Barnsley's collage theorem).
 pub(super) struct Squares<'g> {
     graph: &'g Graph,
-    /// The objects that are drawn in the limit.
+    /// Whether each object is drawn in the limit.
     alive: Vec<bool>,
     grids: Vec<Grid>,
-    /// The grid of each behaviour.
+    /// Index of the grid of each behaviour.
     of: Vec<Option<usize>>,
 }
 
-/// Squares in tiles of 8 × 8, a word each, row by row from the lower left.
+/// A grid of squares in tiles of 8 × 8, a word each, row by row from the lower left.
 struct Grid {
-    /// An object whose set this is.
+    /// An object whose limit set the grid covers.
     object: usize,
     corner: DVec2,
-    /// The side of squares.
+    /// Side of a square, in the unit frame.
     side: f64,
-    /// The number of tiles in a row, and that of rows.
+    /// Number of tiles in a row, and number of rows of tiles.
     tiles: [usize; 2],
-    /// Squares that hold something.
+    /// Occupied squares.
     marked: Vec<u64>,
-    /// Those whose images are not marked yet.
+    /// Occupied squares whose images are not marked yet.
     fresh: Vec<u64>,
 }
 
-/// An instance of what the squares of one grid stand for, in another one.
+/// An instance that maps the squares of one grid into another grid.
 struct Image {
-    /// From places in units of the one's squares to those of the other's.
+    /// The map, in units of the squares of both grids.
     map: DAffine2,
     grid: usize,
 }
 
-/// The side of tiles, in squares.
+/// Side of a tile, in squares.
 const TILE: usize = 8;
 
-/// From the corner of a tile to its middle, in squares.
+/// Vector from the corner of a tile to its centre, in squares.
 const HALF_TILE: DVec2 = DVec2::splat(4.0);
 
-/// More squares are not held: 128 mebibytes with those that are fresh.
+/// Maximum number of squares of all grids: 128 mebibytes for both words of each tile.
 const MOST_SQUARES: f64 = (1u64 << 29) as f64;
 
-/// The most images that are marked, as a multiple of the points that are allowed.
+/// Maximum number of images that are marked, as a multiple of the maximum number of points.
 const MARKED_A_POINT: usize = 96;
 
-/// No middle is farther from what its square stands for than this multiple of the radius within which
-/// the set must be of points. The rest is left for what is covered by points nearby.
+/// Maximum distance of the centre of a square from the part of the set that it represents, as a multiple of
+/// the radius of the cover. The rest of the radius remains for parts that are covered by points nearby.
 const NEAR: f64 = 0.75;
 
 impl<'g> Squares<'g> {
-    /// Squares that stand for the limit set, for points that are within a radius of it.
+    /// Finds squares that cover the limit set, for points that are within a radius of it.
     ///
-    /// `None` where the graph does not tell how much products of maps stretch.
+    /// Returns `None` where the stretch of products of maps has no known bound, or where nothing is replaced.
     ///
     /// # Errors
     ///
-    /// If it takes too many squares, for `most` points.
+    /// Returns an error if it takes too many squares or images, for `most` points.
     pub(super) fn found(
         graph: &'g Graph,
         radius: f64,
@@ -100,7 +100,7 @@ impl<'g> Squares<'g> {
         }
         let errors = weights.iter().map(|it| it * NEAR * radius / stretched);
         let errors: Vec<f64> = errors.collect();
-        // A rough picture tells where fine squares are needed.
+        // A coarse pass finds the extents of the sets, for the grids of fine squares.
         const ROUGHER: f64 = 16.0;
         let (reaches, centre) = (reaches(graph), graph.middle());
         let disc = |grid: &Grid| {
@@ -119,7 +119,7 @@ impl<'g> Squares<'g> {
 
     /// Adds points of the set to a region.
     pub(super) fn visit(&self, region: &mut Region<'_>) -> Result<(), TooMany> {
-        // Points of a wide grid come first: few of them cover what has an inside.
+        // Points of a wide grid come first: few of them cover filled regions.
         const WIDE: f64 = 1.0;
         let near = NEAR * region.radius;
         let kept = self.graph.initiator(0).instances.iter();
@@ -153,7 +153,7 @@ impl<'g> Squares<'g> {
         Ok(())
     }
 
-    /// The grids of what is replaced in the initiator, and where it stands.
+    /// Returns the grids of the replaced instances of the initiator, and the maps of these instances.
     fn initiator(&self) -> impl Iterator<Item = (usize, &DAffine2)> {
         let instances = self.graph.initiator(0).instances.iter();
         instances.filter_map(|it| Some((self.grid_of(it.object)?, &it.frame.map)))
@@ -165,7 +165,8 @@ impl<'g> Squares<'g> {
         self.of[object.behaviour].filter(|_| is_replaced)
     }
 
-    /// Makes a grid for each object that the initiator leads to.
+    /// Creates a grid for each behaviour that the initiator reaches and that is replaced and drawn in the
+    /// limit.
     fn find_objects(&mut self) {
         let graph = self.graph;
         let start = graph.initiator(0).instances.iter();
@@ -189,13 +190,14 @@ impl<'g> Squares<'g> {
         }
     }
 
-    /// What is kept in the place of an object, and drawn in the limit.
+    /// Returns the instances in an object's production that are kept and drawn in the limit.
     fn kept(&self, object: usize) -> impl Iterator<Item = &'g Instance> {
         let children = self.graph.children(object).map(|(_, instance)| instance);
         children.filter(|it| self.is_kept(it.object))
     }
 
-    /// What is replaced there, and leads to what is drawn.
+    /// Returns the instances in an object's production that have a grid: those that are replaced and lead to
+    /// visible elements.
     fn replaced(&self, object: usize) -> impl Iterator<Item = &'g Instance> {
         let children = self.graph.children(object).map(|(_, instance)| instance);
         children.filter(|it| self.grid_of(it.object).is_some())
@@ -210,8 +212,8 @@ impl<'g> Squares<'g> {
         &self.graph.base_elements()[self.graph.objects()[object].base_element]
     }
 
-    /// Marks all squares that hold something, in boxes about the sets of the grids. `errors` are the most
-    /// that a middle may be from what its square stands for.
+    /// Marks all occupied squares of the grids, which cover the boxes `bounds`. `errors` are the maximum
+    /// distances of centres from the points that their squares represent.
     fn mark(&mut self, bounds: &[Bounds], errors: &[f64], most: usize) -> Result<(), TooMany> {
         let too_many = TooMany { most };
         self.lay_out(bounds, errors).ok_or(too_many)?;
@@ -220,9 +222,10 @@ impl<'g> Squares<'g> {
         self.mark_images(images).ok_or(too_many)
     }
 
-    /// Makes squares as large as they may be, half of that where outlines are to be known to the other
-    /// half. What comes to lie outside, by errors, goes to the squares at the border, which are nearer
-    /// to all of the set.
+    /// Sizes the squares of every grid: as large as the errors permit, and half as large for an object that
+    /// keeps outlines, which take the other half of the error. Images that lie outside, within the error, are
+    /// marked in the squares at the border, which are nearer to all of the set. Returns `None` if there are
+    /// more than [`MOST_SQUARES`].
     fn lay_out(&mut self, bounds: &[Bounds], errors: &[f64]) -> Option<()> {
         let mut squares = 0.0;
         for (number, (bounds, error)) in bounds.iter().zip(errors).enumerate() {
@@ -245,7 +248,7 @@ impl<'g> Squares<'g> {
         Some(())
     }
 
-    /// Marks the outlines that objects keep, and a point of the set of each object.
+    /// Marks the outlines that objects keep, and one point of the limit set of each object.
     fn mark_own(&mut self, errors: &[f64], most: usize) -> Result<(), TooMany> {
         for (number, error) in errors.iter().enumerate() {
             let object = self.grids[number].object;
@@ -267,8 +270,8 @@ impl<'g> Squares<'g> {
         Ok(())
     }
 
-    /// The point of an object's set to which the first instances lead that are replaced, if they go on
-    /// for ever.
+    /// Returns a point of an object's limit set: the limit of the path of first replaced instances. Returns
+    /// `None` if the path ends.
     fn point(&self, mut object: usize) -> Option<DVec2> {
         const MOST_LEVELS: usize = 100_000;
         const NEGLIGIBLE: f64 = 1e-17;
@@ -284,7 +287,8 @@ impl<'g> Squares<'g> {
         Some(map.translation)
     }
 
-    /// Marks the images of all that is marked, and their images. `None` if that is too much.
+    /// Marks the images of all marked squares, and the images of these, until there are no new ones. Returns
+    /// `None` if that takes more than `most` images.
     fn mark_images(&mut self, most: usize) -> Option<()> {
         let images = self.images();
         let mut left = most;
@@ -318,7 +322,7 @@ impl<'g> Squares<'g> {
         Some(())
     }
 
-    /// Where the squares of each grid come to.
+    /// Returns the maps that take the squares of each grid into other grids.
     fn images(&self) -> Vec<Vec<Image>> {
         let mut images: Vec<Vec<Image>> = self.grids.iter().map(|_| Vec::new()).collect();
         for (number, grid) in self.grids.iter().enumerate() {
@@ -336,12 +340,12 @@ impl<'g> Squares<'g> {
 }
 
 impl Grid {
-    /// From places in units of squares to the unit frame.
+    /// Returns the map from coordinates in units of squares to the unit frame.
     fn places(&self) -> DAffine2 {
         DAffine2::from_scale_angle_translation(DVec2::splat(self.side), 0.0, self.corner)
     }
 
-    /// A box about the middles of the squares that hold something, and so much around them.
+    /// Returns a box that holds the tiles with occupied squares and a margin `around` them.
     fn bounds(&self, around: f64) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for (tile, squares) in self.marked.iter().enumerate() {
@@ -355,27 +359,27 @@ impl Grid {
         Bounds::new(bounds.min() - around, bounds.max() + around)
     }
 
-    /// The column and row of a tile's first square.
+    /// Returns the column and row of a tile's first square.
     fn corner_of(&self, tile: usize) -> [usize; 2] {
         [TILE * (tile % self.tiles[0]), TILE * (tile / self.tiles[0])]
     }
 
-    /// The tile of a square, and its bit.
+    /// Returns the index of a square's tile, and the mask of its bit.
     #[inline]
     fn find(&self, x: usize, y: usize) -> (usize, u64) {
         let tile = y / TILE * self.tiles[0] + x / TILE;
         (tile, 1 << (y % TILE * TILE + x % TILE))
     }
 
-    /// The square that a place lies in, or the one nearest to it.
+    /// Returns the square that a point lies in, or the nearest one.
     #[inline]
     fn nearest(&self, place: DVec2) -> [usize; 2] {
         let [columns, rows] = self.tiles;
         [within(place.x, columns), within(place.y, rows)]
     }
 
-    /// Whether something is known to be in all squares that a map takes a tile to, about a place in its
-    /// middle: so it is mostly where there is an inside.
+    /// Returns `true` if all tiles that the image of a tile meets are filled, which is frequent inside filled
+    /// regions. `tile` is the centre of the tile; images that are too large return `false`.
     fn holds(&self, map: &DAffine2, tile: DVec2) -> bool {
         const MOST: usize = 4;
         let middle = map.transform_point2(tile);
@@ -399,7 +403,7 @@ impl Grid {
         self.marked[tile] & bit != 0
     }
 
-    /// Says that the square of a place holds something.
+    /// Marks the square of a point, which is fresh if it was not marked before.
     #[inline]
     fn mark(&mut self, place: DVec2) {
         let [x, y] = self.nearest(place);
@@ -410,7 +414,7 @@ impl Grid {
     }
 }
 
-/// The lower left corner of a square.
+/// Returns the lower left corner of a square.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "rows of squares are short")]
 fn place(x: usize, y: usize) -> DVec2 {
@@ -421,7 +425,7 @@ fn middle(x: usize, y: usize) -> DVec2 {
     place(x, y) + 0.5
 }
 
-/// The bits that are set.
+/// Iterates over the indices of the bits that are set.
 fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (word != 0).then(|| word.trailing_zeros() as usize);
@@ -430,7 +434,7 @@ fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The square along a row of tiles that a coordinate lies in; the nearest for those beyond.
+/// Returns the square along a row of tiles that a coordinate lies in, or the nearest one.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

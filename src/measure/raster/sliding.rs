@@ -1,36 +1,36 @@
-//! Boxes on all grids at once: the mean count over all places of a grid, as the area of a dilation.
+//! Box counts averaged over all grids: the mean count of a size is the area of a dilation.
 //!
-//! Of all grids of boxes of s pixels, one in s² has a corner at any given pixel, so the mean number of
-//! boxes that meet a set is the number of places of one box that meets it, divided by s²: the area of
-//! the set dilated by the box (the sausage of Minkowski). It has none of the chance that the few
-//! grids of a least cover have, and can be told for boxes of any whole side.
+//! Of all grids of boxes of s pixels, one in s² has a corner at any given pixel. The mean number of boxes
+//! that meet a set is therefore the number of positions of one box that meets it, divided by s²: the area of
+//! the set dilated by the box (the Minkowski sausage). The mean is free of the variation between the few
+//! grids of a least cover, and can be computed for boxes of any integer side.
 
 use std::borrow::Cow;
 use std::num::NonZero;
 
 use crate::measure::bits::Bits;
 
-/// The mean number of boxes of one size.
+/// Mean number of boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::measure) struct Mean {
-    /// The side of a box in pixels.
+    /// Side of a box in pixels.
     pub(in crate::measure) size: f64,
-    /// The mean number of boxes that meet the set, over all grids.
+    /// Mean number of boxes that meet the set, over all grids.
     pub(in crate::measure) boxes: f64,
 }
 
-/// Grids of large boxes are moved in so many steps or more along each side.
+/// Minimum number of shifts along each side that grids of large boxes are averaged over.
 const PLACES: usize = 8;
 
-/// Sides of squares that may fill a set.
+/// Sides, in pixels, of the squares that measure the thickness of a set.
 const FILLING: std::ops::RangeInclusive<usize> = 2..=6;
 
-/// Blocks of pixels in a row that are looked at one by one: of larger pictures, larger blocks are.
+/// Maximum number of blocks in a row: in larger pictures, pixels are joined to larger blocks.
 const FINE: usize = 1 << 12;
 
-/// The mean counts of boxes of 1 to 8 pixels, and of four sizes to each doubling beyond, from the smallest
-/// up to the long side of the picture. Of pictures larger than 4096 pixels, those of boxes of as many
-/// times 2, 4 … pixels.
+/// Computes the mean counts of boxes of 1 to 8 pixels, and of four sizes to each doubling beyond, from the
+/// smallest up to the long side of the picture. In pictures larger than 4096 pixels, sizes are multiples of
+/// blocks of 2, 4 … pixels.
 pub(in crate::measure) fn means(pixels: &Bits, threads: NonZero<usize>) -> Vec<Mean> {
     let longest = pixels.width().max(pixels.height());
     let mut means = Vec::new();
@@ -39,7 +39,7 @@ pub(in crate::measure) fn means(pixels: &Bits, threads: NonZero<usize>) -> Vec<M
     let first = longest.div_ceil(FINE).next_power_of_two();
     while block < first || block * PLACES <= longest || block == 1 {
         let mut dilated = Cow::Borrowed(&*blocks);
-        // Of too small blocks, nothing is counted.
+        // Blocks that are too small are only folded.
         let mut places = if block < first { 2 * PLACES } else { 1 };
         while places < 2 * PLACES && places * block <= longest {
             if block == first || places >= PLACES {
@@ -53,7 +53,7 @@ pub(in crate::measure) fn means(pixels: &Bits, threads: NonZero<usize>) -> Vec<M
             dilated = Cow::Owned(dilated.dilated(more, threads));
             places += more;
         }
-        // No grid of larger blocks lies along the rims of the set.
+        // Alternating shifts keep the grids of larger blocks off the rims of the set.
         let odd = block.trailing_zeros() % 2 == 1;
         blocks = Cow::Owned(blocks.folded([odd, !odd]));
         block *= 2;
@@ -69,9 +69,9 @@ fn mean(dilated: &Bits, places: usize, block: usize) -> Mean {
     }
 }
 
-/// How thick a set is, in pixels beyond the first: the parts of it that squares of 2, 3 … 6 pixels
-/// inside of it fill, summed up. It is near w − 1 for lines that are w pixels wide, and 5 for shapes
-/// that are filled. Of large pictures, some bands of rows tell it.
+/// Returns the thickness of a set, in pixels beyond the first: the sum of the parts of the set that are
+/// filled by squares of 2, 3 … 6 pixels inside it. The thickness is near w − 1 for lines that are w pixels
+/// wide, and 5 for filled shapes. In large pictures, only some bands of rows are examined.
 #[expect(clippy::cast_precision_loss, reason = "parts are rounded")]
 pub(in crate::measure) fn thickness(pixels: &Bits, threads: NonZero<usize>) -> f64 {
     const THIN: f64 = 0.3;
@@ -100,7 +100,7 @@ pub(in crate::measure) fn thickness(pixels: &Bits, threads: NonZero<usize>) -> f
 mod tests {
     use super::*;
 
-    /// Pixels that look like chance.
+    /// Returns pseudorandom pixels, of which one in 32 is set.
     fn chance(width: usize, height: usize) -> Bits {
         let mut bits = Bits::new(width, height);
         let mut state = 7u64;
@@ -133,7 +133,7 @@ mod tests {
                 .map(|shift| bits.coarser(side, shift).count() as f64)
                 .collect();
             let naive = counts.iter().sum::<f64>() / counts.len() as f64;
-            // Grids of boxes of 16 pixels and more are moved by several.
+            // Grids of boxes of 16 pixels and more are shifted by several pixels.
             let tolerance = if side < 16 { 1e-12 } else { 0.15 };
             let off = (mean.boxes / naive - 1.0).abs();
             assert!(off < tolerance, "{side}: {} {naive}", mean.boxes);
@@ -155,7 +155,7 @@ mod tests {
         let all: Vec<f64> = means.iter().take(9).map(|mean| mean.size).collect();
         assert_eq!(all, [4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0, 32.0, 40.0]);
         for mean in means.iter().filter(|mean| mean.size < 1000.0) {
-            // A line of L pixels meets L / s + 1 boxes, less what its single pixel is long.
+            // A line of L pixels meets L / s + 1 boxes, less the length of a single pixel.
             let off = mean.boxes - (9000.0 / mean.size + 1.0);
             assert!(off.abs() < 1.0, "{mean:?}");
         }
