@@ -1,3 +1,5 @@
+//! Headings of the turtle as exact fractions of a turn.
+
 use std::collections::BTreeSet;
 
 use crate::expression::degrees;
@@ -5,29 +7,29 @@ use crate::geometry::DVec2;
 
 use super::{Action, LSystem, Symbol};
 
-/// Headings as whole numbers: parts of a turn, so that sums of turns are exact.
+/// The unit of headings, which are integers: equal parts of a turn, so that sums of turns are exact.
 ///
-/// Where all angles of a system are known to be fractions of a turn, a turn has as many parts as their
-/// least common denominator; otherwise 2⁶⁴. 25.7 degrees are 257/3600 of a turn and the double next to
-/// 360/7 is 1/7: the fraction is of the least denominator up to 1000 that the double is the nearest to, or
-/// else that of its shortest decimal.
+/// Where all angles of a system are known fractions of a turn, a turn has as many parts as their least common
+/// denominator; otherwise 2⁶⁴. An angle of 25.7 degrees is 257/3600 of a turn, and the double next to 360/7
+/// is 1/7 of one: the fraction has the least denominator up to 1000 for which the double is the nearest, or
+/// else that of the angle's shortest decimal.
 ///
-/// Guarantee: directions of whole multiples of 30 and 45 degrees have the exact sines and cosines, and
-/// opposite headings have opposite directions.
+/// Guarantee: directions at multiples of 30 and 45 degrees have exact sines and cosines, and opposite
+/// headings have opposite directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compass {
     /// Parts of a turn; 0 stands for 2⁶⁴.
     parts: u64,
 }
 
-/// A turn has no more parts than this unless it has 2⁶⁴: 360 times as many fit a double exactly.
+/// Limit of the number of parts, other than 2⁶⁴: 360 times as many are exact in a double.
 const MOST_PARTS: u64 = 1 << 40;
 
-/// The largest denominator that is looked for.
+/// Largest denominator that the search tries.
 const MOST_DENOMINATOR: u32 = 1000;
 
 impl Compass {
-    /// The compass of all angles that a system turns by.
+    /// Returns the compass for all angles that a system turns by.
     #[must_use]
     pub fn of(system: &LSystem) -> Self {
         let mut parts = Some(1);
@@ -45,13 +47,13 @@ impl Compass {
         }
     }
 
-    /// The number of parts of a turn; 0 stands for 2⁶⁴.
+    /// Returns the number of parts of a turn; 0 stands for 2⁶⁴.
     #[must_use]
     pub fn parts(self) -> u64 {
         self.parts
     }
 
-    /// An angle in degrees as parts, to the nearest; 0 for one that is not finite.
+    /// Converts an angle in degrees to parts, rounded to the nearest; one that is not finite becomes 0.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -62,14 +64,14 @@ impl Compass {
     pub fn of_degrees(self, angle: f64) -> u64 {
         let turn = (angle % 360.0) / 360.0;
         if self.parts == 0 {
-            // Of a negative angle the parts wrap round.
+            // The parts of a negative angle wrap round.
             return (turn * 2f64.powi(64)) as i128 as u64;
         }
         let parts = (turn.abs() * self.parts as f64).round() as u64 % self.parts;
         if turn < 0.0 { self.back(parts) } else { parts }
     }
 
-    /// The sum of two headings.
+    /// Returns the sum of two headings.
     #[must_use]
     pub fn sum(self, a: u64, b: u64) -> u64 {
         match self.parts {
@@ -78,7 +80,7 @@ impl Compass {
         }
     }
 
-    /// The turn the other way round.
+    /// Returns the opposite turn.
     #[must_use]
     pub fn back(self, turn: u64) -> u64 {
         match self.parts {
@@ -87,7 +89,7 @@ impl Compass {
         }
     }
 
-    /// A heading in degrees, from 0 up to 360.
+    /// Converts a heading to degrees, from 0 up to but excluding 360.
     #[must_use]
     #[expect(
         clippy::cast_precision_loss,
@@ -100,7 +102,7 @@ impl Compass {
         }
     }
 
-    /// A heading as parts of a turn: how many of how many.
+    /// Returns a heading as a fraction of a turn: numerator and denominator.
     pub(crate) fn fraction(self, heading: u64) -> [u128; 2] {
         let parts = if self.parts == 0 {
             1 << 64
@@ -110,7 +112,7 @@ impl Compass {
         [heading.into(), parts]
     }
 
-    /// The direction of a heading, of length 1.
+    /// Returns the unit vector of a heading.
     #[must_use]
     pub fn direction(self, heading: u64) -> DVec2 {
         let angle = self.degrees(heading);
@@ -118,7 +120,8 @@ impl Compass {
     }
 }
 
-/// All angles that the symbols of a system turn by; `None` for one that is not known beforehand.
+/// Iterates over all angles that the symbols of a system turn by; `None` for one that depends on arguments
+/// unknown before rewriting.
 fn angles(system: &LSystem) -> impl Iterator<Item = Option<f64>> {
     let turns = |symbol: &'_ Symbol| {
         let turns = symbol.meaning.iter().filter_map(|action| match action {
@@ -154,7 +157,7 @@ fn angles(system: &LSystem) -> impl Iterator<Item = Option<f64>> {
     constant.chain(axiom).chain(written)
 }
 
-/// The denominator of an angle in degrees as a fraction of a turn; nothing if it has none.
+/// Returns the denominator of an angle in degrees as a fraction of a turn; `None` if it does not fit 64 bits.
 fn denominator(angle: f64) -> Option<u64> {
     let whole = |q: u32| {
         let q = f64::from(q);
@@ -217,7 +220,7 @@ mod tests {
         assert_eq!(compass.degrees(5), 300.0);
     }
 
-    /// A turn by what is not known beforehand is that angle to a double's precision.
+    /// An angle that is unknown before rewriting keeps the precision of a double.
     #[test]
     fn unknown_angles_are_fine() {
         let compass = Compass { parts: 0 };

@@ -1,5 +1,5 @@
-//! Words that are read and never held: where nothing depends on what stands around a module, what it comes to
-//! follows from the modules alone that it came of.
+//! Words that are read without being stored: where no production has a context, the descendants of a module
+//! depend on its ancestors alone.
 
 use crate::rule::draw::Path;
 
@@ -7,16 +7,16 @@ use super::rewrite::{MOST_WORK, RewriteError, Rewriter};
 use super::word::number;
 use super::{LSystem, Word};
 
-/// Words of more modules than this are not read.
+/// Limit of the number of modules in a word that is read.
 const MOST_MODULES: u64 = 200_000_000;
 
 impl LSystem {
-    /// Reads the modules of the word after a number of steps, one after the other: the symbol by number, and
-    /// the arguments. Without contexts the word is not held.
+    /// Reads the modules of the word after a number of steps, in order: `read` gets the symbol's index and
+    /// the arguments. Without contexts the word is not stored.
     ///
     /// # Errors
     ///
-    /// As for [`LSystem::word`], but without contexts words may have some hundred million modules.
+    /// Returns the errors of [`LSystem::word`]. Without contexts the limit is 200 million modules.
     pub fn read(
         &self,
         steps: u32,
@@ -49,9 +49,9 @@ struct Expander<'s> {
     system: &'s LSystem,
     rewriter: Rewriter<'s>,
     most_elements: u64,
-    /// The modules that the next one comes of, from the axiom's.
+    /// The modules being replaced, from the axiom's down to the one that the next module descends from.
     ancestors: Vec<Ancestor>,
-    /// The arguments that their productions see.
+    /// Arguments that the ancestors' productions see, one after the other.
     slots: Vec<f64>,
     modules: u64,
     elements: u64,
@@ -60,10 +60,10 @@ struct Expander<'s> {
 /// A module that is being replaced.
 struct Ancestor {
     production: usize,
-    /// How much of the successor has been read.
+    /// Position in the successor of the next module to read.
     position: usize,
     path: Option<Path>,
-    /// Where its arguments begin.
+    /// Position in the expander's slots of the arguments that the production sees.
     slots: usize,
 }
 
@@ -80,7 +80,7 @@ impl<'s> Expander<'s> {
         }
     }
 
-    /// Reads the word that an axiom comes to.
+    /// Reads the word that an axiom becomes after a number of steps.
     fn expand(
         &mut self,
         axiom: &Word,
@@ -103,7 +103,7 @@ impl<'s> Expander<'s> {
         Ok(())
     }
 
-    /// Reads a module if it stays, or else remembers what replaces it.
+    /// Reads a module if it belongs to the last word, or pushes the production that replaces it.
     fn module(
         &mut self,
         symbol: usize,
@@ -142,7 +142,7 @@ impl<'s> Expander<'s> {
         Ok(())
     }
 
-    /// The next module of a successor, if there is one, and its arguments.
+    /// Returns the next module of the successors being read, and writes its arguments; `None` at the end.
     fn next(
         &mut self,
         arguments: &mut Vec<f64>,

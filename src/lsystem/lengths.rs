@@ -1,15 +1,18 @@
+//! Lengths of words without rewriting, by powers of the system's matrix.
+
 use super::LSystem;
 
-/// How long the words of a system become, where what replaces a symbol never depends on anything else:
-/// powers of its matrix (Prusinkiewicz & Lindenmayer 1990, section 1.10). Counts beyond 2⁶⁴ stay there.
+/// Lengths of the words of a system in which the successor of a symbol never depends on anything else, by
+/// powers of its matrix (Prusinkiewicz & Lindenmayer 1990, section 1.10). Counts saturate at 2⁶⁴ − 1.
 pub(super) struct Lengths<'s> {
     system: &'s LSystem,
-    /// How many there are of each symbol.
+    /// The number of modules of each symbol.
     counts: Vec<u64>,
 }
 
 impl LSystem {
-    /// The lengths of its words; `None` if they depend on arguments, on contexts or on what is drawn.
+    /// Returns the lengths of the words, from the axiom's; `None` if a production that is tried first has a
+    /// context, a condition or a weight.
     pub(super) fn lengths(&self) -> Option<Lengths<'_>> {
         let is_plain = |numbers: &Vec<usize>| match numbers.as_slice() {
             [] => true,
@@ -36,7 +39,7 @@ impl LSystem {
 }
 
 impl Lengths<'_> {
-    /// The number of modules, and of those that the turtle draws.
+    /// Returns the number of modules, and of the lines and polygons that they draw at most.
     pub(super) fn count(&self) -> (u64, u64) {
         let all = self.counts.iter().zip(&self.system.symbols);
         all.fold((0, 0), |(modules, elements), (&count, symbol)| {
@@ -48,7 +51,7 @@ impl Lengths<'_> {
         })
     }
 
-    /// Goes on to the next word; `false` if it is the same.
+    /// Advances to the next word; returns `false` if no module was replaced.
     pub(super) fn advance(&mut self) -> bool {
         let mut next = vec![0u64; self.counts.len()];
         let mut changes = false;

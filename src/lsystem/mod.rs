@@ -1,31 +1,32 @@
 //! L-systems with a turtle (Prusinkiewicz & Lindenmayer, "The Algorithmic Beauty of Plants", 1990).
 //!
-//! A *word* is a string of *modules*: a symbol, perhaps with arguments. A step replaces all modules of a
-//! word at the same time, each by the successor of a production that fits it; a module that none fits is
+//! A *word* is a string of *modules*: a symbol, perhaps with arguments. A step replaces all modules of a word
+//! at the same time, each by the successor of a production that fits it; a module that no production fits is
 //! kept. A turtle reads the last word: every symbol has a meaning, a list of actions on the turtle.
 //!
-//! # Which production
+//! # Selection of productions
 //!
-//! Productions with contexts come before those without (ABOP, section 1.8), and in the order of the file
-//! otherwise; [`Symbol::productions`] is that order. The first one that fits is taken. If it has a weight,
-//! one is drawn of all those with weights that fit and are of its precedence. Draws depend on the seed and the module's *path* alone: its
-//! position in the axiom, then in each successor, among all its modules; being kept adds nothing.
+//! Productions with contexts precede those without (ABOP, section 1.8); otherwise the order is that of the
+//! file. [`Symbol::productions`] is in this order. The first production that fits is taken. If it has a
+//! weight, one is drawn from all productions with weights that fit and have the same precedence. Draws depend
+//! only on the seed and the module's *path*: its position in the axiom, then in each successor, among all
+//! modules of it; being kept adds nothing.
 //!
 //! # The turtle
 //!
-//! Its state is a place, an exact [heading](Compass), whether it is mirrored, the scale of its
-//! steps, a factor of widths and an index of colours. It starts at the origin in the start heading with
-//! scale 1, width 1 and colour 0. y points up; positive angles are counter-clockwise, or clockwise where it
-//! is mirrored. The state is what brackets save and restore. A second heading, which starts as the first one does,
-//! is part of it; nothing goes by it until both are exchanged.
+//! The state of the turtle consists of a position, an exact [heading](Compass), a mirrored flag, the scale of
+//! its steps, a factor of widths and a colour index. The turtle starts at the origin in the start heading
+//! with scale 1, width 1 and colour 0. The y axis points up; positive angles are counter-clockwise, or
+//! clockwise while the turtle is mirrored. Brackets save and restore the state. A second heading, initially
+//! equal to the first, is part of the state and has no effect until both are exchanged.
 //!
-//! # What is guaranteed
+//! # Guarantees
 //!
-//! All numbers of symbols and productions are in range. A module has as many arguments as its symbol
-//! takes, and none of the axiom is infinite or NaN. In every word, the axiom and all successors, pushes
-//! and pops are balanced, and so are opened and closed polygons (but a bracket may be closed while
-//! a polygon that was opened in it is still open). A symbol saves the state once more than it takes it
-//! back, or the other way round, or equally often. Constant numbers in actions are finite.
+//! All indices of symbols and productions are in range. A module has as many arguments as its symbol takes,
+//! and none of the axiom's is infinite or NaN. In every word, in the axiom and all successors, pushes and
+//! pops are balanced, and so are opened and closed polygons (but a bracket may be closed while a polygon that
+//! was opened in it is still open). The numbers of pushes and pops of a symbol differ by at most one.
+//! Constant numbers in actions are finite.
 
 mod compass;
 mod expand;
@@ -56,159 +57,159 @@ pub struct LSystem {
     pub(crate) productions: Vec<Production>,
 }
 
-/// A symbol with a number of arguments: `F` and `F(l)` are two.
+/// A symbol with a number of arguments: `F` and `F(l)` are different symbols.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Symbol {
-    /// Its character.
+    /// Character of the symbol.
     pub character: char,
-    /// The number of its arguments.
+    /// The number of arguments.
     pub arity: usize,
-    /// What the turtle does where it meets it. The slots of its programs are the module's arguments.
+    /// Actions of the turtle on reading the symbol. The slots of their programs are the module's arguments.
     pub meaning: Vec<Action>,
-    /// Whether contexts do not see it.
+    /// Whether contexts ignore the symbol.
     pub ignored: bool,
-    /// The productions of which it is the predecessor, in the order in which they are tried.
+    /// Indices of the productions with this predecessor, in the order in which they are tried.
     pub productions: Vec<usize>,
 }
 
 /// An action of the turtle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Goes so many steps ahead and draws a line; inside a polygon it makes a vertex instead.
+    /// Moves forward by a number of steps and draws a line; inside a polygon, adds a vertex instead.
     Draw(Program),
-    /// The same without the line.
+    /// Moves forward by a number of steps without a line; inside a polygon, adds a vertex.
     Move(Program),
-    /// The same with neither a line inside a polygon, nor a vertex.
+    /// Moves forward by a number of steps with neither a line nor a vertex.
     Glide(Program),
-    /// Turns by so many degrees.
+    /// Turns by an angle in degrees, counter-clockwise, or clockwise while mirrored.
     Turn(Program),
-    /// Turns by so many degrees counter-clockwise, also where it is mirrored.
+    /// Turns by an angle in degrees counter-clockwise, also while mirrored.
     Rotate(Program),
-    /// Exchanges its heading with the second one.
+    /// Exchanges the heading with the second one.
     Swap,
-    /// Saves its state: an opening bracket.
+    /// Saves the state: an opening bracket.
     Push,
-    /// Takes back the state that was saved last: a closing bracket.
+    /// Restores the state that was saved last: a closing bracket.
     Pop,
-    /// From here on turns the other way round.
+    /// Toggles the mirrored flag, which inverts the direction of turns.
     Reflect,
-    /// Multiplies the length of its steps.
+    /// Multiplies the length of steps by a factor.
     Scale(Program),
-    /// Multiplies the width of its lines.
+    /// Multiplies the width of lines by a factor; negative ones count as 0.
     Width(Program),
-    /// Sets the width, as a multiple of what it started with.
+    /// Sets the width, as a multiple of the initial one; negative widths count as 0.
     SetWidth(Program),
-    /// Sets the index of the colour.
+    /// Sets the colour index.
     SetColour(Program),
-    /// Adds to the index of the colour.
+    /// Adds to the colour index.
     ShiftColour(Program),
-    /// Begins a polygon, which is of the colour that the turtle has here.
+    /// Begins a polygon in the turtle's current colour.
     Open,
     /// Ends the polygon that was begun last, and fills it.
     Close,
-    /// Makes the place where it is a vertex.
+    /// Adds the current position to the polygon as a vertex.
     Vertex,
 }
 
 /// A module: a symbol with the values of its arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Module {
-    /// The symbol, by number.
+    /// Index of the symbol.
     pub symbol: usize,
-    /// As many as the symbol takes.
+    /// Arguments, as many as the symbol takes.
     pub arguments: Vec<f64>,
 }
 
-/// A module of a successor, whose arguments are worked out where it is used.
+/// A module of a successor, whose arguments are evaluated where the production is applied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
-    /// The symbol, by number.
+    /// Index of the symbol.
     pub symbol: usize,
-    /// As many as the symbol takes.
+    /// Expressions of the arguments, as many as the symbol takes.
     pub arguments: Vec<Program>,
 }
 
-/// Where a successor was written: for messages about what shows only when it is used.
+/// Source span of a successor, for diagnostics of errors that occur only on application.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin(pub(crate) Place);
 
 impl PartialEq for Origin {
-    /// Two productions are the same wherever they were written.
+    /// Returns `true`: equality of productions does not depend on their source spans.
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// A production: what replaces a module, and when.
+/// A production: the replacement of a module, and its conditions.
 ///
-/// The slots of its programs are the arguments of the modules of the left context, in the order in which
-/// they are written, then those of the predecessor, then those of the right context.
+/// The slots of its programs are the arguments of the left context's modules in the order in which they are
+/// written, then those of the predecessor, then those of the right context.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Production {
     pub(crate) origin: Origin,
-    /// The symbol that it replaces, by number.
+    /// Index of the symbol that is replaced.
     pub predecessor: usize,
-    /// The symbols that stand before it, on the way from the root: the nearest one last.
+    /// Left context: the symbols before the module on the path from the root, the nearest one last.
     pub left: Vec<usize>,
-    /// What stands behind it.
+    /// Right context.
     pub right: Vec<Context>,
-    /// What must hold.
+    /// Condition that must hold, if there is one.
     pub condition: Option<Program>,
-    /// What replaces the module.
+    /// Modules that replace the predecessor.
     pub successor: Vec<Template>,
-    /// How often it is taken, relative to the others that fit.
+    /// Weight in the draw among fitting productions; without one the production is deterministic.
     pub weight: Option<Program>,
 }
 
 /// A part of a right context.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Context {
-    /// A symbol, by number.
+    /// The symbol with this index.
     Symbol(usize),
-    /// A branch begins.
+    /// The start of a branch.
     Open,
-    /// It ends.
+    /// The end of a branch.
     Close,
 }
 
 impl LSystem {
-    /// What files of all kinds say.
+    /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn heading(&self) -> &Heading {
         &self.heading
     }
 
-    /// Where the turtle looks first: degrees, counter-clockwise from the right.
+    /// Returns the start heading in degrees, counter-clockwise from the right.
     #[must_use]
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// The length of its steps; above 0.
+    /// Returns the initial length of a step, above 0.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// The symbols.
+    /// Returns the symbols.
     #[must_use]
     pub fn symbols(&self) -> &[Symbol] {
         &self.symbols
     }
 
-    /// The word that all begins with.
+    /// Returns the axiom: the word of step 0.
     #[must_use]
     pub fn axiom(&self) -> &[Module] {
         &self.axiom
     }
 
-    /// The productions, in the order of the file.
+    /// Returns the productions, in the order of the file.
     #[must_use]
     pub fn productions(&self) -> &[Production] {
         &self.productions
     }
 
-    /// Whether nothing is drawn at random.
+    /// Returns whether no production has a weight.
     #[must_use]
     pub fn is_deterministic(&self) -> bool {
         !{ &self.productions }
@@ -216,7 +217,7 @@ impl LSystem {
             .any(|production| production.weight.is_some())
     }
 
-    /// Whether no production has a context.
+    /// Returns whether no production has a context.
     #[must_use]
     pub fn is_context_free(&self) -> bool {
         self.productions
@@ -224,21 +225,21 @@ impl LSystem {
             .all(|production| !production.has_context())
     }
 
-    /// Whether what replaces a module depends on arguments.
+    /// Returns whether a symbol with arguments has productions.
     #[must_use]
     pub fn is_parametric(&self) -> bool {
         let mut symbols = self.symbols.iter();
         symbols.any(|symbol| symbol.arity > 0 && !symbol.productions.is_empty())
     }
 
-    /// Whether what a word draws depends on more of the turtle than where it stands: on a second heading,
-    /// or on whether it is mirrored where turns are not.
+    /// Returns whether the drawing of a word depends on more of the turtle's state than its frame: on the
+    /// second heading, or on the mirrored flag where [`Action::Rotate`] ignores it.
     pub(crate) fn depends_on_the_way(&self) -> bool {
         let mut actions = self.symbols.iter().flat_map(|symbol| &symbol.meaning);
         actions.any(|action| matches!(action, Action::Swap | Action::Rotate(_)))
     }
 
-    /// The same system with lines of one width and one colour: it draws the same set.
+    /// Returns the system without actions on width and colour: it draws the same set.
     #[must_use]
     pub fn without_looks(&self) -> Self {
         let mut plain = self.clone();
@@ -248,7 +249,7 @@ impl LSystem {
         plain
     }
 
-    /// Whether the turtle's colour ever changes.
+    /// Returns whether a symbol changes the turtle's colour.
     #[must_use]
     pub fn has_colours(&self) -> bool {
         let mut actions = self.symbols.iter().flat_map(|symbol| &symbol.meaning);
@@ -257,7 +258,7 @@ impl LSystem {
 }
 
 impl Action {
-    /// Whether it changes widths or colours, and nothing else.
+    /// Returns whether the action changes width or colour only.
     #[must_use]
     pub fn changes_looks(&self) -> bool {
         matches!(
@@ -268,7 +269,7 @@ impl Action {
 }
 
 impl Production {
-    /// Whether it has a context.
+    /// Returns whether the production has a left or right context.
     #[must_use]
     pub fn has_context(&self) -> bool {
         !self.left.is_empty() || !self.right.is_empty()
@@ -276,26 +277,26 @@ impl Production {
 }
 
 impl Symbol {
-    /// How many lines and polygons it draws at most.
+    /// Returns the largest number of lines and polygons that the symbol draws.
     #[must_use]
     pub fn draws(&self) -> u64 {
         let draws = |action: &Action| u64::from(matches!(action, Action::Draw(_) | Action::Close));
         self.meaning.iter().map(draws).sum()
     }
 
-    /// Whether it is an opening bracket: it saves the state once more than it takes it back.
+    /// Returns whether the symbol is an opening bracket: it saves the state once more than it restores it.
     #[must_use]
     pub fn is_push(&self) -> bool {
         self.saves() > 0
     }
 
-    /// Whether it is a closing bracket.
+    /// Returns whether the symbol is a closing bracket: it restores the state once more than it saves it.
     #[must_use]
     pub fn is_pop(&self) -> bool {
         self.saves() < 0
     }
 
-    /// How often it saves the state, less how often it takes it back: -1, 0 or 1.
+    /// Returns the number of pushes minus the number of pops: −1, 0 or 1.
     fn saves(&self) -> i32 {
         let saves = |action: &Action| match action {
             Action::Push => 1,

@@ -1,4 +1,4 @@
-//! Words, rewritten step by step.
+//! Rewriting of words, step by step, within limits of length and work.
 
 use crate::rule::draw::{Path, pick_by_weight};
 
@@ -8,60 +8,60 @@ use super::surroundings::Surroundings;
 use super::word::number;
 use super::{LSystem, Word};
 
-/// Words of more modules than this are not made.
+/// Limit of the number of modules, and of arguments, in a word that is stored.
 const MOST_MODULES: u64 = 25_000_000;
 
-/// So often at most modules, productions and contexts are looked at in all steps together.
+/// Limit of the modules, productions and contexts examined in all steps together.
 pub(super) const MOST_WORK: u64 = 1_000_000_000;
 
-/// A forecast that looks at more modules of successors than this is given up.
+/// Limit of the successors' modules that a forecast examines.
 const MOST_FORECAST: usize = 100_000_000;
 
-/// Why a word could not be rewritten.
+/// An error that prevents a word from being rewritten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RewriteError {
-    /// A word would hold more than are allowed.
+    /// A word exceeds a limit.
     #[error("the word of step {step} has more than {} {what}{}", grouped(&(*most).into()), deepest(*step))]
     TooLong {
-        /// The step that makes it.
+        /// Step whose word is too long.
         step: u32,
-        /// So many are allowed.
+        /// The limit.
         most: u64,
-        /// What of: modules, arguments or elements.
+        /// Unit of the limit: modules, arguments or elements.
         what: &'static str,
     },
-    /// Writing it takes too long.
+    /// Rewriting exceeds the limit of work.
     #[error("writing the word of step {step} takes too long{}", deepest(*step))]
     TooMuchWork {
-        /// The step.
+        /// Step at which the limit was met.
         step: u32,
     },
     /// An argument is infinite or NaN.
     #[error("step {step} makes an argument of '{character}' that is not finite")]
     NotFinite {
-        /// The step.
+        /// Step that makes the argument.
         step: u32,
-        /// The symbol whose argument it is.
+        /// Symbol of the module that gets the argument.
         character: char,
-        /// The production, by number.
+        /// Index of the production.
         production: usize,
     },
 }
 
-/// The step before one whose word is too long.
+/// Returns the end of a message, which names the step before a failing one as the deepest; empty for step 0.
 fn deepest(step: u32) -> String {
     let before = step.checked_sub(1);
     before.map_or_else(String::new, |step| format!("; step {step} is the deepest"))
 }
 
 impl LSystem {
-    /// The word after a number of steps.
+    /// Returns the word after a number of steps.
     ///
     /// # Errors
     ///
-    /// If a word is too long, with more than `most_elements` of what the turtle draws or with more than
-    /// some ten million modules, or if an argument is not finite. Where the lengths of words can be told
-    /// beforehand, nothing is rewritten then.
+    /// Returns an error if a word has more than 25 million modules or arguments or draws more than
+    /// `most_elements` lines and polygons, if rewriting takes too much work, or if an argument is not finite.
+    /// Where lengths of words can be predicted, too long a word is reported before any rewriting.
     pub fn word(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Word, RewriteError> {
         if let Some(error) = self.too_long(steps, MOST_MODULES, most_elements) {
             return Err(error);
@@ -81,7 +81,7 @@ impl LSystem {
         for step in 1..=steps {
             let mut next = Word::default();
             rewriter.step(&word, &mut next, step, most_elements, most_work)?;
-            // What stays the same stays the same.
+            // A fixed word stays fixed.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
                 && self.is_deterministic()
@@ -93,9 +93,9 @@ impl LSystem {
         Ok(word)
     }
 
-    /// The deepest step, up to a number, whose word has no more than so many elements, of those that draw
-    /// something; if none of them does, the first one that draws, as far as that can be told without rewriting;
-    /// 0 if there is none.
+    /// Returns the deepest step, up to `steps`, whose word draws something within the limits. If no such word
+    /// draws, returns the first step that draws where that can be predicted without rewriting, and otherwise
+    /// the deepest step whose word is within the limits.
     #[must_use]
     pub fn deepest(&self, steps: u32, most_elements: u64) -> u32 {
         let word = |steps| self.word(steps, 0, most_elements);
@@ -127,7 +127,8 @@ impl LSystem {
         first.unwrap_or(deepest)
     }
 
-    /// The first of the steps whose word is too long, as far as that can be told without rewriting.
+    /// Returns the error of the first step whose word is too long, as far as lengths can be predicted without
+    /// rewriting.
     pub(super) fn too_long(
         &self,
         steps: u32,
@@ -155,9 +156,10 @@ impl LSystem {
         None
     }
 
-    /// The production that replaces a module, if one does.
+    /// Returns the index of the production that replaces a module; `None` if the module is kept.
     ///
-    /// `weight` tells whether a production fits, by contexts and its condition, with its weight.
+    /// For the index of a production, `weight` returns its weight if it fits by contexts and condition, else
+    /// `None`. Without a path the first production that fits is chosen.
     pub(crate) fn chosen(
         &self,
         symbol: usize,
@@ -178,7 +180,7 @@ impl LSystem {
                 && other.has_context() == production.has_context()
                 && let Some(weight) = weight(number)
             {
-                // A weight that is no number is none.
+                // A NaN counts as 0.
                 drawn.push((number, weight.max(0.0)));
             }
         }
@@ -190,8 +192,12 @@ impl LSystem {
 }
 
 impl LSystem {
-    /// Adds the arguments that a module of a production's successor gets in a step, of those that the
+    /// Appends the arguments of a module of a production's successor, evaluated with the arguments that the
     /// production sees.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an argument is not finite.
     pub(super) fn evaluate(
         &self,
         (production, position): (usize, usize),
@@ -215,12 +221,12 @@ impl LSystem {
     }
 }
 
-/// Finds what replaces modules.
+/// Selection of the productions that replace modules, with a count of its work.
 pub(super) struct Rewriter<'s> {
     system: &'s LSystem,
-    /// The arguments that the production sees that was chosen last.
+    /// Arguments that the production chosen last sees.
     pub(super) slots: Vec<f64>,
-    /// How many modules and productions have been looked at.
+    /// The number of modules and productions examined so far.
     pub(super) work: u64,
 }
 
@@ -233,7 +239,8 @@ impl<'s> Rewriter<'s> {
         }
     }
 
-    /// The production that replaces a module, if one does, by what stands around its position.
+    /// Returns the production that replaces a module, if one does; `around` holds the surroundings of the
+    /// word and the module's position, where productions have contexts.
     pub(super) fn choose(
         &mut self,
         (symbol, arguments): (usize, &[f64]),
@@ -265,7 +272,7 @@ impl<'s> Rewriter<'s> {
             holds.then(|| weight.map_or(1.0, |weight| weight.eval(slots)))
         };
         let chosen = system.chosen(symbol, path, &mut fits)?;
-        // The arguments are those that the production that was chosen sees.
+        // The slots must hold the arguments that the chosen production sees.
         fits(chosen);
         Some(chosen)
     }
@@ -332,7 +339,7 @@ mod tests {
     use crate::document::Document;
     use crate::model::Model;
 
-    /// Long contexts and many productions are looked at for a while, and then no more.
+    /// Long contexts and many productions exhaust the limit of work.
     #[test]
     fn too_much_work_is_given_up() {
         let [word, left] = [900, 400].map(|count| "F".repeat(count));

@@ -1,28 +1,28 @@
-//! What contexts see: a word as the tree that its brackets make of it.
+//! Matching of contexts on the tree that brackets make of a word.
 
 use std::cell::Cell;
 
 use super::{Context, LSystem, Word};
 
-/// No module.
+/// Sentinel for the absence of a module.
 const NONE: u32 = u32::MAX;
 
-/// For every module of a word, its neighbours in the tree. Made in a time that is linear in the word,
-/// with a stack of its own however deep brackets are.
+/// The neighbours of every module of a word in its tree. Built in linear time with an explicit stack,
+/// independent of the depth of brackets.
 pub(super) struct Surroundings<'a> {
     system: &'a LSystem,
     word: &'a Word,
-    /// Where the arguments of a module begin.
+    /// For each module, the position of its first argument.
     arguments: Vec<u32>,
-    /// The module before it on the way from the root.
+    /// For each module, the previous one on the path from the root.
     before: Vec<u32>,
-    /// The next module or bracket behind it.
+    /// For each module, the next module or bracket.
     next: Vec<u32>,
-    /// The same over branches.
+    /// For each module, the next module or bracket after the branches that follow it.
     ahead: Vec<u32>,
-    /// Of an opening bracket, the closing one.
+    /// For each opening bracket, its closing one.
     end: Vec<u32>,
-    /// How many modules contexts were held against.
+    /// The number of modules compared with contexts.
     looks: Cell<u64>,
 }
 
@@ -93,7 +93,7 @@ impl<'a> Surroundings<'a> {
         all
     }
 
-    /// The arguments of a module.
+    /// Returns the arguments of a module.
     pub(super) fn arguments(&self, at: u32) -> &'a [f64] {
         let at = at as usize;
         let start = self.arguments[at] as usize;
@@ -101,7 +101,7 @@ impl<'a> Surroundings<'a> {
         &self.word.arguments[start..start + symbol.arity]
     }
 
-    /// How many modules contexts have been held against.
+    /// Returns the number of modules compared with contexts so far.
     pub(super) fn looks(&self) -> u64 {
         self.looks.get()
     }
@@ -111,7 +111,7 @@ impl<'a> Surroundings<'a> {
         at != NONE && self.word.symbols[at as usize] as usize == symbol
     }
 
-    /// Whether a left context fits a module; the arguments of the context are added to `slots`.
+    /// Returns whether a left context fits a module; appends the arguments of the context to `slots`.
     pub(super) fn fits_left(&self, at: u32, left: &[usize], slots: &mut Vec<f64>) -> bool {
         let mut found = at;
         for &symbol in left.iter().rev() {
@@ -126,14 +126,14 @@ impl<'a> Surroundings<'a> {
             found = self.before[found as usize];
             let before = slots.len();
             slots.extend(self.arguments(found));
-            // The nearest one comes last.
+            // The arguments of the nearest module come last.
             let added = slots.len() - before;
             slots[start..].rotate_right(added);
         }
         true
     }
 
-    /// Whether a right context fits behind a module; the arguments of the context are added to `slots`.
+    /// Returns whether a right context fits behind a module; appends the arguments of the context to `slots`.
     pub(super) fn fits_right(&self, at: u32, right: &[Context], slots: &mut Vec<f64>) -> bool {
         let mut behind = at;
         let mut rest = right;
@@ -155,14 +155,14 @@ impl<'a> Surroundings<'a> {
                     behind = end;
                     rest = &others[inner.len() + 1..];
                 }
-                // Brackets of contexts are balanced, and what is inside was looked at.
+                // Brackets of contexts are balanced, and their content has been matched.
                 Context::Close => rest = others,
             }
         }
         true
     }
 
-    /// The end of the first branch behind a module that a context fits.
+    /// Returns the end of the first branch behind a module that a context fits.
     fn branch(&self, behind: u32, inner: &[Context], slots: &mut Vec<f64>) -> Option<u32> {
         let mut behind = behind;
         loop {
@@ -183,7 +183,7 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// What stands before the bracket that closes the one before this.
+/// Returns the part of a context up to the unmatched closing bracket.
 fn inside(context: &[Context]) -> &[Context] {
     let mut depth = 0;
     let end = context.iter().position(|part| {

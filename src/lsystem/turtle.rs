@@ -1,4 +1,4 @@
-//! The turtle: from words to elements that stand in the plane.
+//! The turtle: interprets the modules of words as lines and polygons in the plane.
 
 use std::collections::BTreeMap;
 
@@ -8,42 +8,42 @@ use crate::rule::{BaseElement, Piece};
 use super::word::number;
 use super::{Action, Compass, LSystem, Word};
 
-/// What the turtle draws: a line of one step, or a polygon.
+/// An element that the turtle draws: a line or a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Where it stands. A line runs from (0, 0) to (1, 0) of it; a polygon has the coordinates that a
-    /// turtle has which begins at (0, 0), looking to the right, where it was opened.
+    /// Frame of the element. A line runs from (0, 0) to (1, 0) in it; a polygon's coordinates are those of a
+    /// turtle that starts at (0, 0), heading right, where the polygon was opened.
     pub frame: Frame,
-    /// Whether it starts where the one drawn before it ends, in the same width and colour.
+    /// Whether the element starts at the end of the preceding one, in the same width and colour.
     pub joined: bool,
-    /// The symbol that drew it: of a polygon, the one that closed it.
+    /// Index of the symbol that drew the element; of a polygon, the one that closed it.
     pub symbol: usize,
-    /// Its width, as a multiple of what the turtle started with.
+    /// Width, as a multiple of the turtle's initial width.
     pub width: f64,
-    /// The index of its colour.
+    /// Colour index.
     pub colour: i64,
-    /// Which of the polygons it is, if it is one.
+    /// Index of the outline in [`Drawing::polygons`], if the element is a polygon.
     pub polygon: Option<usize>,
 }
 
-/// All that a turtle draws.
+/// All elements that a turtle draws.
 #[derive(Clone, Debug, Default)]
 pub struct Drawing {
-    /// The elements, in the order in which they are drawn.
+    /// The elements, in drawing order.
     pub elements: Vec<Placed>,
-    /// The outlines of polygons that differ.
+    /// Distinct outlines of polygons.
     pub polygons: Vec<BaseElement>,
 }
 
-/// Where the turtle is, and how it draws.
+/// State of the turtle, which brackets save and restore.
 #[derive(Clone, Copy, Debug)]
 struct State {
     place: DVec2,
     heading: u64,
-    /// The second heading.
+    /// Second heading.
     other: u64,
     mirrored: bool,
-    /// The length of a step.
+    /// Length of a step.
     step: f64,
     width: f64,
     colour: i64,
@@ -59,37 +59,38 @@ impl State {
     }
 }
 
-/// A polygon that is open.
+/// A polygon that has not been closed.
 struct Open {
     state: State,
     vertices: Vec<DVec2>,
-    /// How many states were saved when it began, and the fewest that were since.
+    /// The number of saved states at its start.
     depth: usize,
+    /// The least number of saved states since.
     least_depth: usize,
 }
 
-/// Reads modules one by one, and draws.
+/// An interpreter that reads modules one by one and draws.
 pub(crate) struct Turtle<'s> {
     system: &'s LSystem,
     compass: Compass,
     state: State,
     saved: Vec<State>,
     open: Vec<Open>,
-    /// The modules since the outermost polygon was opened: symbols, and the bits of arguments.
+    /// Modules since the outermost polygon was opened: symbols, and the bits of arguments.
     inside: (Vec<u32>, Vec<u64>),
-    /// What has been drawn and not been taken yet, and all polygons.
+    /// Elements drawn and not yet taken, and the outlines of all polygons.
     pub(crate) drawing: Drawing,
-    /// The width and the colour of what was drawn last.
+    /// Width and colour of the preceding element.
     last: Option<(f64, i64)>,
-    /// Whether the pen is where the last line ends.
+    /// Whether the turtle stands at the end of the preceding line.
     is_down: bool,
-    /// The polygons by what they are made of.
+    /// Indices of outlines by the modules that draw them.
     known: BTreeMap<(Vec<u32>, Vec<u64>), usize>,
 }
 
 impl LSystem {
-    /// What the turtle draws of a word. A line of no length is no element, and neither is a polygon of
-    /// less than three vertices.
+    /// Returns the turtle's drawing of a word. A line of length 0 is not an element, nor is a polygon with
+    /// fewer than three vertices or with steps of length 0.
     #[must_use]
     pub fn draw(&self, word: &Word) -> Drawing {
         let mut turtle = Turtle::new(self);
@@ -101,7 +102,7 @@ impl LSystem {
 }
 
 impl LSystem {
-    /// A colour's index: the whole number next to a value.
+    /// Returns the colour index nearest to a value, saturating.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "casts from floats saturate"
@@ -137,7 +138,7 @@ impl<'s> Turtle<'s> {
         }
     }
 
-    /// Does what the next module of a word says.
+    /// Performs the actions of the next module of a word.
     pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
         for action in &self.system.symbols[symbol].meaning {
             self.act(action, symbol, arguments);
@@ -218,7 +219,7 @@ impl<'s> Turtle<'s> {
         }
     }
 
-    /// Goes a number of steps ahead.
+    /// Moves forward by a number of steps.
     fn go(&mut self, steps: f64) {
         let along = self.compass.direction(self.state.heading);
         self.state.place += along * (steps * self.state.step);
@@ -274,7 +275,7 @@ impl<'s> Turtle<'s> {
         }
         let number = self.drawing.polygons.len();
         let mut made = number;
-        // Where brackets end that it did not begin with, more than its own modules decides.
+        // A polygon across the end of an outer bracket depends on more than the modules inside it.
         let is_told = open.least_depth == open.depth && !self.system.depends_on_the_way();
         if self.open.is_empty() && is_told {
             self.remember(symbol, arguments);
@@ -286,7 +287,7 @@ impl<'s> Turtle<'s> {
             let start = vertices.next().unwrap_or(DVec2::ZERO);
             let pieces = vertices.map(Piece::Line).collect();
             let outline = BaseElement::new(start, pieces, true);
-            // One of no extent keeps its number, and is drawn as a line.
+            // A polygon of no extent keeps its index and is drawn as a line.
             let outline = outline.unwrap_or_else(BaseElement::line);
             self.drawing.polygons.push(outline);
         }

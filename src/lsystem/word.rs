@@ -1,22 +1,24 @@
+//! Words of an L-system in compact form.
+
 use crate::rule::draw::Path;
 
 use super::{LSystem, Module};
 
-/// A word: its modules, one after the other, with little memory for each.
+/// A word: a sequence of modules in compact storage.
 ///
-/// Guarantee: there are as many arguments as the symbols take, all finite, and as many paths as modules,
-/// or none where nothing is drawn at random.
+/// Guarantee: there are as many arguments as the symbols take, all finite, and as many paths as modules, or
+/// none where the system is deterministic.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Word {
-    /// The symbols, by number.
+    /// Indices of the symbols.
     pub(super) symbols: Vec<u32>,
-    /// The arguments of all modules.
+    /// Arguments of all modules, one after the other.
     pub(super) arguments: Vec<f64>,
     pub(super) paths: Vec<Path>,
 }
 
 impl Word {
-    /// The axiom of a system.
+    /// Returns the axiom of a system; its paths start from `seed`.
     #[must_use]
     pub fn axiom(system: &LSystem, seed: u64) -> Self {
         let mut word = Self::default();
@@ -31,19 +33,19 @@ impl Word {
         word
     }
 
-    /// The number of its modules.
+    /// Returns the number of modules.
     #[must_use]
     pub fn len(&self) -> usize {
         self.symbols.len()
     }
 
-    /// Whether it has no modules.
+    /// Returns whether the word has no modules.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.symbols.is_empty()
     }
 
-    /// The modules: symbols by number, with their arguments.
+    /// Iterates over the modules: the indices of their symbols, with their arguments.
     pub fn modules<'a>(&'a self, system: &'a LSystem) -> impl Iterator<Item = (usize, &'a [f64])> {
         let mut rest = &self.arguments[..];
         self.symbols.iter().map(move |&symbol| {
@@ -54,13 +56,13 @@ impl Word {
         })
     }
 
-    /// Whether the turtle may draw something of it.
+    /// Returns whether a symbol of the word draws lines or polygons.
     pub(super) fn draws(&self, system: &LSystem) -> bool {
         let mut modules = self.modules(system);
         modules.any(|(symbol, _)| system.symbols[symbol].draws() > 0)
     }
 
-    /// The word as text: `F[+A(1, 0.5)]`.
+    /// Formats the word as text: `F[+A(1, 0.5)]`.
     #[must_use]
     pub fn to_text(&self, system: &LSystem) -> String {
         let mut text = String::new();
@@ -75,7 +77,7 @@ impl Word {
     }
 }
 
-/// A symbol's number as words have it: a file holds fewer than that.
+/// Converts a symbol's index to the integer that words store, saturating: a file has fewer symbols.
 pub(super) fn number(symbol: usize) -> u32 {
     u32::try_from(symbol).unwrap_or(u32::MAX)
 }
