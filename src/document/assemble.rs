@@ -1,4 +1,4 @@
-//! Puts a rule's parents and components into it, so that one file says everything.
+//! Inlining of parents, components, data and other fractals into a file, which makes it self-contained.
 
 mod fractals;
 mod harmless;
@@ -18,13 +18,13 @@ use super::read::{DESCRIPTION, check_description, shape};
 use super::yaml::{Budget, Size};
 use harmless::{harmless, harmless_parent};
 
-/// A parent may have a parent, and so on, up to this many.
+/// Maximum length of a chain of parents.
 const MOST_PARENTS: usize = 32;
-/// Behind this many components that are not there, no more are looked for.
+/// Number of missing components after which no more are looked up.
 const MOST_MISSING: usize = 100;
 
-/// The rule in a source with everything in it that it names, its kind, and whether all of that was
-/// found; `None` if it is no rule.
+/// Inlines everything that the file in `source` names. Returns the result, its kind, and whether all
+/// names were resolved, or `None` if the text cannot be read as a file of any kind.
 pub(super) fn assemble(
     source: &Arc<Source>,
     catalogue: &Catalogue,
@@ -35,8 +35,8 @@ pub(super) fn assemble(
     assemble_within(&[], &mut fractals, source, node, catalogue, diagnostics)
 }
 
-/// The same of what a source says, where other files name this one: those are made of each other in this
-/// order. `fractals` have been put into all of them.
+/// Assembles a file that other files name as a set. `around` lists these files, the outermost first;
+/// `fractals` counts the fractals that have been inlined into the outermost one.
 fn assemble_within(
     around: &[Arc<Source>],
     fractals: &mut usize,
@@ -77,28 +77,29 @@ fn assemble_within(
 struct Assembly<'a> {
     catalogue: &'a Catalogue,
     diagnostics: &'a mut Diagnostics,
-    /// The files that name this one, the outermost first.
+    /// The files that name this one as a set, the outermost first.
     around: &'a [Arc<Source>],
-    /// How many fractals have been put into the outermost and all that it is made of.
+    /// Number of fractals inlined so far into the outermost file, nested ones included.
     fractals: &'a mut usize,
-    /// The rule, its parent, and so on. A rule's number in it is its generation.
+    /// The file, its parent, and so on. The index of a file in this list is its generation.
     chain: Vec<Arc<Source>>,
-    /// The parameters that the rules have of their own, with the generation.
+    /// The files' own parameters, with their generations.
     parameters: Vec<(usize, Key)>,
-    /// The components that have been looked for.
+    /// The components that have been looked up.
     components: Vec<Component>,
-    /// How many of them were not found.
+    /// Number of components and fractals that were not found.
     missing: usize,
-    /// How much the rule holds with its components, and whether that is too much.
+    /// Size of the file including its components.
     budget: Budget,
+    /// Whether the limit of the size has been exceeded.
     too_large: bool,
-    /// The generation of the rule whose components are being put in.
+    /// Generation of the file whose components are being inlined.
     generation: usize,
-    /// Whether everything that is named has been found.
+    /// Whether all names have been resolved.
     complete: bool,
-    /// The kind of the file, which is that of its parents.
+    /// Kind of the file, which its parents must share.
     kind: Option<Kind>,
-    /// Where a parent is named, while it is read.
+    /// Place of the `extends` key's value while the parent is read.
     extending: Option<Place>,
 }
 
@@ -106,11 +107,11 @@ struct Assembly<'a> {
 struct Component {
     shelf: Shelf,
     name: String,
-    /// Where it is named.
+    /// Place of its first use.
     place: Place,
-    /// The generation of the rule that names it; of the oldest, if several do.
+    /// Greatest generation among the files that name it: that of the oldest ancestor.
     generation: usize,
-    /// What it stands for, without its parameters; `None` if it was not found.
+    /// The component without its parameters; `None` if it was not found.
     node: Option<Node>,
     parameters: Entries,
 }
@@ -125,7 +126,8 @@ impl Assembly<'_> {
             .push(Diagnostic::error(message).at(place).hint(hint));
     }
 
-    /// The entries of a rule alone, under the keys that are meant.
+    /// Returns the entries of a single file. Misspelt keys are replaced by the intended ones, and
+    /// unknown keys are dropped; both are reported.
     fn entries(&mut self, node: Node) -> Option<(Place, Entries)> {
         let Value::Mapping(entries) = node.value else {
             let message = format!("a rule is needed here, this is {}", node.kind());
@@ -152,7 +154,8 @@ impl Assembly<'_> {
         Some((node.place, known))
     }
 
-    /// The kind that a file says it is, which must be that of the file that extends it.
+    /// Returns the kind of the file, and reports a kind that differs from that of the file that extends
+    /// it.
     fn kind_of(&mut self, entries: &Entries) -> Option<Kind> {
         let written = entries.iter().find(|(key, _)| key.name == "kind");
         let known = |name: &str| Kind::ALL.into_iter().find(|kind| kind.name() == name);
@@ -165,7 +168,7 @@ impl Assembly<'_> {
                     let names = listed(Kind::ALL.into_iter().map(Kind::name));
                     let hint = format!("the kinds are: {names}; without `kind` it is a rule");
                     self.error(&node.place, message, &hint);
-                    // Of keys whose kind is not known there is nothing to say.
+                    // The keys of a file of unknown kind cannot be checked.
                     known(nearest(node.place.text(), Kind::ALL.map(Kind::name))?)?
                 }
             },
@@ -185,7 +188,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// A rule with its parents' keys where it names none of its own.
+    /// Returns the entries of a file merged with those of its parents.
     fn extended(&mut self, node: Node) -> Option<(Place, Entries)> {
         let (place, mut entries) = self.entries(node)?;
         let Some(index) = entries.iter().position(|(key, _)| key.name == "extends") else {
@@ -200,7 +203,8 @@ impl Assembly<'_> {
         Some((place, entries))
     }
 
-    /// The entries of the rule that a node names.
+    /// Reads the parent that a node names and returns its entries, merged with those of its own
+    /// parents.
     fn parent(&mut self, parent: &Node) -> Option<Entries> {
         let Value::Text(name) = &parent.value else {
             let message = format!(
@@ -235,7 +239,7 @@ impl Assembly<'_> {
         Some(self.extended(node)?.1)
     }
 
-    /// Replaces the names of components by what they stand for.
+    /// Replaces names of components by the components.
     fn inline(&mut self, entries: &mut Entries) {
         for (key, node) in entries {
             let written_in = |rule: &Arc<Source>| Arc::ptr_eq(rule, key.place.source());
@@ -259,7 +263,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Puts points in the place of the name of a file that holds them.
+    /// Replaces the name of a data file under `interpolate` by the points in it.
     fn inline_data(&mut self, entries: &mut Entries) {
         let interpolation = entries
             .iter_mut()
@@ -294,7 +298,7 @@ impl Assembly<'_> {
             Err(error) => {
                 self.diagnostics.push(error);
                 self.complete = false;
-                // Points that nothing is wrong with, so that no more is told of them.
+                // Valid points as a placeholder, which cause no further diagnostics.
                 let number = |value| Node {
                     place: points.place.clone(),
                     value: Value::Number(value),
@@ -328,7 +332,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// The base elements of single elements, in a list or in a mapping with `elements`.
+    /// Inlines the base elements of single elements, in a list or in a mapping with `elements`.
     fn inline_base_elements(&mut self, node: &mut Node) {
         let list = match &mut node.value {
             Value::Sequence(list) => list,
@@ -358,7 +362,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Puts a component in the place of its name.
+    /// Replaces the name of a component by the component, or by a placeholder if it cannot be found.
     fn component(&mut self, node: &mut Node, shelf: Shelf) {
         let Value::Text(name) = &node.value else {
             return;
@@ -396,7 +400,7 @@ impl Assembly<'_> {
         });
     }
 
-    /// Whether one more component is not too much, which is said once.
+    /// Returns whether the size limit admits another component. Exceeding the limit is reported once.
     fn has_room(&mut self, component: &Node, place: &Place) -> bool {
         if self.too_large {
             return false;
@@ -409,7 +413,7 @@ impl Assembly<'_> {
         !self.too_large
     }
 
-    /// A component by name, without its description, and its parameters.
+    /// Reads a component by name. Returns the component without its metadata, and its parameters.
     fn find(&mut self, name: &str, shelf: Shelf, place: &Place) -> Option<(Node, Entries)> {
         let source = match self.catalogue.component(shelf, name) {
             Ok(source) => source,

@@ -1,4 +1,4 @@
-//! Tables of points: text with a point a line.
+//! Tables of points: text files with one point per line.
 
 use std::sync::Arc;
 
@@ -6,8 +6,9 @@ use crate::diagnostic::{Diagnostic, Place, Source};
 
 use super::node::{Node, Value};
 
-/// The points of a table as a list: two numbers a line, with a comma, a semicolon or white space
-/// between them. Empty lines and those that begin with `#` say nothing; the first line may be a heading.
+/// Reads a table as a list of points. A line has two numbers, separated by commas, semicolons or white
+/// space. Empty lines and lines that begin with `#` are skipped; the first of the other lines may be a
+/// heading.
 pub(super) fn read(source: &Arc<Source>) -> Result<Node, Diagnostic> {
     let text = source.text();
     let mut points = Vec::new();

@@ -1,4 +1,4 @@
-//! What files of all kinds say, as it is written.
+//! Metadata of files of all kinds, as written.
 
 use crate::diagnostic::{Place, did_you_mean};
 use crate::expression::PARTS;
@@ -7,49 +7,50 @@ use crate::style::{Style, View};
 
 use super::{Number, Written};
 
-/// The heading of a file as written.
+/// Metadata of a file as written.
 #[derive(Clone, Debug)]
 pub struct HeadingDocument {
-    /// Title, source and the like.
+    /// Title, description, source and tags.
     pub description: Description,
-    /// The parameters, in the order of the file.
+    /// Parameters, in the order of the file.
     pub params: Vec<ParameterDocument>,
-    /// What `grow` does without `--steps`.
+    /// Number of steps that the file proposes.
     pub steps: Option<Number>,
-    /// The published similarity dimension.
+    /// Published similarity dimension.
     pub dimension: Option<Number>,
-    /// The set's own dimension, where copies overlap.
+    /// Published Hausdorff dimension, where overlaps make it smaller than the similarity dimension.
     pub hausdorff_dimension: Option<Number>,
-    /// How it is drawn.
+    /// Style of the picture.
     pub style: Style,
-    /// What part of the plane is drawn.
+    /// View: the window and the margin.
     pub view: View,
-    /// Whether all of the file could be found. Where a parent or a component is missing, names that
-    /// are not known may be its own.
+    /// Whether all parents, components and fractals were found. Otherwise unknown names may be defined
+    /// in a missing file and are not reported.
     pub complete: bool,
-    /// Where the file was written.
+    /// Source span of the file's content.
     pub place: Place,
 }
 
-/// A parameter as written.
+/// A parameter as written. A complex parameter is represented by two real ones.
 #[derive(Clone, Debug)]
 pub struct ParameterDocument {
-    /// Its name: `s`, or `s.re` and `s.im` for the parts of a complex one.
+    /// Name: `s`, or `s.re` and `s.im` for the parts of a complex parameter.
     pub name: Written<String>,
-    /// The name of the complex parameter that it is a part of.
+    /// Name of the complex parameter to which this part belongs.
     pub whole: Option<Written<String>>,
-    /// Its value.
+    /// Value.
     pub value: Number,
-    /// The least value that it may have.
+    /// Lower limit of the value.
     pub min: Option<Number>,
-    /// The largest value that it may have.
+    /// Upper limit of the value.
     pub max: Option<Number>,
-    /// What it means.
+    /// Description of the parameter.
     pub about: Option<String>,
 }
 
 impl ParameterDocument {
-    /// The name that the file gives it.
+    /// Returns the name under which the file defines the parameter: that of the complex parameter for a
+    /// part.
     #[must_use]
     pub fn called(&self) -> &Written<String> {
         self.whole.as_ref().unwrap_or(&self.name)
@@ -57,7 +58,8 @@ impl ParameterDocument {
 }
 
 impl HeadingDocument {
-    /// What to set in place of a parameter that there is not.
+    /// Returns a help text for a setting of an unknown parameter: how to set it if it is complex or
+    /// real, the nearest name, or all names.
     pub(crate) fn instead_of(&self, name: &str) -> String {
         let has = |name: &str| self.params.iter().any(|it| it.called().value == name);
         if has(name) {

@@ -1,7 +1,7 @@
-//! The file of an iterated function system as it is written.
+//! Document of an iterated function system.
 //!
-//! Where something could not be read, which has been reported then, an expression that is
-//! [unknown](crate::expression::Expression::unknown) stands in for it.
+//! A placeholder, [`unknown`](crate::expression::Expression::unknown), stands for every expression that
+//! cannot be read and has been reported.
 
 use crate::diagnostic::Place;
 
@@ -10,90 +10,90 @@ use super::{HeadingDocument, KindDocument, Number, Point, Written};
 /// An iterated function system as written.
 #[derive(Clone, Debug)]
 pub struct IfsDocument {
-    /// What files of all kinds say.
+    /// Metadata of the file.
     pub heading: HeadingDocument,
-    /// The maps; `None` if they could not be read.
+    /// The maps; `None` if they cannot be read.
     pub maps: Option<MapsDocument>,
     /// The condensation sets.
     pub condensation: Vec<CondensationDocument>,
-    /// What approximant 0 draws.
+    /// The initial set, which approximant 0 draws.
     pub initial: Option<ShapeDocument>,
-    /// Which map may follow which, and where that is written.
+    /// Edges of the digraph, with their source span.
     pub edges: Option<(Vec<EdgeDocument>, Place)>,
 }
 
-/// The ways to write the maps of a system.
+/// Notations for the maps of a system.
 #[derive(Clone, Debug)]
 pub enum MapsDocument {
-    /// One after another.
+    /// A list of maps.
     Listed(Vec<MapDocument>),
-    /// Towards vertices, by a factor.
+    /// Contractions towards vertices by a common factor.
     Vertices {
         /// The vertices.
         points: Vec<Point>,
-        /// What is left of the way.
+        /// Contraction factor f of the maps x → f x + (1 − f) v.
         shrink: Number,
     },
-    /// The curve through points.
+    /// The maps of fractal interpolation.
     Interpolated(InterpolationDocument),
 }
 
 /// Fractal interpolation as written.
 #[derive(Clone, Debug)]
 pub struct InterpolationDocument {
-    /// The points, from left to right.
+    /// Interpolation points, from left to right.
     pub points: Vec<Point>,
-    /// The vertical factors.
+    /// Vertical scaling factors.
     pub scale: Option<Scales>,
-    /// The dimension of the curve.
+    /// Box dimension of the curve, as an alternative to scaling factors.
     pub dimension: Option<Number>,
-    /// Where it was written.
+    /// Source span of the interpolation.
     pub place: Place,
 }
 
-/// Vertical factors as written.
+/// Vertical scaling factors as written.
 #[derive(Clone, Debug)]
 pub enum Scales {
-    /// One for all pieces.
+    /// One factor for all pieces.
     One(Number),
-    /// One for each piece.
+    /// One factor for each piece.
     Each(Vec<Number>),
 }
 
-/// A map as written.
+/// An affine map as written.
 #[derive(Clone, Debug)]
 pub struct MapDocument {
-    /// What it is called.
+    /// Name of the map.
     pub name: Option<Written<String>>,
-    /// Its linear part; `None` if it could not be read.
+    /// Linear part; `None` if it cannot be read.
     pub linear: Option<LinearDocument>,
-    /// What is added last.
+    /// Translation, which is added last.
     pub shift: Option<Point>,
-    /// The point that stays where it is.
+    /// Fixed point, as an alternative to the translation.
     pub fixed: Option<Point>,
-    /// How often it is picked.
+    /// Relative probability in random iteration.
     pub weight: Option<Number>,
-    /// Where it was written.
+    /// Source span of the map.
     pub place: Place,
 }
 
 /// The linear part of a map as written.
 #[derive(Clone, Debug)]
 pub enum LinearDocument {
-    /// By the rows of its matrix.
+    /// Rows of a matrix.
     Matrix([Point; 2]),
-    /// By factors and angles of the two axes.
+    /// Factors and angles of the two axes.
     Axes {
-        /// The factors.
+        /// Factors along x and y.
         scale: [Number; 2],
-        /// The angles, in degrees; 0 if left out.
+        /// Angles of the images of the axes, in degrees; 0 if `None`.
         rotate: Option<[Number; 2]>,
     },
-    /// By a complex factor.
+    /// Multiplication by a complex number.
     Complex {
         /// The factor.
         times: Point,
-        /// Whether the conjugate is taken first.
+        /// Whether the conjugate is taken before the multiplication.
         conjugate: bool,
     },
 }
@@ -103,9 +103,9 @@ pub enum LinearDocument {
 pub struct EdgeDocument {
     /// The map that was applied last, by name or number.
     pub from: Written<String>,
-    /// The map that may follow, by name or number.
+    /// The map that may be applied next, by name or number.
     pub to: Written<String>,
-    /// How likely it is.
+    /// Relative probability of the edge.
     pub weight: Option<Number>,
 }
 
@@ -114,32 +114,32 @@ pub struct EdgeDocument {
 pub struct CondensationDocument {
     /// The set.
     pub shape: ShapeDocument,
-    /// How often a point is drawn anew from it.
+    /// Relative probability of a restart of random iteration in the set.
     pub weight: Option<Number>,
 }
 
 /// A shape as written.
 #[derive(Clone, Debug)]
 pub struct ShapeDocument {
-    /// What it is; `None` if it could not be read.
+    /// Geometry of the shape; `None` if it cannot be read.
     pub form: Option<FormDocument>,
-    /// Where it was written.
+    /// Source span of the shape.
     pub place: Place,
 }
 
-/// What a shape is, as written.
+/// Geometry of a shape as written.
 #[derive(Clone, Debug)]
 pub enum FormDocument {
     /// A point.
     Point(Point),
-    /// A line through points.
+    /// A polyline or a polygon.
     Outline {
         /// The points.
         points: Vec<Point>,
-        /// Whether it goes back to the first, and is meant with what it encloses.
+        /// Whether the outline is closed and includes its interior.
         closed: bool,
     },
-    /// An ellipse.
+    /// An ellipse or a disk.
     Ellipse(Box<EllipseDocument>),
     /// An approximant of another fractal.
     Fractal(Box<FractalDocument>),
@@ -148,29 +148,29 @@ pub enum FormDocument {
 /// An approximant of another fractal, as written.
 #[derive(Clone, Debug)]
 pub struct FractalDocument {
-    /// What the fractal's file says.
+    /// Content of the fractal's file.
     pub file: KindDocument,
-    /// Whether nothing is known to be wrong with it: only then can it be grown.
+    /// Whether no errors are known in the file: otherwise the fractal is not grown.
     pub is_sound: bool,
-    /// The number of steps; the file's own if left out.
+    /// Number of steps; that of the file if `None`.
     pub steps: Option<Number>,
-    /// What its random draws depend on; 0 if left out.
+    /// Seed of the random draws; 0 if `None`.
     pub seed: Option<Number>,
-    /// Its parameters that are set, with their values.
+    /// Parameters that are set, with their values.
     pub set: Vec<(Written<String>, Number)>,
-    /// Where it stands.
+    /// Map that places the fractal.
     pub map: Option<MapDocument>,
-    /// Where it was named.
+    /// Source span of the fractal's name.
     pub place: Place,
 }
 
 /// An ellipse as written.
 #[derive(Clone, Debug)]
 pub struct EllipseDocument {
-    /// Its centre.
+    /// Centre.
     pub centre: Point,
-    /// Its half axes.
+    /// Half axes.
     pub axes: [Number; 2],
-    /// The angle of the first of them.
+    /// Angle from the x axis to the first half axis, in degrees.
     pub rotate: Option<Number>,
 }

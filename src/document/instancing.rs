@@ -1,45 +1,45 @@
-//! The file of an instancing structure as it is written.
+//! Document of an instancing structure (Hart 1992).
 //!
-//! Where something could not be read, which has been reported then, an expression that is
-//! [unknown](crate::expression::Expression::unknown) stands in for it.
+//! A placeholder, [`unknown`](crate::expression::Expression::unknown), stands for every expression that
+//! cannot be read and has been reported.
 
 use crate::diagnostic::Place;
 use crate::style::Colour;
 
 use super::{HeadingDocument, Number, Point, ShapeDocument, Written};
 
-/// A structure of objects as written.
+/// An instancing structure as written.
 #[derive(Clone, Debug)]
 pub struct InstancingDocument {
-    /// What files of all kinds say.
+    /// Metadata of the file.
     pub heading: HeadingDocument,
-    /// The canonical objects, in the order of the file.
+    /// The objects, in the order of the file.
     pub objects: Vec<ObjectDocument>,
-    /// The object that places the scene; `None` if it is missing.
+    /// The scene: the union that is drawn; `None` if it is missing.
     pub scene: Option<UnionDocument>,
-    /// What stands for objects that have not been replaced yet.
+    /// The set that is drawn in place of objects that are not replaced yet.
     pub initial: Option<ShapeDocument>,
-    /// Whether its style says what colours tell.
+    /// Whether the style sets `color_by`.
     pub tells_colours: bool,
 }
 
-/// A canonical object as written.
+/// An object as written.
 #[derive(Clone, Debug)]
 pub struct ObjectDocument {
-    /// Its name, without its level.
+    /// Name without the level.
     pub name: Written<String>,
-    /// Its level.
+    /// Level.
     pub level: Option<LevelDocument>,
-    /// What it is made of.
+    /// Content of the object.
     pub union: UnionDocument,
 }
 
 /// The level of an object as written.
 #[derive(Clone, Debug)]
 pub enum LevelDocument {
-    /// Any, under a name: the `n` of `A(n)`.
+    /// All levels, under the name of a variable: the `n` of `A(n)`.
     Any(Written<String>),
-    /// One: the 0 of `A(0)`.
+    /// One level: the 0 of `A(0)`.
     One(Number),
 }
 
@@ -48,33 +48,33 @@ pub enum LevelDocument {
 pub struct UnionDocument {
     /// The instances.
     pub instances: Vec<InstanceDocument>,
-    /// What is done to all of them, in this order.
+    /// Transforms of the whole union, in the order of application.
     pub transforms: Vec<TransformDocument>,
-    /// Where it was written.
+    /// Source span of the union.
     pub place: Place,
 }
 
 /// An instance as written.
 #[derive(Clone, Debug)]
 pub struct InstanceDocument {
-    /// What it is one of; `None` if it could not be read.
+    /// The object or shape that is instanced; `None` if it cannot be read.
     pub master: Option<MasterDocument>,
-    /// What is done to it, in this order.
+    /// Transforms, in the order of application.
     pub transforms: Vec<TransformDocument>,
-    /// What it is tinted with.
+    /// Tint.
     pub tint: Option<TintDocument>,
-    /// Where it was written.
+    /// Source span of the instance.
     pub place: Place,
 }
 
-/// What an instance is one of, as written.
+/// The object or shape that is instanced, as written.
 #[derive(Clone, Debug)]
 pub enum MasterDocument {
     /// An object by name.
     Object {
-        /// Its name.
+        /// Name without the level.
         name: Written<String>,
-        /// Its level.
+        /// Level.
         level: Option<Number>,
     },
     /// A shape.
@@ -84,21 +84,21 @@ pub enum MasterDocument {
 /// A transform as written.
 #[derive(Clone, Debug)]
 pub enum TransformDocument {
-    /// Factors along x and y.
+    /// Scaling about (0, 0) by factors along x and y.
     Scale([Number; 2]),
-    /// An angle about (0, 0), in degrees, counter-clockwise.
+    /// Rotation about (0, 0) by an angle in degrees, counter-clockwise.
     Rotate(Number),
-    /// A shift.
+    /// Translation.
     Translate(Point),
-    /// The rows of a matrix.
+    /// Linear map by the rows of its matrix.
     Matrix([Point; 2]),
 }
 
 /// A tint as written.
 #[derive(Clone, Debug)]
 pub struct TintDocument {
-    /// The colour.
+    /// Colour; `None` if it cannot be read.
     pub colour: Option<Colour>,
-    /// How much it covers; all if left out.
+    /// Strength of the tint from 0 to 1; 1 if `None`.
     pub alpha: Option<Number>,
 }

@@ -1,7 +1,7 @@
-//! The file of an L-system as it is written.
+//! Document of an L-system (Prusinkiewicz and Lindenmayer 1990).
 //!
-//! Where something could not be read, which has been reported then, an expression that is
-//! [unknown](crate::expression::Expression::unknown) stands in for it.
+//! A placeholder, [`unknown`](crate::expression::Expression::unknown), stands for every expression that
+//! cannot be read and has been reported.
 
 use crate::diagnostic::Place;
 
@@ -10,25 +10,25 @@ use super::{HeadingDocument, Number};
 /// An L-system as written.
 #[derive(Clone, Debug)]
 pub struct LSystemDocument {
-    /// What files of all kinds say.
+    /// Metadata of the file.
     pub heading: HeadingDocument,
-    /// The angle of `+` and `-`.
+    /// Angle increment of `+` and `-`, in degrees.
     pub angle: Option<Number>,
-    /// Where the turtle looks first.
+    /// Initial heading of the turtle, in degrees counter-clockwise from the x axis.
     pub start: Option<Number>,
-    /// The length of its steps.
+    /// Step length of the turtle.
     pub length: Option<Number>,
-    /// What `!` multiplies widths by.
+    /// Factor by which `!` multiplies the width.
     pub thinning: Option<Number>,
-    /// The word that all begins with; `None` if it is missing.
+    /// Axiom; `None` if it is missing.
     pub axiom: Option<WordDocument>,
-    /// The productions, in the order of the file.
+    /// Productions, in the order of the file.
     pub productions: Vec<ProductionDocument>,
-    /// Meanings of the file's own.
+    /// Symbols to which the file gives its own interpretation.
     pub symbols: Vec<SymbolDocument>,
-    /// What contexts do not see.
+    /// Symbols that contexts ignore.
     pub ignored: Vec<char>,
-    /// Whether its style says what colours tell.
+    /// Whether the style sets `color_by`.
     pub tells_colours: bool,
 }
 
@@ -37,84 +37,84 @@ pub struct LSystemDocument {
 pub struct WordDocument {
     /// The modules.
     pub modules: Vec<ModuleDocument>,
-    /// Whether all of it could be read.
+    /// Whether the whole word could be read.
     pub complete: bool,
-    /// Where it was written.
+    /// Source span of the word.
     pub place: Place,
 }
 
-/// A module as written; its arguments are names in what is replaced and its contexts.
+/// A module as written. In predecessors and contexts its arguments are names of formal parameters.
 #[derive(Clone, Debug)]
 pub struct ModuleDocument {
-    /// Its symbol.
+    /// Symbol.
     pub character: char,
-    /// Its arguments.
+    /// Arguments.
     pub arguments: Vec<Number>,
-    /// Where it was written.
+    /// Source span of the module.
     pub place: Place,
 }
 
 /// A production as written.
 #[derive(Clone, Debug)]
 pub struct ProductionDocument {
-    /// What must stand before the module that is replaced.
+    /// Left context.
     pub left: Vec<ModuleDocument>,
-    /// The module that is replaced.
+    /// Strict predecessor: the module that is replaced.
     pub predecessor: ModuleDocument,
-    /// What must stand behind it.
+    /// Right context.
     pub right: Vec<ModuleDocument>,
-    /// What must hold.
+    /// Condition.
     pub condition: Option<Number>,
-    /// What replaces it.
+    /// Successor.
     pub successor: WordDocument,
-    /// How often it is taken; 1 where it is one of a list of alternatives.
+    /// Weight of a stochastic production; 1 if it is one of a list of alternatives without a weight.
     pub weight: Option<Number>,
 }
 
-/// What the turtle does where it meets a symbol, as written.
+/// The turtle's interpretation of a symbol, as written.
 #[derive(Clone, Debug)]
 pub struct SymbolDocument {
-    /// The symbol, with names for its arguments.
+    /// The symbol, with names of formal parameters as arguments.
     pub symbol: ModuleDocument,
-    /// What the turtle does.
+    /// Actions, in the order of execution.
     pub actions: Vec<ActionDocument>,
 }
 
 /// An action of the turtle as written.
 #[derive(Clone, Debug)]
 pub enum ActionDocument {
-    /// Draws a line of so many steps: one if left out.
+    /// Moves ahead by a number of steps (1 if `None`) and draws a line.
     Draw(Option<Number>),
-    /// The same without the line.
+    /// Moves ahead by a number of steps without drawing; adds a vertex to an open polygon.
     Move(Option<Number>),
-    /// The same without a vertex in a polygon.
+    /// Moves ahead by a number of steps without drawing and without adding a vertex.
     Glide(Option<Number>),
-    /// Turns by so many degrees.
+    /// Turns by an angle in degrees, clockwise after a reflection and counter-clockwise otherwise.
     Turn(Number),
-    /// The same, also where it is mirrored.
+    /// Turns counter-clockwise by an angle in degrees, also after a reflection.
     Rotate(Number),
-    /// Exchanges its heading with the second one.
+    /// Exchanges the heading and the second heading.
     Swap,
-    /// Saves its state.
+    /// Pushes the state.
     Push,
-    /// Takes it back.
+    /// Pops the state.
     Pop,
-    /// Turns the other way round from here on.
+    /// Reverses the sense of the turns that follow.
     Reflect,
-    /// Multiplies the length of steps.
+    /// Multiplies the step length.
     Scale(Number),
     /// Multiplies the width.
     Width(Number),
-    /// Sets the width.
+    /// Sets the width, as a multiple of the width of the file.
     SetWidth(Number),
-    /// Sets the colour.
+    /// Sets the colour by its number in the palette.
     Colour(Number),
     /// Adds to the number of the colour.
     ShiftColour(Number),
     /// Begins a polygon.
     Open,
-    /// Ends it.
+    /// Ends the polygon.
     Close,
-    /// Makes a vertex of it.
+    /// Adds a vertex to the polygon.
     Vertex,
 }

@@ -1,19 +1,19 @@
-//! What a rule takes over from the one that it extends.
+//! Inheritance: the merging of a rule with the rule that it extends.
 
 use std::collections::HashMap;
 
 use super::node::{Key, Node, Value};
 
-/// The entries of a mapping.
+/// Entries of a mapping.
 pub(super) type Entries = Vec<(Key, Node)>;
 
-/// Keys that are true of the parent alone.
+/// Published properties of a rule, which are not valid for rules that extend it.
 const NOT_INHERITED: [&str; 2] = ["dimension", "hausdorff_dimension"];
 
-/// The keys that stand in place of each other in a system.
+/// Alternative keys for the maps of a system: one of them replaces the others.
 const MAPS: [&str; 3] = ["maps", "vertices", "interpolate"];
 
-/// Adds a parent's entries to those of a rule that extends it.
+/// Merges the entries of a parent into those of the file that extends it.
 pub(super) fn merge(own: &mut Entries, parents: Entries) {
     let has = |own: &Entries, name: &str| own.iter().any(|(key, _)| key.name == name);
     let one = has(own, "generator");
@@ -43,7 +43,8 @@ pub(super) fn merge(own: &mut Entries, parents: Entries) {
     }
 }
 
-/// Merges entry by entry; a parameter's value replaces the parent's and keeps its limits.
+/// Merges mappings entry by entry. With `params`, a bare value in `own` replaces the parent's value and
+/// keeps its limits.
 pub(super) fn merge_entries(own: &mut Entries, parents: Entries, params: bool) {
     let names = own.iter().map(|(key, _)| key.name.clone());
     let numbers: HashMap<String, usize> = names.zip(0..).collect();

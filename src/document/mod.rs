@@ -1,7 +1,8 @@
-//! Files as written: what was read, with places, before anything is looked up or evaluated.
+//! Documents: the content of files as written, with source spans, before names are looked up and
+//! expressions are evaluated.
 //!
-//! [`Document::read`] parses a file, puts its parents (`extends`) and components into it, and
-//! reads the result into the document of its kind. Nothing outside this module sees YAML.
+//! [`Document::read`] parses a file, inlines its parents (`extends`) and components, and reads the
+//! result into the document of its kind. YAML is not visible outside this module.
 
 mod assemble;
 mod data;
@@ -52,12 +53,12 @@ use crate::resolve;
 
 use node::Node;
 
-/// A value and where it was written.
+/// A value with its source span.
 #[derive(Clone, Debug)]
 pub struct Written<T> {
     /// The value.
     pub value: T,
-    /// Where it was written.
+    /// Source span of the value.
     pub place: Place,
 }
 
@@ -67,16 +68,16 @@ pub type Number = Written<Expression>;
 /// A point as written.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its first coordinate, to the right.
+    /// First coordinate, to the right.
     pub x: Number,
-    /// Its second coordinate, upwards.
+    /// Second coordinate, upwards.
     pub y: Number,
-    /// Where it was written.
+    /// Source span of the point.
     pub place: Place,
 }
 
 impl Point {
-    /// Stands in for a point that could not be read.
+    /// Returns a placeholder for a point that cannot be read.
     pub(crate) fn unknown(place: &Place) -> Self {
         let unknown = || Written {
             value: Expression::unknown(),
@@ -89,7 +90,7 @@ impl Point {
         }
     }
 
-    /// (0, 0), where a point was left out.
+    /// Returns (0, 0) for a point that is left out.
     pub(crate) fn origin(place: &Place) -> Self {
         let zero = || Written {
             value: Expression::number(0.0),
@@ -102,7 +103,7 @@ impl Point {
         }
     }
 
-    /// A complex number by its name.
+    /// Returns a complex parameter of the given name as a point.
     pub(crate) fn named(name: &str, place: &Place) -> Self {
         let part = |part: &str| Written {
             value: Expression::parse(&format!("{name}{part}"))
@@ -117,7 +118,7 @@ impl Point {
         }
     }
 
-    /// The name of the complex number that it is, if it is written as one.
+    /// Returns the name of the complex parameter if the point is written as one.
     pub(crate) fn name(&self) -> Option<&str> {
         let names = self.x.value.names();
         let (name, _) = names.first()?;
@@ -125,14 +126,14 @@ impl Point {
         (self.place.text() == name).then(|| self.place.text())
     }
 
-    /// Whether two points are written the same.
+    /// Returns whether the expressions of both coordinates are written alike.
     #[must_use]
     pub fn is_written_like(&self, other: &Self) -> bool {
         self.x.value == other.x.value && self.y.value == other.y.value
     }
 }
 
-/// What a file of some kind says, as it is written.
+/// The content of a file as written, by kind.
 #[derive(Clone, Debug)]
 pub enum KindDocument {
     /// A production rule.
@@ -146,7 +147,7 @@ pub enum KindDocument {
 }
 
 impl KindDocument {
-    /// What files of all kinds say.
+    /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn heading(&self) -> &HeadingDocument {
         match self {
@@ -158,7 +159,7 @@ impl KindDocument {
     }
 }
 
-/// A file with its parents and components put into it.
+/// A file with its parents and components inlined.
 #[derive(Clone, Debug)]
 pub struct Document {
     node: Node,
@@ -167,11 +168,11 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads a rule from a text.
+    /// Reads a file of any kind from a text.
     ///
     /// # Errors
     ///
-    /// All that is wrong with the text, its parents and its components.
+    /// Returns all mistakes in the text, its parents and its components.
     pub fn read(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
         let mut diagnostics = Diagnostics::default();
         let assembled = assemble::assemble(source, catalogue, &mut diagnostics);
@@ -182,7 +183,7 @@ impl Document {
             return Err(diagnostics.without_repeats());
         };
         if diagnostics.has_errors() {
-            // What is wrong with names and values is said too.
+            // Mistakes in names and values are reported together with those of syntax.
             diagnostics.extend(resolve::resolve(&kind, &[]).err().unwrap_or_default());
             return Err(diagnostics.without_repeats());
         }
@@ -193,19 +194,19 @@ impl Document {
         })
     }
 
-    /// What the file says.
+    /// Returns the content as written.
     #[must_use]
     pub fn kind(&self) -> &KindDocument {
         &self.kind
     }
 
-    /// What files of all kinds say.
+    /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn heading(&self) -> &HeadingDocument {
         self.kind.heading()
     }
 
-    /// The rule as written, if it is one.
+    /// Returns the production rule as written; `None` for other kinds.
     #[must_use]
     pub fn rule(&self) -> Option<&RuleDocument> {
         match &self.kind {
@@ -214,8 +215,9 @@ impl Document {
         }
     }
 
-    /// The files that it comes from, by name: its own, and those of its parents, its components and
-    /// its data. Texts that are no files, and embedded ones, are named in the same way.
+    /// Returns the paths of the files from which the document was read: its own, and those of its
+    /// parents, components and data. Embedded files and texts that are not files are listed by their
+    /// names.
     #[must_use]
     pub fn paths(&self) -> BTreeSet<&Path> {
         let mut paths = BTreeSet::new();
@@ -223,17 +225,19 @@ impl Document {
         paths
     }
 
-    /// The file with its parents and components inlined, as YAML that reads back as the same.
+    /// Returns the file with its parents and components inlined, as YAML that reads back as an equal
+    /// document.
     #[must_use]
     pub fn to_yaml(&self) -> String {
         self.node.to_yaml()
     }
 
-    /// The validated model, with parameters set by name, and what is doubtful, but not wrong.
+    /// Resolves the document with the given parameters and returns the validated model with all
+    /// warnings.
     ///
     /// # Errors
     ///
-    /// All that is wrong with it.
+    /// Returns all mistakes and warnings if the document or a setting is invalid.
     pub fn resolve(&self, settings: &[Setting]) -> Result<(Model, Diagnostics), Diagnostics> {
         let mut all = self.warnings.clone();
         match resolve::resolve(&self.kind, settings) {
@@ -249,15 +253,15 @@ impl Document {
     }
 }
 
-/// A parameter's value from outside the file.
+/// A parameter value from outside the file.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// The parameter.
+    /// Name of the parameter.
     pub name: String,
-    /// Its value.
+    /// Value of the parameter.
     pub value: f64,
-    /// How the value is written, where that tells more of its digits.
+    /// The value as written, if that expression has more digits than `value`.
     pub written: Option<Expression>,
-    /// Where the value is written, if that is in a file.
+    /// Source span of the value, if it is written in a file.
     pub place: Option<Place>,
 }

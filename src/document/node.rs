@@ -1,4 +1,4 @@
-//! A YAML value in which everything knows its place.
+//! YAML values with source spans.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -8,55 +8,55 @@ use std::sync::Arc;
 use super::yaml;
 use crate::diagnostic::{Diagnostics, Place, Source};
 
-/// A YAML value with its place.
+/// A YAML value with its source span.
 ///
-/// The place of a plain scalar is exactly its text, that of a quoted one the text inside the
-/// quotes, that of a block scalar (`|`, `>`) its lines without the first line's indentation; where
-/// nothing is written it is empty. The place of a list or mapping runs from its first to its last
-/// token. What an alias stands for has the places of what it refers to.
+/// The span of a plain scalar is exactly its text, that of a quoted scalar the text between the quotes,
+/// and that of a block scalar (`|`, `>`) its lines without the indentation of the first line. The span
+/// of an empty value is empty. The span of a list or mapping extends from its first to its last token.
+/// An alias has the spans of its anchor's value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Where it is written.
+    /// Source span of the value.
     pub place: Place,
-    /// What is written there.
+    /// The value.
     pub value: Value,
 }
 
-/// What a [`Node`] holds.
+/// A YAML value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// `null`, `~` or nothing at all.
+    /// `null`, `~` or an empty value.
     Null,
     /// `true` or `false`; `yes`, `on` and `True` are text.
     Bool(bool),
     /// A finite number; `1/3`, `.inf` and `1e999` are text.
     Number(f64),
-    /// Everything else that is no collection.
+    /// Any other scalar.
     Text(String),
     /// A list.
     Sequence(Vec<Node>),
-    /// A mapping in the order of the file, each key once.
+    /// A mapping in the order of the file, with unique keys.
     Mapping(Vec<(Key, Node)>),
 }
 
-/// The key of a mapping's entry. A number or word used as a key is the text it is written as.
+/// The key of an entry of a mapping. Numbers and words as keys are text as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
-    /// The key's text.
+    /// Text of the key.
     pub name: String,
-    /// Where it is written.
+    /// Source span of the key.
     pub place: Place,
 }
 
 impl Node {
-    /// Reads the one YAML document that a source holds.
+    /// Parses the only YAML document in a source.
     ///
-    /// Nothing is nested deeper than 64 levels and there are at most 250,000 values, aliases
-    /// expanded and merge keys (`<<`) merged.
+    /// Nesting is limited to 64 levels, and values to 250,000, with aliases expanded and merge keys
+    /// (`<<`) merged.
     ///
     /// # Errors
     ///
-    /// All that is wrong: up to the first mistake of syntax, behind which nothing can be read.
+    /// Returns all mistakes, up to the first one of syntax, beyond which nothing can be read.
     pub fn parse(source: &Arc<Source>) -> Result<Self, Diagnostics> {
         let mut found = Diagnostics::default();
         match Self::parse_with(source, &mut found) {
@@ -65,14 +65,14 @@ impl Node {
         }
     }
 
-    /// As [`Node::parse`], but adds the mistakes to `found` and returns what can be used in spite
-    /// of them, so that mistakes in the meaning can be reported with those of syntax. Where a
-    /// mistake has a likely meaning, such as a key that is there twice, the node has that meaning.
+    /// Parses a source as [`Node::parse`] does, but adds the mistakes to `found` and returns the usable
+    /// part, so that mistakes of meaning can be reported together with those of syntax. A mistake with
+    /// a probable meaning, such as a duplicate key, is resolved to that meaning.
     pub fn parse_with(source: &Arc<Source>, found: &mut Diagnostics) -> Option<Self> {
         yaml::read(source, found)
     }
 
-    /// What it is, for messages: "a number", "a list", …
+    /// Returns a noun for the type of the value, for messages: "a number", "a list", …
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match &self.value {
@@ -85,7 +85,7 @@ impl Node {
         }
     }
 
-    /// The value of a mapping's key; nothing where there is none or this is no mapping.
+    /// Returns the value of a key; `None` if the key is absent or the node is not a mapping.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Self> {
         let Value::Mapping(entries) = &self.value else {
@@ -97,7 +97,7 @@ impl Node {
             .map(|(_, node)| node)
     }
 
-    /// A scalar as it is written, without quotes; nothing for a list or mapping.
+    /// Returns a scalar as written, without quotes; `None` for a list or mapping.
     #[must_use]
     pub fn written(&self) -> Option<&str> {
         match self.value {
@@ -106,8 +106,8 @@ impl Node {
         }
     }
 
-    /// The place of the bytes `range` of its text, cut to it; its whole place if it is written
-    /// otherwise than it reads, with escapes or on several lines.
+    /// Returns the span of the bytes `range` of the text, clipped to it. Returns the span of the whole
+    /// node if the text differs from its notation, as with escapes or several lines.
     #[must_use]
     pub fn within(&self, range: Range<usize>) -> Place {
         match &self.value {
@@ -116,7 +116,8 @@ impl Node {
         }
     }
 
-    /// Whether both say the same, wherever they are written. The order of a mapping counts.
+    /// Returns whether both nodes have equal values, regardless of spans. The order of mappings is
+    /// significant.
     #[must_use]
     pub fn same_value(&self, other: &Self) -> bool {
         match (&self.value, &other.value) {
@@ -133,7 +134,7 @@ impl Node {
         }
     }
 
-    /// Whether a place lies in it, or in a part of it that is written elsewhere.
+    /// Returns whether a span lies in the node, or in a part of it that is written elsewhere.
     pub(super) fn holds(&self, place: &Place) -> bool {
         let [own, other] = [&self.place, place].map(Place::range);
         if Arc::ptr_eq(self.place.source(), place.source())
@@ -149,7 +150,7 @@ impl Node {
         }
     }
 
-    /// Adds the paths of the files that hold parts of it.
+    /// Adds the paths of the files that contain parts of the node.
     pub(super) fn add_paths<'n>(&'n self, paths: &mut BTreeSet<&'n Path>) {
         paths.insert(self.place.source().path());
         match &self.value {
@@ -164,8 +165,8 @@ impl Node {
         }
     }
 
-    /// YAML that reads as this value: block style outside, flow style for points and short
-    /// mappings, text quoted only where it would read as something else.
+    /// Returns YAML that parses to an equal value: block style for outer collections, flow style for
+    /// points and short mappings, and quotes only where they are necessary.
     #[must_use]
     pub fn to_yaml(&self) -> String {
         yaml::write(self)
@@ -173,7 +174,7 @@ impl Node {
 }
 
 impl From<Value> for Node {
-    /// A value that was not read; its place is in a text of its own.
+    /// Creates a node for a generated value, whose span lies in a source of its own.
     fn from(value: Value) -> Self {
         let place = match &value {
             Value::Text(text) => nowhere(text),
@@ -186,7 +187,7 @@ impl From<Value> for Node {
 }
 
 impl Key {
-    /// A key that was not read; its place is in a text of its own.
+    /// Creates a key for a generated mapping, whose span lies in a source of its own.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
         let name = name.into();

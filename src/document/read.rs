@@ -1,5 +1,5 @@
-//! From nodes to a file as written. What is wrong is noted and something unknown stands in for it,
-//! so that everything else is looked at as well.
+//! Conversion of nodes to documents. Mistakes are collected and placeholders take the place of
+//! unreadable values, so that one pass reports all mistakes.
 
 mod base_element;
 mod elements;
@@ -34,7 +34,7 @@ use super::node::Node;
 use super::reader::Reader;
 use super::shape::Shape;
 
-/// The keys of a kind of file that can be grown.
+/// Returns the keys of a kind of file.
 pub(super) fn shape(kind: Kind) -> &'static Shape {
     match kind {
         Kind::Rule => &RULE,
@@ -44,7 +44,8 @@ pub(super) fn shape(kind: Kind) -> &'static Shape {
     }
 }
 
-/// Reads a file with its parents and components in it; `complete` if all of them were found.
+/// Reads a file whose parents and components are inlined. `complete` states that all of them were
+/// found.
 pub(super) fn read(
     kind: Kind,
     node: &Node,
@@ -68,7 +69,7 @@ fn read_kind(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Op
     }
 }
 
-/// The first line of a place: enough to say which mapping lacks something.
+/// Returns the first line of a place, which identifies the mapping that lacks a key.
 fn first_line(place: &Place) -> Place {
     let end = place.text().find(['\n', '\r']);
     place.within(0..end.unwrap_or(usize::MAX))

@@ -1,4 +1,4 @@
-//! Reads values out of nodes, and notes what is wrong instead of giving up.
+//! Reading of typed values from nodes. Mistakes are collected as diagnostics, and reading continues.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -11,26 +11,26 @@ use super::node::{Node, Value};
 use super::shape::{Form, Member, Shape};
 use super::{Number, Point, Written};
 
-/// Collects what is wrong while values are read.
+/// Reads values and collects diagnostics.
 #[derive(Default)]
 pub(super) struct Reader {
     pub(super) diagnostics: Diagnostics,
-    /// Whether something could not be read that may give names a meaning.
+    /// Whether an unreadable part of the file may define names. Unknown names are not reported then.
     pub(super) names_are_missing: bool,
-    /// The places of mistakes of syntax that have been mended.
+    /// Places of the diagnostics that precede reading, such as repaired mistakes of syntax.
     mended: HashSet<(*const Source, usize, usize)>,
-    /// The places of errors that were found before anything was read.
+    /// Places of the errors that precede reading.
     errors: Arc<[Place]>,
 }
 
-/// The value of a key, and where the key is written.
+/// The value of a key and the place of the key.
 #[derive(Clone, Copy)]
 struct Field<'n> {
     key: &'n Place,
     value: &'n Node,
 }
 
-/// A mapping whose keys are taken one by one.
+/// The known keys of a mapping.
 pub(super) struct Fields<'n> {
     pub(super) place: &'n Place,
     shape: &'static Shape,
@@ -38,24 +38,24 @@ pub(super) struct Fields<'n> {
 }
 
 impl<'n> Fields<'n> {
-    /// The value of a key.
+    /// Returns the value of a key, if the key is present.
     pub(super) fn take(&self, key: &'static str) -> Option<&'n Node> {
         self.field(key).map(|field| field.value)
     }
 
-    /// The keys with their values, in the order in which they are written.
+    /// Iterates over keys and values, in the order in which they are written.
     pub(super) fn in_order(&self) -> impl Iterator<Item = (&'static str, &'n Node)> {
         self.entries
             .iter()
             .map(|(name, field)| (*name, field.value))
     }
 
-    /// Where a key is written; the mapping where it is not there.
+    /// Returns the place of a key, or of the mapping if the key is absent.
     pub(super) fn place_of(&self, key: &'static str) -> &'n Place {
         self.field(key).map_or(self.place, |field| field.key)
     }
 
-    /// What its shape says of a key.
+    /// Returns the definition of a key in the shape.
     fn member(&self, key: &'static str) -> Option<&'static Member> {
         self.shape.members().find(|member| member.name == key)
     }
@@ -72,7 +72,7 @@ impl<'n> Fields<'n> {
 }
 
 impl Reader {
-    /// A reader of what has these mistakes.
+    /// Creates a reader that takes the diagnostics of preceding stages into account.
     pub(super) fn after(diagnostics: &Diagnostics) -> Self {
         let places = diagnostics.iter().filter_map(Diagnostic::place);
         let is_error = |found: &&Diagnostic| found.severity() == Severity::Error;
@@ -84,7 +84,7 @@ impl Reader {
         }
     }
 
-    /// A reader of a file that stands inside the one that is read.
+    /// Creates a reader for a file that is nested in the current one.
     pub(super) fn inside(&self) -> Self {
         Self {
             mended: self.mended.clone(),
@@ -93,13 +93,12 @@ impl Reader {
         }
     }
 
-    /// Whether nothing was wrong with a node before it was read, nor with what has been read by this
-    /// reader.
+    /// Returns whether neither this reader nor a preceding stage has found an error in a node.
     pub(super) fn is_sound(&self, node: &Node) -> bool {
         !self.diagnostics.has_errors() && !self.errors.iter().any(|place| node.holds(place))
     }
 
-    /// Whether a mistake at the very place of this node has been reported.
+    /// Returns whether a diagnostic at exactly the place of this node precedes reading.
     fn is_mended(&self, node: &Node) -> bool {
         self.mended.contains(&identity(&node.place))
     }
@@ -114,7 +113,7 @@ impl Reader {
             .push(Diagnostic::error(message).at(place).hint(hint));
     }
 
-    /// Something else stands where `expected` should.
+    /// Reports a value of a wrong type.
     pub(super) fn mismatch(&mut self, node: &Node, expected: &str, hint: &str) {
         let message = format!("{expected} is needed here, this is {}", node.kind());
         let mut diagnostic = Diagnostic::error(message).at(&node.place);
@@ -126,7 +125,8 @@ impl Reader {
         self.diagnostics.push(diagnostic);
     }
 
-    /// The keys of a mapping; those that are not known are reported, and taken for what they mean.
+    /// Returns the keys of a mapping. Unknown keys are reported, and each is interpreted as the key
+    /// that was probably meant.
     pub(super) fn fields<'n>(
         &mut self,
         node: &'n Node,
@@ -153,7 +153,7 @@ impl Reader {
         })
     }
 
-    /// Whether this is a component by name: one that another mistake kept from being put in.
+    /// Returns whether this is the name of a component that was not inlined because of another mistake.
     pub(super) fn is_component(&self, node: &Node) -> bool {
         matches!(node.value, Value::Text(_)) && self.diagnostics.has_errors()
     }
@@ -169,7 +169,7 @@ impl Reader {
         }
     }
 
-    /// A flag; where it is left out or cannot be read, what its shape says.
+    /// Reads a flag. Returns the default of the shape if the flag is absent or cannot be read.
     pub(super) fn flag(&mut self, fields: &Fields<'_>, key: &'static str) -> bool {
         let default = fields
             .member(key)
@@ -189,7 +189,7 @@ impl Reader {
         }
     }
 
-    /// A name that something is called by.
+    /// Reads a name.
     pub(super) fn name(&mut self, node: &Node) -> Option<Written<String>> {
         self.text(node).map(|value| Written {
             value,
@@ -197,7 +197,7 @@ impl Reader {
         })
     }
 
-    /// An expression. Where it is wrong, that is noted and an unknown one stands in for it.
+    /// Reads an expression. Reports a mistake and returns a placeholder.
     pub(super) fn number(&mut self, node: &Node) -> Number {
         let expression = match &node.value {
             Value::Number(value) => Expression::number(*value),
@@ -223,7 +223,7 @@ impl Reader {
             }
         };
         let expression = if self.is_mended(node) && expression.as_call().is_some() {
-            // Whether a distribution belongs here is said when the comma is mended.
+            // The diagnostic for the comma covers a misplaced distribution.
             Expression::unknown()
         } else {
             expression
@@ -246,7 +246,7 @@ impl Reader {
         node.map(|node| self.number(node))
     }
 
-    /// A list of exactly two numbers.
+    /// Reads a list of exactly two numbers.
     pub(super) fn point(&mut self, node: &Node) -> Point {
         let hint = "a point is written [x, y]";
         let mut point = Point::unknown(&node.place);
@@ -289,7 +289,7 @@ impl Reader {
         Point::unknown(&node.place)
     }
 
-    /// The same, or the name of a complex parameter.
+    /// Reads a point, or the name of a complex parameter.
     pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<Point> {
         let node = node?;
         match &node.value {
@@ -317,11 +317,11 @@ impl Reader {
         }
     }
 
-    /// One of the names of an enumeration.
+    /// Reads the name of a variant of an enumeration.
     pub(super) fn variant<T: Named>(&mut self, node: &Node, what: &str) -> Option<T> {
         let name = match &node.value {
             Value::Text(name) => name.as_str(),
-            // YAML reads an unquoted `none` as text, but `null` and `~` as nothing.
+            // YAML reads an unquoted `none` as text, but `null` and `~` as null.
             Value::Null => "none",
             _ => node.place.text(),
         };
@@ -336,7 +336,7 @@ impl Reader {
     }
 }
 
-/// What tells a place from others.
+/// Returns a key that identifies a source span.
 fn identity(place: &Place) -> (*const Source, usize, usize) {
     let range = place.range();
     (Arc::as_ptr(place.source()), range.start, range.end)

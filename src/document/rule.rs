@@ -1,25 +1,25 @@
-//! The rule file as it is written.
+//! Document of a production rule.
 //!
-//! Where something could not be read, which has been reported then, an expression that is
-//! [unknown](crate::expression::Expression::unknown) or a name that is missing stands in for it.
+//! A placeholder, [`unknown`](crate::expression::Expression::unknown) or a missing name, stands for
+//! every expression or name that cannot be read and has been reported.
 
 use crate::diagnostic::Place;
 use crate::rule::Placement;
 
 use super::{HeadingDocument, Number, Point, Written};
 
-/// A production rule as written, with its components in it.
+/// A production rule as written, with its components inlined.
 #[derive(Clone, Debug)]
 pub struct RuleDocument {
-    /// What files of all kinds say.
+    /// Metadata of the file.
     pub heading: HeadingDocument,
-    /// The initiator.
+    /// Initiator.
     pub initiator: InitiatorDocument,
-    /// The generators by name; `generator` is one without a name.
+    /// Generators by name. A single `generator` has the name `generator`.
     pub generators: Vec<(Written<String>, GeneratorDocument)>,
-    /// The selection.
+    /// Selection of generators.
     pub select: Option<SelectDocument>,
-    /// The base element of all elements that have none of their own.
+    /// Base element of all elements without their own.
     pub base_element: Option<BaseElementDocument>,
 }
 
@@ -28,16 +28,16 @@ pub struct RuleDocument {
 pub struct InitiatorDocument {
     /// Points and elements.
     pub entries: Vec<Entry>,
-    /// Whether one more element runs from the last point to the first.
+    /// Whether one more element connects the last point to the first.
     pub closed: bool,
-    /// Whether elements join at all.
+    /// Whether elements join each other.
     pub connected: bool,
-    /// Where it was written.
+    /// Source span of the initiator.
     pub place: Place,
 }
 
 impl InitiatorDocument {
-    /// Stands in for an initiator that could not be read.
+    /// Returns a placeholder for an initiator that cannot be read.
     pub(super) fn missing(place: &Place) -> Self {
         Self {
             entries: Vec::new(),
@@ -51,97 +51,97 @@ impl InitiatorDocument {
 /// A generator as written.
 #[derive(Clone, Debug)]
 pub struct GeneratorDocument {
-    /// Drawn variables with their distributions.
+    /// Random variables with their distributions.
     pub random: Vec<(Written<String>, Number)>,
-    /// What moves its points.
+    /// Moves of its points, in the order of application.
     pub moves: Vec<MoveDocument>,
-    /// Its parts.
+    /// Parts.
     pub parts: Vec<PartDocument>,
-    /// Where it was written.
+    /// Source span of the generator.
     pub place: Place,
 }
 
 /// A part of a generator as written.
 #[derive(Clone, Debug)]
 pub struct PartDocument {
-    /// Where its elements go.
+    /// Placement: in the element's place, or as a seed.
     pub placement: Placement,
     /// Points and elements.
     pub entries: Vec<Entry>,
-    /// Whether one more element runs from the last point to the first.
+    /// Whether one more element connects the last point to the first.
     pub closed: bool,
-    /// Whether elements join at all.
+    /// Whether elements join each other.
     pub connected: bool,
-    /// Where it was written.
+    /// Source span of the part.
     pub place: Place,
 }
 
 /// An entry of a list of elements.
 #[derive(Clone, Debug)]
 pub enum Entry {
-    /// A point: where a chain starts, or an element to it with no more to say.
+    /// A point: the start of the list, or the end of an element without further attributes.
     Point(Point),
-    /// An element.
+    /// An element with attributes.
     Element(Box<Listed>),
 }
 
 /// An element as written.
 #[derive(Clone, Debug)]
 pub struct Listed {
-    /// Where it runs from, if that is written.
+    /// Start point; the end of the previous entry if `None`.
     pub from: Option<Point>,
-    /// Where it runs to.
+    /// End point.
     pub to: Point,
-    /// Its direction, 1 to 4.
+    /// Direction, 1 to 4.
     pub direction: Option<Number>,
-    /// Whether it is replaced.
+    /// Whether the element is replaced.
     pub fertile: bool,
-    /// Whether it is drawn.
+    /// Whether the element is drawn.
     pub visible: bool,
-    /// Whether it may join the element before it.
+    /// Whether the element may join the previous one.
     pub connected: bool,
-    /// The generator that it names.
+    /// Generator that replaces the element, if it names one.
     pub generator: Option<Written<String>>,
-    /// A base element of its own.
+    /// The element's own base element.
     pub base_element: Option<BaseElementDocument>,
-    /// Where it was written.
+    /// Source span of the element.
     pub place: Place,
 }
 
-/// What moves the points of a generator, as written.
+/// A move of points of a generator, as written.
 #[derive(Clone, Debug)]
 pub struct MoveDocument {
-    /// The angle, in degrees.
+    /// Angle in degrees, counter-clockwise.
     pub rotate: Option<Number>,
-    /// The factors along x and y.
+    /// Scaling factors along x and y.
     pub scale: Option<[Number; 2]>,
-    /// The shift.
+    /// Translation, which is applied last.
     pub shift: Option<Point>,
-    /// The centre of turning and scaling.
+    /// Centre of scaling and rotation.
     pub about: Option<Point>,
-    /// The points that move.
+    /// Points that move.
     pub points: WhichPoints,
-    /// Where it was written.
+    /// Source span of the move.
     pub place: Place,
 }
 
-/// The points that a move moves.
+/// The points to which a move applies.
 #[derive(Clone, Debug)]
 pub enum WhichPoints {
-    /// All but the two ends of what takes the element's place.
+    /// All points but the first and the last one of what takes the element's place.
     Inner,
-    /// All.
+    /// All points.
     All,
-    /// Those with these numbers, from 0 in the order in which they are first written.
+    /// The points of these numbers, from 0 in the order of their first occurrence.
     Numbers(Vec<Number>),
 }
 
-/// A selection as written.
+/// A selection of generators as written.
 #[derive(Clone, Debug)]
 pub enum SelectDocument {
-    /// Conditions, tried in order, and generators.
+    /// Conditions, which are tried in order, with generators. The last case has no condition.
     Cases(Vec<(Option<Number>, Option<Written<String>>)>, Place),
-    /// By index.
+    /// By index of the element.
     ByIndex(Vec<Written<String>>, Place),
     /// At random, by weight.
     AtRandom(Vec<(Written<String>, Number)>, Place),
@@ -150,15 +150,15 @@ pub enum SelectDocument {
 /// A base element as written.
 #[derive(Clone, Debug)]
 pub struct BaseElementDocument {
-    /// Its pieces; the first is its first point.
+    /// Pieces; the first is the first point.
     pub pieces: Vec<PieceDocument>,
-    /// Whether its last point is joined to its first.
+    /// Whether the last point is connected to the first.
     pub closed: bool,
-    /// What comes to lie on (0, 0).
+    /// Point of the outline that is mapped to (0, 0).
     pub from: Option<Point>,
-    /// What comes to lie on (1, 0).
+    /// Point of the outline that is mapped to (1, 0).
     pub to: Option<Point>,
-    /// Where it was written.
+    /// Source span of the base element.
     pub place: Place,
 }
 
@@ -167,24 +167,24 @@ pub struct BaseElementDocument {
 pub enum PieceDocument {
     /// A straight line to a point.
     Line(Point),
-    /// A circular arc through a point to a point.
+    /// A circular arc.
     Arc {
-        /// Where it ends.
+        /// End point.
         to: Point,
-        /// A point on it.
+        /// A point on the arc.
         through: Point,
     },
-    /// A Bézier curve with one control point or two.
+    /// A Bézier curve.
     Curve {
-        /// Where it ends.
+        /// End point.
         to: Point,
-        /// The control points.
+        /// Control points: one of a quadratic curve, two of a cubic one.
         control: Vec<Point>,
     },
 }
 
 impl PieceDocument {
-    /// Where it ends.
+    /// Returns the end point.
     pub(crate) fn end(&self) -> &Point {
         match self {
             Self::Line(to) | Self::Arc { to, .. } | Self::Curve { to, .. } => to,

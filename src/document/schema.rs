@@ -1,9 +1,9 @@
-//! The JSON Schema of rules and components, for editors: made of the shapes that files are read by.
+//! JSON Schema of library files for editors, generated from the shapes that also check files.
 //!
-//! It is of draft 7, the newest that every release of the language servers for YAML understands.
-//! There a `$ref` stands alone, so that a key has its description beside an `allOf`. What a key may
-//! hold has no descriptions of its own: an editor would show them in place of the key's. For the same
-//! reason nothing has a title.
+//! The schema is of draft 7, the newest that every release of the YAML language servers understands. In
+//! draft 7 siblings of `$ref` are ignored, hence a key has its description beside an `allOf`.
+//! Definitions of values have no descriptions of their own, which an editor would show in place of the
+//! key's; for the same reason nothing has a title.
 
 mod json;
 mod switch;
@@ -19,7 +19,7 @@ use json::{Json, Object, list};
 
 const DRAFT: &str = "http://json-schema.org/draft-07/schema#";
 
-// Components as files of their own: they describe themselves and may have parameters.
+// Components as files of their own, with a description and parameters.
 
 const INITIATOR_FILE: Shape = Shape {
     keys: &[&DESCRIPTION, &[PARAMS], INITIATOR.keys[0]],
@@ -36,18 +36,20 @@ const BASE_ELEMENT_FILE: Shape = Shape {
     ..BASE_ELEMENT
 };
 
-/// The JSON Schema (draft 7) of a kind of file, as text.
+/// Returns the JSON Schema (draft 7) of the files of a shelf, as text.
 ///
-/// What it refuses, reading refuses. Names, expressions and what depends on several places are
-/// left to reading. The names of the embedded library are there to be offered.
+/// A file that the schema rejects is rejected by [`Document::read`](super::Document::read) as well.
+/// Names, expressions and dependencies between several places are checked only there. Names of the
+/// embedded library are included as suggestions.
 #[must_use]
 pub fn schema(shelf: Shelf) -> String {
     let schema = Object::default().with("$schema", DRAFT);
     schema.and(body(shelf, "#")).to_text()
 }
 
-/// The JSON Schema (draft 7) of files of every kind, as text: that of a file's `kind` holds, and that of a
-/// component where a file has no `kind` and the keys of one.
+/// Returns the JSON Schema (draft 7) of files of every kind, as text. A file is validated by the schema
+/// of its `kind`, or, without a `kind`, by that of the component to which its keys belong, or else as a
+/// rule.
 #[must_use]
 pub fn schema_of_all() -> String {
     let schema = Object::default()
@@ -64,7 +66,7 @@ pub fn schema_of_all() -> String {
     schema.with("definitions", Object(bodies.into())).to_text()
 }
 
-/// Returns the schema of a kind of file, at a place of a document.
+/// Returns the schema of the files of a shelf, located at `at` in the whole document.
 fn body(shelf: Shelf, at: &str) -> Object {
     let mut definitions = Definitions {
         at: at.into(),
@@ -107,17 +109,18 @@ fn body(shelf: Shelf, at: &str) -> Object {
         .with("definitions", Object(definitions.named))
 }
 
-/// What a schema refers to by name, in the order of first use.
+/// The definitions of a schema, in the order of first use.
 struct Definitions {
-    /// Where in the document the schema stands.
+    /// JSON pointer to the schema within the whole document.
     at: String,
     named: Vec<(String, Json)>,
-    /// Whether the file extends no other, so that nothing can be left to that.
+    /// Whether the file cannot extend another, which could supply required keys.
     alone: bool,
 }
 
 impl Definitions {
-    /// What can be grown, which may leave to the file that it extends what such a file must have.
+    /// Returns the schema of a complete fractal, in which the keys that a parent may supply are
+    /// required only without `extends`.
     fn grown(&mut self, shape: &Shape) -> Object {
         let extends = Object::default().with("required", list(["extends"]));
         let values = Object::default().with("additionalProperties", required(&PARAMETER, true));
@@ -136,7 +139,7 @@ impl Definitions {
             .and(ways(shape, true))
     }
 
-    /// The keys of a mapping and what they hold.
+    /// Returns the schema of the keys of a mapping and of their values.
     fn keys(&mut self, shape: &Shape) -> Object {
         let mut properties = Object::default();
         for member in shape.members() {
@@ -167,13 +170,13 @@ impl Definitions {
         Object::default().with("anyOf", list(alternatives))
     }
 
-    /// What a value may be.
+    /// Returns the schema of a value.
     fn form(&mut self, form: &Form) -> Object {
         match form {
             Form::Text => of_types(["string", "number"]),
             Form::Flag(default) => of_type("boolean").with("default", *default),
             Form::Number => of_types(["number", "string"]),
-            // The limits are those of a number; an expression is text.
+            // The minimum applies to plain numbers; expressions are text.
             Form::Positive => self.form(&Form::Number).with("minimum", 0),
             Form::Whole(least, most) => {
                 let number = of_types(["integer", "string"]).with("minimum", *least);
@@ -213,7 +216,7 @@ impl Definitions {
         }
     }
 
-    /// Refers to a definition, which is made at first use.
+    /// Returns a reference to a definition, which is added at its first use.
     fn defined(&mut self, name: &str, make: impl FnOnce(&mut Self) -> Object) -> Object {
         if !self.named.iter().any(|(known, _)| known == name) {
             let definition = make(self);
@@ -223,14 +226,14 @@ impl Definitions {
     }
 }
 
-/// The names of the embedded library, which editors offer; a library of one's own may have others.
+/// Returns names of the embedded library as suggestions; other libraries may have further ones.
 fn names(shelves: &[Shelf]) -> Json {
     let entries = Catalogue::embedded().entries().into_iter();
     let entries = entries.filter(|entry| shelves.contains(&entry.shelf));
     list(entries.map(|entry| entry.name))
 }
 
-/// The keys that must be there.
+/// Returns the constraint for required keys.
 fn required(shape: &Shape, alone: bool) -> Object {
     let needed = |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
     let members = shape.members().filter(|member| needed(member.needed));
@@ -239,7 +242,8 @@ fn required(shape: &Shape, alone: bool) -> Object {
     Object::default().with_some("required", names)
 }
 
-/// The sets of keys of which one must be there; only what they exclude, unless `needed`.
+/// Returns the constraint for alternative sets of keys: one set is required if `needed`, and its
+/// exclusions apply in any case.
 fn ways(shape: &Shape, needed: bool) -> Object {
     let ways = shape.ways.iter().map(|way| {
         let needs = needed.then(|| list(way.needs.iter().copied()));
@@ -261,7 +265,7 @@ fn of_types(names: [&str; 2]) -> Object {
     Object::default().with("type", list(names))
 }
 
-/// One of several names. Where `none` is one, nothing stands for it.
+/// Returns the schema of a name of an enumeration. With a name `none`, null is accepted as well.
 fn one_of(choice: Choice) -> Object {
     let none = choice.names.contains(&"none").then_some(Json::Null);
     let names = choice.names.into_iter().map(Json::from).chain(none);

@@ -1,5 +1,5 @@
-//! What mappings may hold: the one list of keys, from which files are checked and their schema is
-//! made.
+//! Shapes: the definitions of the keys of mappings, from which files are checked and their schema is
+//! generated.
 
 use crate::catalogue::Shelf;
 use crate::diagnostic::{Diagnostic, nearest};
@@ -7,90 +7,90 @@ use crate::style::Named;
 
 use super::node::Key;
 
-/// A kind of mapping.
+/// The definition of a type of mappings.
 pub(super) struct Shape {
-    /// What messages call it, with its article.
+    /// Noun for messages, with its article.
     pub(super) what: &'static str,
-    /// The keys that it may have, in groups.
+    /// Possible keys, in groups.
     pub(super) keys: &'static [&'static [Member]],
-    /// Sets of keys of which exactly one must be there; empty if that is all the same.
+    /// Alternative sets of keys, of which exactly one is required; empty if there are none.
     pub(super) ways: &'static [Way],
-    /// How it is written.
+    /// Example of the notation, as a help text.
     pub(super) hint: &'static str,
 }
 
-/// A key that a mapping may have.
+/// The definition of a key.
 pub(super) struct Member {
     pub(super) name: &'static str,
-    /// What it may hold.
+    /// Type of the value.
     pub(super) holds: Form,
-    /// What it means, for people who point at it in an editor.
+    /// Description, which editors show.
     pub(super) about: &'static str,
     pub(super) needed: Needed,
 }
 
-/// When a key must be there.
+/// Condition under which a key is required.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Needed {
     Never,
     Always,
-    /// In a file that does not extend another.
+    /// Required in a file that does not extend another.
     Alone,
 }
 
-/// Keys that stand together, and keys that cannot stand with them.
+/// An alternative set of keys, with the keys that it excludes.
 pub(super) struct Way {
     pub(super) needs: &'static [&'static str],
     pub(super) excludes: &'static [&'static str],
 }
 
-/// What a value may be.
+/// Type of a value.
 pub(super) enum Form {
     /// Text; a number is text as it is written.
     Text,
-    /// `true` or `false`, with the one that is meant where the key is left out.
+    /// `true` or `false`, with the default.
     Flag(bool),
     /// A number or an expression.
     Number,
-    /// The same; not negative.
+    /// A number that is not negative, or an expression.
     Positive,
-    /// The same; a whole number from the first to the second, if that is given.
+    /// An integer with a minimum and possibly a maximum, or an expression.
     Whole(u32, Option<u32>),
-    /// An expression that is never a number alone: a condition or a distribution.
+    /// An expression that is never a plain number: a condition, a distribution or a name.
     Expression,
-    /// One of the names of an enumeration.
+    /// A name of a variant of an enumeration.
     Choice(fn() -> Choice),
-    /// This number and no other.
+    /// Exactly this number.
     Exactly(u32),
-    /// One of these words.
+    /// One of these keywords.
     Words(&'static [&'static str]),
-    /// A colour; `none` or nothing is none.
+    /// A colour; `none` or null for no colour.
     Colour,
-    /// The name of a file of the library.
+    /// Name of a file on a shelf of the library.
     File(Shelf),
-    /// The name of a file that can be grown, or what it says.
+    /// Name of a file of any kind that can be grown, or its content.
     Grown,
-    /// Two numbers.
+    /// A list of two numbers.
     Point,
-    /// A list of as many entries at least and, if limited, at most.
+    /// A list with a minimum and possibly a maximum number of entries.
     List(&'static Form, u32, Option<u32>),
-    /// A mapping of names that the file gives; as many at least.
+    /// A mapping of arbitrary names to values, with a minimum number of entries.
     Names(&'static Form, u32),
-    /// A mapping.
+    /// A mapping with the keys of a shape.
     Mapping(&'static Shape),
-    /// One of several.
+    /// One of several types.
     Either(&'static [Form]),
 }
 
-/// The names of an enumeration.
+/// Names of the variants of an enumeration.
 pub(super) struct Choice {
     pub(super) names: Vec<&'static str>,
-    /// The one that is meant where the key is left out.
+    /// Name of the default.
     pub(super) default: String,
 }
 
 impl Form {
-    /// One of the variants of an enumeration.
+    /// Returns the type of the names of an enumeration.
     pub(super) const fn variant<T: Named + Default + PartialEq>() -> Self {
         Self::Choice(|| Choice {
             names: T::NAMES.iter().map(|(name, _)| *name).collect(),
@@ -99,7 +99,7 @@ impl Form {
     }
 }
 
-/// A key that may be left out.
+/// Defines an optional key.
 pub(super) const fn key(name: &'static str, holds: Form, about: &'static str) -> Member {
     Member {
         name,
@@ -109,7 +109,7 @@ pub(super) const fn key(name: &'static str, holds: Form, about: &'static str) ->
     }
 }
 
-/// A key that must be there.
+/// Defines a required key.
 pub(super) const fn needed_key(name: &'static str, holds: Form, about: &'static str) -> Member {
     Member {
         needed: Needed::Always,
@@ -118,18 +118,18 @@ pub(super) const fn needed_key(name: &'static str, holds: Form, about: &'static 
 }
 
 impl Shape {
-    /// The keys that it may have.
+    /// Iterates over the definitions of all keys.
     pub(super) fn members(&self) -> impl Iterator<Item = &'static Member> + Clone + use<> {
         self.keys.iter().copied().flatten()
     }
 
-    /// The names of the keys.
+    /// Iterates over the names of all keys.
     fn names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
         self.members().map(|member| member.name)
     }
 
-    /// The keys as they are meant: a key that is not known stands for the nearest one that is, if
-    /// that is not there itself, and otherwise for none. Every one that is not known is reported.
+    /// Maps keys to known keys. An unknown key is reported and mapped to the nearest known key if that
+    /// one is absent, and to `None` otherwise.
     pub(super) fn meant<'k>(
         &self,
         keys: impl Iterator<Item = &'k Key> + Clone,

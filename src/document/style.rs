@@ -1,4 +1,4 @@
-//! `style` and `view`.
+//! Reading of `style` and `view`.
 
 use crate::diagnostic::Diagnostic;
 use crate::expression::Scope;
@@ -131,7 +131,8 @@ pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
     style
 }
 
-/// A colour; `none` is none.
+/// Reads a colour. Returns `None` for `none` and for null, and reports other values that are not
+/// colours.
 pub(super) fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
     let Value::Text(text) = &node.value else {
         if !matches!(node.value, Value::Null) {
@@ -177,7 +178,7 @@ fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
     positive(reader, node).map(Width::Pixels)
 }
 
-/// A constant, not negative.
+/// Reads a constant expression whose value is not negative.
 fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
     let value = constant(reader, node)?;
     if value < 0.0 {

@@ -1,8 +1,8 @@
-//! YAML read into [`Node`](super::node::Node)s and written from them.
+//! Parsing of YAML to [`Node`](super::node::Node)s and writing of YAML.
 //!
-//! It builds on the event parser below `serde-saphyr`, not on its `Spanned` values: only the events
-//! say how a scalar was quoted and where a collection ends, and only with them can reading go on
-//! behind a mistake.
+//! The parser builds on the event parser of `serde-saphyr`, not on its `Spanned` values: only events
+//! contain the quoting of scalars and the ends of collections, and only they allow parsing to continue
+//! after a mistake.
 
 mod limits;
 mod read;

@@ -1,4 +1,4 @@
-//! Puts the files of other fractals in the place of their names, where these are sets.
+//! Inlining of other fractals that serve as sets.
 
 use std::sync::Arc;
 
@@ -9,17 +9,17 @@ use crate::document::yaml::Size;
 
 use super::{Assembly, MOST_MISSING, assemble_within, is_same_file};
 
-/// A fractal may be made of another one, that of a third, and so on, up to this many.
+/// Maximum nesting depth of fractals in fractals.
 const MOST_DEEP: usize = 8;
-/// All that is made of each other holds no more fractals than this.
+/// Maximum number of fractals that are inlined into one file, nested ones included.
 const MOST_FRACTALS: usize = 1000;
 
 impl Assembly<'_> {
-    /// Puts in the fractals that sets of a file are.
+    /// Inlines the fractals in all sets of a file.
     pub(super) fn inline_fractals(&mut self, entries: &mut Entries) {
         for (key, node) in entries {
             match (key.name.as_str(), &mut node.value) {
-                // An object may have any name.
+                // Names of objects are arbitrary and may equal a keyword.
                 ("objects", Value::Mapping(objects)) => {
                     for (_, object) in objects {
                         self.inline_fractals_in(object);
@@ -31,7 +31,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// The same in a set, an instance, a list or a union of these.
+    /// Inlines the fractals in a set, an instance, a list or a union.
     fn inline_fractals_in(&mut self, node: &mut Node) {
         match &mut node.value {
             Value::Sequence(items) => {
@@ -54,7 +54,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Puts in the place of a fractal's name all that its file says; where that is wrong, a text stays.
+    /// Replaces the name of a fractal by the content of its file, or by an empty text if that is not
+    /// possible.
     fn inline_fractal(&mut self, node: &mut Node) {
         let found = if self.missing < MOST_MISSING {
             self.fractal(node)
@@ -70,7 +71,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// All that a fractal's file says, or what is written in its place.
+    /// Returns the assembled content of a fractal's file, or of the mapping that is written in place of
+    /// its name.
     fn fractal(&mut self, node: &Node) -> Option<Node> {
         *self.fractals += 1;
         if *self.fractals > MOST_FRACTALS {
@@ -83,7 +85,7 @@ impl Assembly<'_> {
         around.extend(self.chain.iter().cloned());
         let (source, content) = match &node.value {
             Value::Text(name) => {
-                // Beside the file that names it.
+                // Paths are relative to the file that names the fractal.
                 let mut beside = around.clone();
                 beside.push(Arc::clone(node.place.source()));
                 let found = self.catalogue.parent(name, &beside);
@@ -111,7 +113,7 @@ impl Assembly<'_> {
         complete.then_some(found)
     }
 
-    /// Refuses fractals that are made of themselves, or of too many.
+    /// Reports a fractal that contains itself, or that is nested too deeply.
     fn check_is_new(
         &mut self,
         name: &str,

@@ -1,4 +1,4 @@
-//! What stands in for what was not found, so that nothing more is said of it.
+//! Placeholders for missing parents and components, which cause no further diagnostics.
 
 use crate::catalogue::Shelf;
 use crate::diagnostic::Place;
@@ -6,7 +6,7 @@ use crate::document::merge::Entries;
 use crate::document::node::{Key, Node, Value};
 use crate::model::Kind;
 
-/// Stands in for the parent of a rule that was not found.
+/// Returns placeholder entries for a missing parent.
 pub(super) fn harmless_parent(place: &Place, kind: Kind) -> Entries {
     let key = |name: &str| Key {
         name: name.into(),
@@ -43,14 +43,15 @@ pub(super) fn harmless_parent(place: &Place, kind: Kind) -> Entries {
     }
 }
 
-/// Stands in for a component that was not found, so that no second error is reported for it.
+/// Returns a placeholder for a missing component.
 pub(super) fn harmless(shelf: Shelf, place: &Place) -> Node {
     let node = |value| Node {
         place: place.clone(),
         value,
     };
     let number = |value| node(Value::Number(value));
-    // Shorter than what it replaces, so that there is no warning either.
+    // An element that is shorter than the replaced one avoids the warning about generators that do not
+    // shrink.
     let line = [0.0, 0.5].map(|x| node(Value::Sequence(vec![number(x), number(0.0)])));
     let key = if shelf == Shelf::BaseElements {
         "points"

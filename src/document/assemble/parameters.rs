@@ -1,4 +1,4 @@
-//! Parameters of components, which join those of the rule.
+//! Parameters of components, which are merged into those of the rule.
 
 use crate::diagnostic::Place;
 use crate::document::merge::{Entries, merge_entries};
@@ -7,13 +7,13 @@ use crate::document::node::{Key, Node, Value};
 use super::Assembly;
 
 impl Assembly<'_> {
-    /// Lets the components' parameters join the rule's.
+    /// Merges the parameters of the components into those of the rule, and reports duplicate names.
     pub(super) fn hoist_parameters(&mut self, entries: &mut Entries) {
         let mut joined = Entries::new();
         for component in std::mem::take(&mut self.components) {
             for (key, node) in component.parameters {
                 match joined.iter().find(|(known, _)| known.name == key.name) {
-                    // A component that is used twice has its parameters once.
+                    // A component that is used twice contributes its parameters once.
                     Some((known, _)) if known.place == key.place => {}
                     Some((other, _)) => self.collision(&component.place, &key, Some(other)),
                     None if self.is_free(&key, component.generation, &component.place) => {
@@ -30,7 +30,7 @@ impl Assembly<'_> {
         let params = match index {
             Some(index) => &mut entries[index].1,
             None => {
-                // Where a person would look for them: before what uses them.
+                // Placed where a person expects them, before their first use.
                 let before = entries.iter().position(|(key, _)| key.name == "initiator");
                 let place = joined[0].1.place.clone();
                 let key = Key {
@@ -57,10 +57,11 @@ impl Assembly<'_> {
         merge_entries(own, joined, true);
     }
 
-    /// Whether no rule has a parameter of its own that collides with one of a component.
+    /// Returns whether a component's parameter collides with no parameter of a rule's own; otherwise,
+    /// reports the collision.
     ///
-    /// A rule sets the parameters that its parents have from their components; a rule that names a
-    /// component, and the parents of that rule, cannot have one of the same name.
+    /// A rule may set the parameters that its parents inherit from their components. The rule that
+    /// names the component and the parents of that rule must not have a parameter of the same name.
     fn is_free(&mut self, key: &Key, generation: usize, named: &Place) -> bool {
         let other = self
             .parameters
@@ -77,8 +78,8 @@ impl Assembly<'_> {
         false
     }
 
-    /// Reports, in the line that brings it in, a parameter that a component has and something else
-    /// has too: that line, or another file.
+    /// Reports a duplicate parameter, of a component and either of the rule at `place` (`other` is
+    /// `None`) or of another file.
     fn collision(&mut self, place: &Place, key: &Key, other: Option<&Key>) {
         let at = |key: &Key| format!("{}, line {}", key.place.source().name(), key.place.line());
         let hint = match other {

@@ -1,4 +1,4 @@
-//! What is read, where it stands, and what is written.
+//! Tests of parsing nodes, of their source spans and of writing them.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ fn parse(text: &str) -> Node {
     Node::parse(&source).unwrap_or_else(|found| panic!("{text:?}\n{found}"))
 }
 
-/// Each node's path, kind and text.
+/// Lists the path, type and text of each node.
 fn outline(node: &Node) -> String {
     fn visit(node: &Node, path: &str, out: &mut String) {
         let _ = writeln!(out, "{path} {} {:?}", node.kind(), node.place.text());
@@ -252,7 +252,7 @@ fn what_is_written_reads_as_the_same() {
     nodes.extend([text(&"long ".repeat(300)), text(&"long,".repeat(300))]);
     nodes.iter().for_each(round_trip);
     nodes.push(Value::Null.into());
-    // Each as an item and as a value beside others, and again inside of what this gives.
+    // Each value as an item, beside other values, and nested in the collections that result.
     for round in 0..3 {
         let mut built = Vec::new();
         for (index, node) in nodes.iter().enumerate() {

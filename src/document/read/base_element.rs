@@ -1,4 +1,4 @@
-//! Base elements.
+//! Reading of base elements.
 
 use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
@@ -143,7 +143,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
     }
 }
 
-/// Reports the keys that cannot stand where this way was taken.
+/// Reports the keys that the chosen alternative excludes.
 fn exclude(reader: &mut Reader, fields: &Fields<'_>, way: &Way, what: &str) {
     for other in way.excludes {
         if fields.take(other).is_some() {

@@ -1,4 +1,4 @@
-//! Lists of elements, and initiators.
+//! Reading of lists of elements and of initiators.
 
 use crate::document::Point;
 use crate::document::node::{Node, Value};
@@ -63,7 +63,7 @@ pub(in crate::document) const ELEMENTS: Form = Form::List(
     None,
 );
 
-/// What every list of elements is.
+/// Description of lists of elements in the schema.
 pub(super) const ABOUT_ELEMENTS: &str = "A list of points and elements: a chain runs from each \
     point to the next. Begin with a point, or with an element that has `from`.";
 
@@ -107,7 +107,7 @@ pub(super) fn read_initiator(reader: &mut Reader, node: &Node) -> InitiatorDocum
     initiator
 }
 
-/// The `elements` of an initiator, a generator or a part.
+/// Reads the required key `elements` of an initiator, a generator or a part.
 pub(super) fn required_entries(reader: &mut Reader, fields: &Fields<'_>, what: &str) -> Vec<Entry> {
     if let Some(node) = fields.take("elements") {
         return read_entries(reader, node);
@@ -120,7 +120,7 @@ pub(super) fn required_entries(reader: &mut Reader, fields: &Fields<'_>, what: &
     Vec::new()
 }
 
-/// The list of elements of an initiator or of a part.
+/// Reads the list of elements of an initiator or of a part.
 pub(super) fn read_entries(reader: &mut Reader, node: &Node) -> Vec<Entry> {
     let list = reader.list(node, "a list of elements", LIST);
     let entries: Vec<_> = list.iter().map(|entry| read_entry(reader, entry)).collect();

@@ -1,4 +1,4 @@
-//! Generators: their parts, drawn variables and moves.
+//! Reading of generators: their parts, random variables and moves.
 
 use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
@@ -122,7 +122,7 @@ const MOVE: Shape = Shape {
     hint: "move: {rotate: tilt, about: [1/2, 1]}",
 };
 
-/// How a generator is given.
+/// Notations of a generator.
 pub(super) const GENERATOR_OF: Form = Form::Either(&[
     Form::File(Shelf::Generators),
     ELEMENTS,
@@ -131,14 +131,14 @@ pub(super) const GENERATOR_OF: Form = Form::Either(&[
 
 const AS_INITIATOR: &str = "initiator";
 const IN_ELEMENT: &str = "element";
-/// All points move.
+/// Keyword for all points of a generator.
 const ALL: &str = "all";
 
 const SEVERAL: &str = "generators: {grow: [...], seed: [...]}";
 
 type Named = (Written<String>, GeneratorDocument);
 
-/// The one generator of a rule, or the several.
+/// Reads the generators of a rule, from `generator` or `generators`.
 pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<Named> {
     let (one, several) = (fields.take("generator"), fields.take("generators"));
     let mut generators = Vec::new();
@@ -149,7 +149,7 @@ pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<N
                 "`generator` and `generators` cannot stand together",
                 "`generators` takes any number of generators by name",
             );
-            // Which of them are meant to be selected cannot be told.
+            // It is unknown which of them the selection refers to.
             reader.names_are_missing = true;
         }
         (None, None) => reader.error_with_hint(
@@ -249,7 +249,7 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
 fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     let fields = reader.fields(node, &PART)?;
     let seeds = fields.take("seeds");
-    // One that cannot be read may be true.
+    // An unreadable value may have been meant as true.
     let unreadable = seeds.is_some_and(|node| !matches!(node.value, Value::Bool(_)));
     let seeds = reader.flag(&fields, "seeds") || unreadable;
     let mut placement = if seeds {
@@ -306,7 +306,7 @@ fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>
         .collect()
 }
 
-/// One move, or a list of them.
+/// Reads one move or a list of moves.
 fn read_moves(reader: &mut Reader, node: Option<&Node>) -> Vec<MoveDocument> {
     let Some(node) = node else { return Vec::new() };
     let moves = match &node.value {

@@ -1,4 +1,4 @@
-//! What files of all kinds say.
+//! Reading of metadata, which files of all kinds have.
 
 use crate::diagnostic::Diagnostics;
 use crate::document::heading::HeadingDocument;
@@ -11,7 +11,7 @@ use crate::resolve::MOST_STEPS;
 
 use super::parameters::read_params;
 
-/// The keys that describe a file and have no meaning inside another.
+/// Keys that describe a file and are not inlined with a component.
 pub(in crate::document) const DESCRIPTION: [Member; 5] = [
     key("title", Form::Text, "A title, in a few words."),
     key("about", Form::Text, "A few sentences on what it is."),
@@ -32,10 +32,10 @@ pub(in crate::document) const DESCRIPTION: [Member; 5] = [
     ),
 ];
 
-/// The version of the format.
+/// Version of the file format.
 const FORMAT: u32 = 1;
 
-/// How far a file is grown and how it is drawn unless somebody says otherwise, and what is known of it.
+/// Keys for the defaults of growing and drawing, and for published properties.
 pub(super) const LIKING: [Member; 5] = [
     key(
         "steps",
@@ -60,7 +60,7 @@ pub(super) const LIKING: [Member; 5] = [
     ),
 ];
 
-/// Reads what files of all kinds say.
+/// Reads the metadata of a file. The caller sets `complete`.
 pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> HeadingDocument {
     HeadingDocument {
         description: read_description(reader, fields),
@@ -75,7 +75,7 @@ pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> HeadingD
     }
 }
 
-/// Reads what a component says of itself; only what is wrong with it matters.
+/// Reports mistakes in the description of a component, whose values are not used.
 pub(in crate::document) fn check_description(node: &Node, diagnostics: &mut Diagnostics) {
     const DESCRIBED: Shape = Shape {
         what: "a description",

@@ -1,4 +1,4 @@
-//! An iterated function system: what its keys hold.
+//! Reading of iterated function systems.
 
 use crate::catalogue::Shelf;
 use crate::document::Point;
@@ -17,7 +17,7 @@ use super::heading::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, pair, read_set};
 
-/// The keys of an iterated function system.
+/// Keys of an iterated function system.
 pub(in crate::document) const IFS: Shape = Shape {
     what: "an iterated function system",
     keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
@@ -38,7 +38,7 @@ pub(in crate::document) const IFS: Shape = Shape {
     hint: "a system is a mapping of keys: `kfrac cat gasket` shows a short one",
 };
 
-/// The keys that only a system has.
+/// Keys that only an iterated function system has.
 const IFS_ALONE: [Member; 9] = [
     needed_key(
         "kind",
@@ -111,7 +111,7 @@ const MAP: Shape = Shape {
     hint: MAP_HINT,
 };
 
-/// A map that nothing is to be picked by.
+/// A map without a weight.
 pub(super) const PLACE: Shape = Shape {
     what: "a map of a set",
     keys: &[&PLACING],
@@ -125,7 +125,7 @@ const MAP_HINT: &str =
 /// A point, or the name of a complex parameter.
 const COMPLEX: Form = Form::Either(&[Form::Point, Form::Expression]);
 
-/// The keys that say what a map does.
+/// Keys that define a map.
 const PLACING: [Member; 7] = [
     key(
         "matrix",
@@ -203,7 +203,7 @@ const INTERPOLATION: Shape = Shape {
     keys: &[&[
         needed_key(
             "points",
-            // The name of a file is no number alone.
+            // A name of a file; `Text` would admit only text that is not a number.
             Form::Either(&[Form::List(&Form::Point, 3, None), Form::Expression]),
             "The points that the curve runs through, from left to right; or the name of a file \
              beside this one with a column of x and one of y.",
@@ -233,7 +233,7 @@ const INTERPOLATION: Shape = Shape {
     hint: "interpolate: {points: [[0, 0], [1, 1], [2, 0]], scale: 0.3}",
 };
 
-/// Reads a system with its parents in it; `complete` if all of them were found.
+/// Reads a system whose parents are inlined. `complete` states that all of them were found.
 pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Option<IfsDocument> {
     let fields = reader.fields(node, &IFS)?;
     let heading = read_heading(reader, &fields);
@@ -337,7 +337,7 @@ fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> 
     }
 }
 
-/// What a map does, of which name and weight are said elsewhere.
+/// Reads a map without its name and weight.
 pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocument {
     let map = MapDocument {
         name: None,
@@ -385,7 +385,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     }
 }
 
-/// The rows of a matrix.
+/// Reads the rows of a matrix.
 pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
     let hint = "matrix: [[a, b], [c, d]]";
     let rows = reader.list(node, "a list of two rows", hint);
@@ -436,7 +436,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
     })
 }
 
-/// A list of points, which must be there.
+/// Reads the required key `points`.
 fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
     let Some(node) = fields.take("points") else {
         let message = "there are no `points`";
@@ -450,7 +450,8 @@ fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> 
     Some(list.iter().map(|node| reader.point(node)).collect())
 }
 
-/// `None` if any of them is not understood: what the others lack is not told then.
+/// Reads the edges. Returns `None` if any of them cannot be read: edges that are missing cannot be
+/// reported then.
 fn read_edges(reader: &mut Reader, node: &Node) -> Option<Vec<EdgeDocument>> {
     const HINT: &str = "edges: {1: [1, 2], 2: [1]}: 2 may follow 1, and so on";
     let mut edges = Vec::new();

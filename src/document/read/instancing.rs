@@ -1,4 +1,4 @@
-//! A structure of objects that instance each other: what its keys hold.
+//! Reading of instancing structures.
 
 use crate::catalogue::Shelf;
 use crate::diagnostic::Place;
@@ -20,7 +20,7 @@ use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_set};
 use super::transform::{TRANSFORMS, read_transforms};
 
-/// The keys of a structure.
+/// Keys of an instancing structure.
 pub(in crate::document) const INSTANCING: Shape = Shape {
     what: "an instancing structure",
     keys: &[&DESCRIPTION, &INSTANCING_ALONE, &LIKING],
@@ -28,7 +28,7 @@ pub(in crate::document) const INSTANCING: Shape = Shape {
     hint: "a structure is a mapping of keys: `kfrac cat gasket-recursive` shows a short one",
 };
 
-/// The keys that only a structure has.
+/// Keys that only an instancing structure has.
 const INSTANCING_ALONE: [Member; 6] = [
     needed_key(
         "kind",
@@ -66,7 +66,7 @@ const INSTANCING_ALONE: [Member; 6] = [
 const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
 
 const INSTANCES: Form = Form::List(
-    // A name, perhaps with a level: never a number alone.
+    // A name, possibly with a level, which is never a plain number.
     &Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]),
     1,
     None,
@@ -123,7 +123,7 @@ const TINT: Shape = Shape {
     hint: "tint: {color: brown, alpha: 0.5}",
 };
 
-/// Reads a structure with its parents in it; `complete` if all of them were found.
+/// Reads a structure whose parents are inlined. `complete` states that all of them were found.
 pub(super) fn read_instancing(
     reader: &mut Reader,
     node: &Node,
@@ -175,7 +175,7 @@ pub(super) fn read_instancing(
 fn read_object(reader: &mut Reader, key: &Key, node: &Node) -> Option<ObjectDocument> {
     let place = &key.place;
     let within = |from: usize, to: usize| {
-        // Where a key is written otherwise than it reads, all of it is the place.
+        // The whole key is the place if its notation differs from its text.
         if place.text() == key.name {
             place.within(from..to)
         } else {
@@ -205,7 +205,7 @@ fn read_object(reader: &mut Reader, key: &Key, node: &Node) -> Option<ObjectDocu
     })
 }
 
-/// `A(n - 1)` as A and where, and what, stands in its brackets.
+/// Splits `A(n - 1)` into the name `A` and the byte offset and text of the level.
 fn split(text: &str) -> (&str, Option<(usize, &str)>) {
     let inside = text.find('(').zip(text.trim_end().strip_suffix(')'));
     match inside {
@@ -280,7 +280,7 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
     instance
 }
 
-/// What an instance is one of: an object, or the shape that one of its keys says.
+/// Reads the object or the shape that an instance refers to.
 fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocument> {
     let shape = FORMS.iter().find(|form| fields.take(form.name).is_some());
     for key in OF_FRACTAL.iter().map(|key| key.name) {
@@ -323,7 +323,8 @@ fn read_named(reader: &mut Reader, node: &Node) -> Option<MasterDocument> {
 }
 
 impl Reader {
-    /// An expression that is part of a text.
+    /// Parses an expression that is part of a text; a mistake is reported and a placeholder is
+    /// returned.
     fn expression(&mut self, text: &str, place: &Place) -> Number {
         let value = Expression::parse(text).unwrap_or_else(|error| {
             let message = error.message;

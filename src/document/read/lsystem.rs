@@ -1,4 +1,4 @@
-//! An L-system: what its keys hold.
+//! Reading of L-systems.
 
 use crate::catalogue::Shelf;
 use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument};
@@ -15,7 +15,7 @@ use super::parameters::PARAMS;
 use super::turtle::{MEANING, read_symbol};
 use super::word::{Text, Words};
 
-/// The keys of an L-system.
+/// Keys of an L-system.
 pub(in crate::document) const LSYSTEM: Shape = Shape {
     what: "an L-system",
     keys: &[&DESCRIPTION, &LSYSTEM_ALONE, &LIKING],
@@ -23,7 +23,7 @@ pub(in crate::document) const LSYSTEM: Shape = Shape {
     hint: "an L-system is a mapping of keys: `kfrac cat koch-lsystem` shows a short one",
 };
 
-/// The keys that only an L-system has.
+/// Keys that only an L-system has.
 const LSYSTEM_ALONE: [Member; 11] = [
     needed_key(
         "kind",
@@ -137,11 +137,11 @@ const PRODUCTION: Shape = Shape {
     hint: "- \"F -> F[+F]F\", or - {production: \"F -> F[+F]F\", weight: 1/3}",
 };
 
-/// How to write words that YAML reads as something else.
+/// Help text for words that YAML does not read as text.
 const QUOTE: &str = "a word that begins with a bracket, or with another sign of YAML, needs quotes: \
                      F: \"[+F]F\"";
 
-/// Reads an L-system with its parents in it; `complete` if all of them were found.
+/// Reads an L-system whose parents are inlined. `complete` states that all of them were found.
 pub(super) fn read_lsystem(
     reader: &mut Reader,
     node: &Node,
@@ -224,7 +224,7 @@ fn read_productions(words: &mut Words<'_>, node: &Node) -> Vec<ProductionDocumen
     productions
 }
 
-/// An entry of the list: a production with its arrow.
+/// Reads an entry of a list of productions, in the notation with an arrow.
 fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocument> {
     let (text, weight) = match &node.value {
         Value::Mapping(entries) => {
@@ -274,7 +274,7 @@ fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocum
     })
 }
 
-/// An entry of the mapping: what is replaced, and by what.
+/// Reads an entry of a mapping of predecessors to successors.
 fn read_entry(
     words: &mut Words<'_>,
     key: &Key,
@@ -325,7 +325,7 @@ fn read_entry(
     }
 }
 
-/// A successor, perhaps with a weight.
+/// Reads a successor, possibly with a weight.
 fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument, Option<Number>)> {
     let Value::Mapping(entries) = &node.value else {
         if let Some(text) = Text::of(node)
@@ -359,7 +359,7 @@ fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument,
 }
 
 impl Words<'_> {
-    /// The word that a value is; nothing if it is none, which is said.
+    /// Reads a node as a word. Reports a node that is not a word and returns `None`.
     fn of(&mut self, node: &Node) -> Option<WordDocument> {
         if let Some(text) = Text::of(node) {
             return Some(self.word(text));

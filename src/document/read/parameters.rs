@@ -1,4 +1,4 @@
-//! Parameters.
+//! Reading of parameters.
 
 use crate::document::heading::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
@@ -7,7 +7,7 @@ use crate::document::shape::{Form, Member, Needed, Shape, key};
 use crate::document::{Number, Point, Written};
 use crate::expression::{Expression, PARTS};
 
-/// Real or complex.
+/// A real or complex number.
 const NUMBER: Form = Form::Either(&[Form::Number, Form::Point]);
 
 pub(in crate::document) const PARAMETER: Shape = Shape {
@@ -30,7 +30,7 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
     hint: "angle: {value: 45, min: 5, max: 85, about: \"what it means\"}",
 };
 
-/// The parameters of a rule or component.
+/// The key for the parameters of a rule or component.
 pub(in crate::document) const PARAMS: Member = key(
     "params",
     Form::Names(
@@ -54,7 +54,7 @@ pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<Param
         .collect()
 }
 
-/// A parameter, or the two parts of a complex one.
+/// Reads a parameter, or the two parts of a complex parameter.
 fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocument> {
     let is_complex = |node: &Node| matches!(node.value, Value::Sequence(_));
     let mut parameter = ParameterDocument {
@@ -83,7 +83,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
         reader.error_with_hint(&key.place, message, PARAMETER.hint);
         return vec![parameter];
     };
-    // What is complex has complex limits; the other way round, it is the value that is meant.
+    // A complex value requires complex limits, and a complex limit a complex value.
     let complex = |reader: &mut Reader, node: &Node, what: &str| {
         if let Value::Number(_) | Value::Text(_) = node.value {
             let message = format!("'{}' is complex, and this {what} of it is real", key.name);
@@ -103,7 +103,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
     vec![parameter]
 }
 
-/// The parts of a complex parameter, with its value and limits.
+/// Splits a complex parameter with its value and limits into its two parts.
 fn parts(
     whole: ParameterDocument,
     value: Point,
@@ -130,7 +130,7 @@ fn parts(
     .collect()
 }
 
-/// A key as the name of what it holds.
+/// Returns a key as a name with its source span.
 pub(super) fn written(key: &Key) -> Written<String> {
     Written {
         value: key.name.clone(),

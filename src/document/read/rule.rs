@@ -1,4 +1,4 @@
-//! A rule: what its keys hold.
+//! Reading of production rules.
 
 use crate::catalogue::Shelf;
 use crate::document::node::Node;
@@ -15,7 +15,7 @@ use super::heading::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::select::{SELECTION_OF, read_select};
 
-/// The keys of a rule.
+/// Keys of a production rule.
 pub(in crate::document) const RULE: Shape = Shape {
     what: "a rule",
     keys: &[&DESCRIPTION, &RULE_ALONE, &LIKING],
@@ -32,7 +32,7 @@ pub(in crate::document) const RULE: Shape = Shape {
     hint: "a rule is a mapping of keys: `kfrac cat koch` shows a short one",
 };
 
-/// The keys that only a rule has.
+/// Keys that only a production rule has.
 const RULE_ALONE: [Member; 8] = [
     key(
         "kind",
@@ -84,7 +84,8 @@ const RULE_ALONE: [Member; 8] = [
     ),
 ];
 
-/// Reads a rule with its parents and components in it; `complete` if all of them were found.
+/// Reads a rule whose parents and components are inlined. `complete` states that all of them were
+/// found.
 pub(super) fn read_rule(reader: &mut Reader, node: &Node, complete: bool) -> Option<RuleDocument> {
     let fields = reader.fields(node, &RULE)?;
     let initiator = match fields.take("initiator") {

@@ -1,4 +1,4 @@
-//! The selection.
+//! Reading of the selection of generators.
 
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
@@ -56,7 +56,7 @@ const CASE: Shape = Shape {
     hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
 };
 
-/// How a selection is given.
+/// Notations of a selection.
 pub(super) const SELECTION_OF: Form = Form::Either(&[
     Form::List(&Form::Mapping(&CASE), 1, None),
     Form::Mapping(&SELECTION),
@@ -98,7 +98,7 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
             unknown(node)
         }
         (None, None) => {
-            // A key that means nothing has been reported.
+            // Unknown keys have been reported.
             if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
                 let message = "this selection selects nothing";
                 reader.error_with_hint(&node.place, message, SELECTION.hint);
@@ -133,7 +133,7 @@ fn at_random(reader: &mut Reader, weights: &Node) -> SelectDocument {
     SelectDocument::AtRandom(entries.collect(), weights.place.clone())
 }
 
-/// Stands in for a selection that could not be read: a case whose generator is not known.
+/// Returns a placeholder for an unreadable selection: a case with an unknown generator.
 fn unknown(node: &Node) -> SelectDocument {
     SelectDocument::Cases(vec![(None, None)], node.place.clone())
 }

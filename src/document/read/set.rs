@@ -1,4 +1,4 @@
-//! Sets of the plane: condensation sets and initial sets.
+//! Reading of plane sets: condensation sets, initial sets and primitives.
 
 use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, ShapeDocument};
 use crate::document::node::{Node, Value};
@@ -13,7 +13,7 @@ use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
 use super::{first_line, read_kind};
 
-/// The keys of an initial set.
+/// Keys of an initial set.
 pub(super) const SET: Shape = Shape {
     what: "a set",
     keys: &[&FORMS, &OF_FRACTAL],
@@ -21,7 +21,7 @@ pub(super) const SET: Shape = Shape {
     hint: HINT,
 };
 
-/// The keys of a condensation set.
+/// Keys of a condensation set.
 pub(super) const CONDENSATION: Shape = Shape {
     what: "a condensation set",
     keys: &[
@@ -41,7 +41,7 @@ pub(super) const CONDENSATION: Shape = Shape {
 const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
-/// The keys that say what a set is.
+/// Alternative keys for the geometry of a set.
 pub(super) const FORMS: [Member; 7] = [
     key("point", Form::Point, "A point: a dot as wide as a line."),
     key(
@@ -68,7 +68,7 @@ pub(super) const FORMS: [Member; 7] = [
     ),
 ];
 
-/// The keys that go with `fractal`.
+/// Keys that accompany `fractal`.
 pub(super) const OF_FRACTAL: [Member; 4] = [
     key(
         "steps",
@@ -174,7 +174,7 @@ const ELLIPSE: Shape = Shape {
     hint: "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}",
 };
 
-/// Reads a set: the one of its keys that says what it is.
+/// Reads a set from the one key that defines its geometry.
 pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocument {
     let place = fields.place.clone();
     let mut there = FORMS
@@ -257,7 +257,7 @@ fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
     })))
 }
 
-/// A fractal whose file has been put in the place of its name.
+/// Reads a fractal whose file has been inlined in place of its name.
 fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option<FormDocument> {
     let steps = reader.optional_number(fields.take("steps"));
     let seed = reader.optional_number(fields.take("seed"));
@@ -269,7 +269,7 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
     });
     match node.value {
         Value::Mapping(_) => {}
-        // What is wrong with the file has been said.
+        // Mistakes in the file have been reported.
         Value::Text(_) => return None,
         _ => {
             reader.mismatch(node, "the name of a fractal", "{fractal: koch, steps: 3}");
@@ -295,7 +295,7 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
     })))
 }
 
-/// Values of parameters by name.
+/// Reads values of parameters by name.
 fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number)> {
     match &node.value {
         Value::Mapping(values) => values
@@ -310,7 +310,7 @@ fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number
     }
 }
 
-/// The value of a parameter, or the two of the parts of a complex one.
+/// Reads the value of a parameter, or the values of the two parts of a complex parameter.
 fn read_value(
     reader: &mut Reader,
     name: Written<String>,
@@ -334,7 +334,7 @@ fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {
         .unwrap_or_else(|| Point::origin(fields.place))
 }
 
-/// Two numbers, or one that stands for both.
+/// Reads two numbers, or one number that stands for both.
 pub(super) fn pair(reader: &mut Reader, node: &Node) -> [Number; 2] {
     if let Value::Sequence(_) = &node.value {
         let point = reader.point(node);

@@ -1,4 +1,4 @@
-//! Transforms, in the order in which they are written.
+//! Reading of transforms, in the order in which they are written.
 
 use crate::document::instancing::TransformDocument;
 use crate::document::node::{Node, Value};
@@ -8,7 +8,7 @@ use crate::document::shape::{Form, Member, Shape, key};
 use super::ifs::read_matrix;
 use super::set::pair;
 
-/// The keys that transform.
+/// Keys that transform.
 pub(super) const TRANSFORMS: [Member; 5] = [
     SCALE,
     ROTATE,
@@ -49,7 +49,7 @@ const TRANSFORM: Shape = Shape {
     hint: "{rotate: 30}, {scale: 1/2} or {translate: [1, 0]}",
 };
 
-/// The transforms among the keys of a mapping.
+/// Reads the transforms among the keys of a mapping.
 pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<TransformDocument> {
     let mut transforms = Vec::new();
     for (name, node) in fields.in_order() {

@@ -1,4 +1,4 @@
-//! What the turtle does where it meets a symbol.
+//! Reading of the turtle's interpretation of symbols.
 
 use crate::diagnostic::did_you_mean;
 use crate::document::lsystem::{ActionDocument, SymbolDocument};
@@ -7,12 +7,12 @@ use crate::document::shape::{Form, Shape, key};
 
 use super::word::{Text, Words};
 
-/// An action by its name alone.
+/// Actions without a number.
 const WORDS: [&str; 11] = [
     "draw", "move", "glide", "push", "pop", "reflect", "swap", "open", "close", "vertex", "nothing",
 ];
 
-/// An action, or several.
+/// An action, or a list of actions.
 pub(super) const MEANING: Form = Form::Either(&[ONE, Form::List(&ONE, 0, None)]);
 
 const ONE: Form = Form::Either(&[Form::Words(&WORDS), Form::Mapping(&ACTION)]);
@@ -71,7 +71,7 @@ const ACTION: Shape = Shape {
     hint: "draw, move, {draw: 1/2}, {turn: 36}, {scale: 1/2}, push, pop or another action",
 };
 
-/// Reads the meaning of a symbol.
+/// Reads the interpretation of a symbol.
 pub(super) fn read_symbol(words: &mut Words<'_>, key: &Key, node: &Node) -> Option<SymbolDocument> {
     let mut actions = Vec::new();
     match &node.value {

@@ -1,4 +1,4 @@
-//! Words of L-systems: strings of modules, and the notation of productions.
+//! Reading of words, which are strings of modules, and of productions.
 
 use std::ops::Range;
 
@@ -9,22 +9,22 @@ use crate::document::reader::Reader;
 use crate::document::{Number, Written};
 use crate::expression::Expression;
 
-/// All words of a file together hold no more modules than this.
+/// Maximum number of modules in all words of a file.
 const MOST_MODULES: usize = 250_000;
 
-/// Behind this many mistakes in a word no more are looked for.
+/// Number of mistakes in a word after which it is not read further.
 const MOST_MISTAKES: usize = 20;
 
-/// A text whose parts have places.
+/// A text with the source spans of its parts.
 #[derive(Clone, Copy)]
 pub(super) struct Text<'n> {
     text: &'n str,
     place: &'n Place,
-    /// Whether it reads as it is written, without escapes and line breaks.
+    /// Whether the text equals its notation, without escapes and line breaks.
     exact: bool,
 }
 
-/// What stands before the arrow of a production.
+/// The part of a production before its arrow.
 pub(super) struct Head {
     pub(super) left: Vec<ModuleDocument>,
     pub(super) predecessor: ModuleDocument,
@@ -32,14 +32,14 @@ pub(super) struct Head {
     pub(super) condition: Option<Number>,
 }
 
-/// Reads words, and counts what they hold.
+/// Reads the words of a file and counts their modules.
 pub(super) struct Words<'r> {
     pub(super) reader: &'r mut Reader,
     modules: usize,
 }
 
 impl<'n> Text<'n> {
-    /// The text of a value; nothing if it is none.
+    /// Returns the text of a scalar that is text or a number; `None` for other values.
     pub(super) fn of(node: &'n Node) -> Option<Self> {
         let text = match &node.value {
             Value::Text(text) => text,
@@ -58,7 +58,8 @@ impl<'n> Text<'n> {
         Self { text, place, exact }
     }
 
-    /// The place of some of its bytes; of all of it where it reads otherwise than it is written.
+    /// Returns the source span of a range of bytes, or of the whole text if it differs from its
+    /// notation.
     fn at(&self, range: Range<usize>) -> Place {
         if self.exact {
             self.place.within(range)
@@ -67,7 +68,7 @@ impl<'n> Text<'n> {
         }
     }
 
-    /// The bytes before and behind the first arrow.
+    /// Returns the byte ranges before and after the first arrow.
     pub(super) fn at_arrow(&self) -> Option<(Range<usize>, Range<usize>)> {
         let arrow = self.text.find("->")?;
         Some((0..arrow, arrow + 2..self.text.len()))
@@ -77,14 +78,14 @@ impl<'n> Text<'n> {
         0..self.text.len()
     }
 
-    /// The bytes of a part without the blanks around it.
+    /// Returns the byte range of a part without surrounding white space.
     fn trimmed(&self, part: Range<usize>) -> Range<usize> {
         let text = &self.text[part.clone()];
         let start = part.start + (text.len() - text.trim_start().len());
         start..start + text.trim().len()
     }
 
-    /// Where a character stands outside of round brackets in a part of it, for the first time.
+    /// Returns the offset of the first occurrence of a character in a part, outside of parentheses.
     fn find(&self, character: char, part: Range<usize>) -> Option<usize> {
         let mut depth = 0u32;
         let mut characters = self.text[part.clone()].char_indices();
@@ -109,12 +110,12 @@ impl<'r> Words<'r> {
         self.reader.error_with_hint(place, message, hint);
     }
 
-    /// All of a text as a word.
+    /// Reads the whole text as a word.
     pub(super) fn word(&mut self, text: Text<'_>) -> WordDocument {
         self.part(text, text.all())
     }
 
-    /// A part of a text as a word.
+    /// Reads a part of a text as a word.
     pub(super) fn part(&mut self, text: Text<'_>, part: Range<usize>) -> WordDocument {
         let place = text.at(text.trimmed(part.clone()));
         let (modules, complete) = self.modules(text, part);
@@ -125,7 +126,7 @@ impl<'r> Words<'r> {
         }
     }
 
-    /// The modules in a part of a text, and whether that is all of them.
+    /// Reads the modules in a part of a text. Also returns whether the part was read completely.
     fn modules(&mut self, text: Text<'_>, part: Range<usize>) -> (Vec<ModuleDocument>, bool) {
         let mut modules = Vec::new();
         let mistakes = self.reader.diagnostics.len();
@@ -174,8 +175,8 @@ impl<'r> Words<'r> {
         }
     }
 
-    /// The arguments at the beginning of a part of a text, if there are any, and where they end;
-    /// nothing if they do not, which is said.
+    /// Reads the arguments, if there are any, at the beginning of a part of a text, and returns the
+    /// offset of their end. Reports an unclosed parenthesis and returns `None`.
     fn arguments(&mut self, text: Text<'_>, part: Range<usize>) -> Option<(Vec<Number>, usize)> {
         let rest = &text.text[part.clone()];
         let part = part.start + (rest.len() - rest.trim_start().len())..part.end;
@@ -206,10 +207,10 @@ impl<'r> Words<'r> {
         None
     }
 
-    /// An expression that is a part of a text.
+    /// Parses a part of a text as an expression.
     fn number(&mut self, text: Text<'_>, part: Range<usize>) -> Number {
         let part = text.trimmed(part);
-        // Where there is nothing, the bracket or comma behind it is the place.
+        // An empty expression is shown at the parenthesis or comma that follows it.
         let shown = part.start..part.end.max(part.start + 1);
         let value = Expression::parse(&text.text[part.clone()]).unwrap_or_else(|error| {
             let range = part.start + error.range.start..part.start + error.range.end;
@@ -225,7 +226,7 @@ impl<'r> Words<'r> {
         }
     }
 
-    /// What stands before the arrow: contexts, the predecessor and a condition.
+    /// Reads the part before the arrow: contexts, the strict predecessor and a condition.
     pub(super) fn head(&mut self, text: Text<'_>, part: Range<usize>) -> Option<Head> {
         let colon = text.find(':', part.clone());
         let pattern = part.start..colon.unwrap_or(part.end);

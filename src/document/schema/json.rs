@@ -1,4 +1,4 @@
-//! JSON whose objects keep the order in which they are made.
+//! JSON values whose objects keep the order of insertion.
 
 use serde::{Serialize, Serializer};
 
@@ -19,13 +19,13 @@ pub(super) enum Json {
 pub(super) struct Object(pub(super) Vec<(String, Json)>);
 
 impl Object {
-    /// The same with one more key, which it does not have yet.
+    /// Appends a key, which must be new.
     pub(super) fn with(mut self, key: &str, value: impl Into<Json>) -> Self {
         self.0.push((key.into(), value.into()));
         self
     }
 
-    /// The same with one more key, if there is a value.
+    /// Appends a key if there is a value.
     pub(super) fn with_some(self, key: &str, value: Option<impl Into<Json>>) -> Self {
         match value {
             Some(value) => self.with(key, value),
@@ -33,7 +33,7 @@ impl Object {
         }
     }
 
-    /// The keys of both, which have none in common.
+    /// Appends the entries of another object, which must have no keys in common.
     pub(super) fn and(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
@@ -43,7 +43,7 @@ impl Object {
         self.0.iter().any(|(known, _)| known == key)
     }
 
-    /// As indented text.
+    /// Serializes the object as indented text.
     pub(super) fn to_text(&self) -> String {
         let text = serde_json::to_string_pretty(self);
         text.unwrap_or_else(|_| unreachable!("keys are text and nothing fails")) + "\n"
@@ -56,7 +56,7 @@ impl Serialize for Object {
     }
 }
 
-/// A list of values.
+/// Creates a list of values.
 pub(super) fn list<T: Into<Json>>(values: impl IntoIterator<Item = T>) -> Json {
     Json::List(values.into_iter().map(Into::into).collect())
 }

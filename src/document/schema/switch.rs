@@ -1,4 +1,4 @@
-//! Which schema holds for a file, where editors are given one for all.
+//! Dispatch on the kind of a file, for editors that use one schema for all files.
 
 use crate::catalogue::Shelf;
 use crate::document::read::{DESCRIPTION, GENERATOR, INITIATOR, PARAMS, RULE};
@@ -7,16 +7,16 @@ use crate::model::Kind;
 
 use super::json::{Object, list};
 
-/// Where the schema of a kind of file stands in that of all.
+/// Returns the JSON pointer to the schema of a shelf within the schema of all files.
 pub(super) fn place(shelf: Shelf) -> String {
     format!("/definitions/{}", shelf.kind())
 }
 
-/// Leads to the schema of a file's kind, or to that of the component that its keys belong to; a file of
-/// neither is a rule.
+/// Returns the schema that refers to the schema of a file's kind, to that of the component to which its
+/// keys belong, or else to that of rules.
 ///
-/// One condition comes after another, so that only one schema says what is wrong: of alternatives that
-/// stand side by side an editor cannot know which was meant.
+/// The conditions are nested, so that only one schema reports mistakes: of parallel alternatives, an
+/// editor cannot determine the intended one.
 pub(super) fn by_kind() -> Object {
     let kinds = Kind::ALL.map(|kind| {
         let is_kind = Object::default().with("const", kind.name());
@@ -51,7 +51,7 @@ pub(super) fn by_kind() -> Object {
         })
 }
 
-/// The keys of components beside their own.
+/// Keys that all components have beside their own.
 const COMPONENT: Shape = Shape {
     keys: &[&DESCRIPTION, &[PARAMS]],
     ..INITIATOR
@@ -61,7 +61,7 @@ fn names(shape: &Shape) -> impl Iterator<Item = &'static str> + use<> {
     shape.members().map(|member| member.name)
 }
 
-/// A mapping that has one of some keys.
+/// Returns the condition of a mapping that has at least one of the given keys.
 fn having(keys: impl IntoIterator<Item = &'static str>) -> Object {
     let keys = keys.into_iter();
     let one = keys.map(|key| Object::default().with("required", list([key])));

@@ -1,16 +1,16 @@
-//! How much a rule may hold once its aliases are expanded and its components are put in.
+//! Limits of the size of a file, with aliases expanded and components inlined.
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::document::node::{Node, Value};
 
-/// The deepest nesting of lists and mappings. Nodes are walked by recursion.
+/// Maximum nesting depth of lists and mappings, since nodes are visited recursively.
 pub(super) const MAX_DEPTH: usize = 64;
-/// Values, copies for aliases counted.
+/// Maximum number of values, including the copies that aliases and components make.
 const MAX_VALUES: usize = 250_000;
-/// Bytes of text in the copies for aliases and in components.
+/// Maximum number of bytes of text in copies that aliases and components make.
 const MAX_COPIED: usize = 16 << 20;
 
-/// How large a node is.
+/// Size of a node.
 #[derive(Clone, Copy, Default)]
 pub(in crate::document) struct Size {
     values: usize,
@@ -19,7 +19,7 @@ pub(in crate::document) struct Size {
 }
 
 impl Size {
-    /// The size of a node and all it holds.
+    /// Computes the size of a node with all its descendants.
     pub(in crate::document) fn of(node: &Node) -> Self {
         let mut size = Self {
             values: 1,
@@ -46,7 +46,7 @@ impl Size {
     }
 }
 
-/// What has been read so far.
+/// The size that has been used so far.
 #[derive(Default)]
 pub(in crate::document) struct Budget {
     values: usize,
@@ -54,12 +54,12 @@ pub(in crate::document) struct Budget {
 }
 
 impl Budget {
-    /// Counts a value that is read.
+    /// Counts a value of the file.
     pub(super) fn value(&mut self, place: &Place) -> Result<(), Diagnostic> {
         self.spend(1, place)
     }
 
-    /// Counts a copy of a node, put inside `depth` collections.
+    /// Counts a copy of a node within `depth` collections, made by an alias.
     pub(super) fn copy(
         &mut self,
         size: Size,
@@ -78,12 +78,12 @@ impl Budget {
         self.spend(size.values, place)
     }
 
-    /// Counts what a rule has of its own.
+    /// Counts a file without its components.
     pub(in crate::document) fn own(&mut self, size: Size) {
         self.values += size.values;
     }
 
-    /// Counts a component that is put into a rule.
+    /// Counts a component that is inlined.
     pub(in crate::document) fn component(
         &mut self,
         size: Size,
@@ -114,7 +114,7 @@ impl Budget {
     }
 }
 
-/// Refuses what is nested too deep.
+/// Returns an error if the depth exceeds [`MAX_DEPTH`].
 pub(super) fn check_depth(depth: usize, place: &Place) -> Result<(), Diagnostic> {
     if depth <= MAX_DEPTH {
         Ok(())
@@ -123,7 +123,7 @@ pub(super) fn check_depth(depth: usize, place: &Place) -> Result<(), Diagnostic>
     }
 }
 
-/// The mistake of nesting too deep.
+/// Returns the error for excessive nesting.
 pub(super) fn too_deep(place: &Place) -> Diagnostic {
     Diagnostic::error(format!(
         "lists and mappings are nested more than {MAX_DEPTH} deep"

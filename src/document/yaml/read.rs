@@ -1,4 +1,4 @@
-//! The parser's events turned into nodes, without recursion.
+//! Conversion of parser events to nodes, with an explicit stack in place of recursion.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use super::{scalar, trouble};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::node::{Key, Node, Value};
 
-/// Reads the one document of a source. What is wrong is added to `found`.
+/// Reads the only document of a source. Mistakes are added to `found`.
 pub(in crate::document) fn read(source: &Arc<Source>, found: &mut Diagnostics) -> Option<Node> {
     if let Err(diagnostic) = source
         .check_size()
@@ -43,25 +43,25 @@ pub(in crate::document) fn read(source: &Arc<Source>, found: &mut Diagnostics) -
 struct Reader<'a> {
     source: &'a Arc<Source>,
     found: &'a mut Diagnostics,
-    /// The lists and mappings that are being read, the innermost last.
+    /// The open lists and mappings, the innermost last.
     open: Vec<Collection>,
     root: Option<Node>,
     anchors: HashMap<usize, (Node, Size)>,
     budget: Budget,
     documents: usize,
-    /// Where the last scalar stood: most mistakes of syntax come from it.
+    /// Byte range of the last scalar, from which most mistakes of syntax arise.
     last_scalar: Range<usize>,
 }
 
-/// A list or mapping that is being read.
+/// An open list or mapping.
 struct Collection {
     mapping: bool,
     flow: bool,
     anchor: usize,
-    /// From its start to the end of its last item.
+    /// Bytes from the start of the collection to the end of its last item.
     range: Range<usize>,
     items: Vec<Item>,
-    /// The key whose value comes next; `Unusable` where the key itself was a mistake.
+    /// The key whose value follows; `Unusable` if the key was a mistake.
     key: Pending,
 }
 
@@ -78,7 +78,7 @@ impl Reader<'_> {
             flow_nesting_limit: MAX_DEPTH,
             block_nesting_limit: MAX_DEPTH,
         };
-        // The parser borrows the text, not the reader.
+        // The parser borrows the text, and the reader stays mutable.
         let source = Arc::clone(self.source);
         for event in Parser::new_from_str_with_options(source.text(), options) {
             match event {
@@ -99,7 +99,7 @@ impl Reader<'_> {
     }
 
     fn finish(self) -> Option<Node> {
-        // "---" alone is a document that holds nothing.
+        // A document of "---" alone is empty.
         let root = self
             .root
             .filter(|root| root.value != Value::Null || !root.place.text().is_empty());
@@ -169,7 +169,7 @@ impl Reader<'_> {
             self.anchor(anchor, &node)?;
             return self.key((!absent).then_some(key), plain, &node);
         }
-        // In flow style such a comment swallows the closing bracket as well.
+        // In flow style a comment swallows the closing bracket as well.
         let in_flow = self.open.last().is_some_and(|collection| collection.flow);
         if absent
             && !in_flow
@@ -182,7 +182,7 @@ impl Reader<'_> {
         self.value(node, plain)
     }
 
-    /// A condition such as `!odd(i)`, whose '!' YAML reads as a tag.
+    /// Reads a condition such as `!odd(i)`, whose '!' introduces a tag in YAML.
     fn negation(&mut self, place: Place) -> Result<(), Diagnostic> {
         self.last_scalar = place.range();
         self.found.push(trouble::negation(&place));
@@ -197,7 +197,7 @@ impl Reader<'_> {
         anchor: usize,
         mut range: Range<usize>,
     ) -> Result<(), Diagnostic> {
-        // The parser starts a list that is not indented behind its first '-'.
+        // For a list that is not indented, the parser's range starts after the first '-'.
         if !mapping && style == StructureStyle::Block {
             let before = self
                 .source
@@ -228,7 +228,7 @@ impl Reader<'_> {
             return Ok(());
         };
         if collection.flow {
-            // A pair in a flow list is a mapping without braces and ends with an empty range.
+            // A pair in a flow list is a mapping without braces, which ends with an empty range.
             collection.range.end = collection.range.end.max(range.end);
             repair::join_at_commas(&mut collection.items, self.source, self.found);
         }
@@ -260,7 +260,7 @@ impl Reader<'_> {
         };
         self.budget.copy(*size, self.open.len(), &place)?;
         let node = node.clone();
-        // What it refers to stands before it, so the collection around it ends with its token.
+        // The anchor precedes the alias: the span of the collection ends with the alias itself.
         if let Some(collection) = self.open.last_mut() {
             collection.range.end = range.end;
         }
@@ -285,7 +285,7 @@ impl Reader<'_> {
         matches!(key, Some(Pending::Key { key, .. }) if key.name == "when")
     }
 
-    /// Takes the key of the next entry; none if what stands there cannot be one.
+    /// Stores the key of the next entry, or reports a node that cannot be a key.
     fn key(&mut self, key: Option<Key>, plain: bool, node: &Node) -> Result<(), Diagnostic> {
         self.budget.value(&node.place)?;
         if key.is_none() {
@@ -298,7 +298,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Puts a finished value where it belongs.
+    /// Adds a complete value to the innermost open collection, or stores it as the root.
     fn value(&mut self, value: Node, plain: bool) -> Result<(), Diagnostic> {
         self.budget.value(&value.place)?;
         let Some(collection) = self.open.last_mut() else {

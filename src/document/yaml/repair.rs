@@ -1,5 +1,5 @@
-//! Mistakes behind which the likely meaning can be read on: commas inside expressions, colours that
-//! are comments, keys that are there twice, merge keys that merge nothing.
+//! Recovery from mistakes with a probable meaning: commas inside expressions, colours that YAML reads
+//! as comments, duplicate keys, and merge keys without a mapping.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::node::{Key, Node, Value};
 
-/// An item of a list or an entry of a mapping as it was read.
+/// An item of a list or an entry of a mapping.
 pub(super) struct Item {
     /// The key of an entry, and whether it is written without quotes.
     pub(super) key: Option<(Key, bool)>,
@@ -17,8 +17,8 @@ pub(super) struct Item {
 }
 
 impl Item {
-    /// The piece of text that this is if it is the rest of a value that a comma cut: a plain item of
-    /// a list, or a plain key without a value.
+    /// Returns the text of this item if it can be the continuation of a value that was cut at a comma:
+    /// a plain item of a list, or a plain key without a value.
     fn rest(&self) -> Option<&Place> {
         match &self.key {
             None => self.plain.then_some(&self.value.place),
@@ -28,11 +28,11 @@ impl Item {
     }
 }
 
-/// Pieces that a value cut at commas is looked for in.
+/// Maximum number of pieces that are joined.
 const MAX_PIECES: usize = 16;
 
-/// Joins the pieces of expressions such as `uniform(-20, 20)` that stand in flow style without
-/// quotes, where YAML ends the value at the comma, and reports each.
+/// Joins the pieces of unquoted expressions in flow style such as `uniform(-20, 20)`, where YAML ends
+/// the value at the comma, and reports each.
 pub(super) fn join_at_commas(items: &mut Vec<Item>, source: &Arc<Source>, found: &mut Diagnostics) {
     let mut joined = Vec::with_capacity(items.len());
     let mut rest = std::mem::take(items).into_iter();
@@ -58,8 +58,8 @@ pub(super) fn join_at_commas(items: &mut Vec<Item>, source: &Arc<Source>, found:
     *items = joined;
 }
 
-/// How many of the items that follow belong to the value of this one, whose brackets they close,
-/// and the byte where they end.
+/// Returns the number of following items that continue the value of this item up to balanced brackets,
+/// and the byte offset of their end.
 fn cut_at_commas(item: &Item, following: &[Item]) -> Option<(usize, usize)> {
     let Value::Text(text) = &item.value.value else {
         return None;
@@ -86,7 +86,7 @@ fn open_brackets(text: &str) -> isize {
     })
 }
 
-/// The text, or its beginning, for a message of one line.
+/// Returns the text, cut after 40 characters, for a message of one line.
 pub(super) fn short(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -94,20 +94,20 @@ pub(super) fn short(text: &str) -> String {
     }
 }
 
-/// A value that is missing because it is a colour such as `#ff0000`, which YAML takes for a comment.
+/// Recovers a missing value that is a colour such as `#ff0000`, which YAML reads as a comment.
 pub(super) fn color_read_as_comment(nothing: &Place) -> Option<(Diagnostic, Node)> {
     let source = nothing.source();
     let text = source.text();
     let at = nothing.range().start;
     let start = text[..at].rfind(['\n', '\r']).map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
-    // The parser puts what is missing before or behind the comment.
+    // The parser locates a missing value before or after the comment.
     let place = color_in(&Place::new(source, start..start + line.len()))?;
     let value = Value::Text(place.text().to_owned());
     Some((color_is_comment(&place), Node { place, value }))
 }
 
-/// The first colour in a stretch of text that YAML takes for a comment.
+/// Returns the first colour that YAML reads as a comment in a span.
 pub(super) fn color_in(stretch: &Place) -> Option<Place> {
     let text = stretch.text();
     let color = |(at, _): (usize, &str)| {
@@ -125,7 +125,7 @@ pub(super) fn color_in(stretch: &Place) -> Option<Place> {
     Some(Place::new(source, start + range.start..start + range.end))
 }
 
-/// The mistake of a colour at this place.
+/// Returns the error for a colour that YAML reads as a comment.
 pub(super) fn color_is_comment(color: &Place) -> Diagnostic {
     let text = color.text();
     Diagnostic::error(format!("'{text}' is read as a comment"))
@@ -133,8 +133,9 @@ pub(super) fn color_is_comment(color: &Place) -> Diagnostic {
         .hint(format!("write \"{text}\""))
 }
 
-/// The entries of a mapping, each key once and merge keys merged where they stand: the mapping's
-/// own keys come before merged ones, and of merged ones the first.
+/// Returns the entries of a mapping with unique keys, and with the mappings of merge keys (`<<`)
+/// inserted in their places. The mapping's own keys take precedence over merged ones, and earlier
+/// merged ones over later ones.
 pub(super) fn entries(items: Vec<Item>, found: &mut Diagnostics) -> Vec<(Key, Node)> {
     let mut lines: HashMap<String, usize> = HashMap::with_capacity(items.len());
     let mut own = Vec::with_capacity(items.len());

@@ -1,9 +1,9 @@
-//! What a plain scalar means, and how a number is written so that it means the same.
+//! Resolution of plain scalars, and the inverse for numbers.
 
 use crate::document::node::Value;
 
-/// The meaning of a plain scalar: YAML 1.2's core schema, but `true`, `false` and `null` in small
-/// letters only and no number that is not finite.
+/// Resolves a plain scalar by the core schema of YAML 1.2, but with `true`, `false` and `null` in lower
+/// case only and with finite numbers only.
 pub(super) fn resolve(plain: &str) -> Value {
     match plain {
         "" | "~" | "null" => Value::Null,
@@ -21,7 +21,7 @@ fn parse_number(text: &str) -> Option<f64> {
     match text.as_bytes() {
         [b'0', b'x', digit, ..] if digit.is_ascii_hexdigit() => radix(&text[2..], 16),
         [b'0', b'o', digit, ..] if digit.is_ascii_digit() => radix(&text[2..], 8),
-        // Rust reads "inf" and "nan" besides what YAML calls a number.
+        // Rust also parses "inf" and "nan", which are not numbers in YAML.
         bytes if bytes.iter().any(u8::is_ascii_digit) => {
             text.parse().ok().filter(|number: &f64| number.is_finite())
         }
@@ -29,7 +29,7 @@ fn parse_number(text: &str) -> Option<f64> {
     }
 }
 
-/// A number in the fewest digits that read as the same one.
+/// Formats a number with the fewest digits that parse to the same value.
 pub(in crate::document) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-5..1e15).contains(&size) {

@@ -1,4 +1,4 @@
-//! What is said of mistakes, and that none costs much.
+//! Tests of diagnostics for mistakes of syntax, and of bounded effort on malicious files.
 
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::node::Node;
@@ -9,7 +9,7 @@ fn errors(text: &str) -> String {
     found.to_string()
 }
 
-/// The messages with line and column.
+/// Returns the messages with line and column.
 fn messages(text: &str) -> Vec<String> {
     let found = Node::parse(&Source::new("koch.yaml", text)).expect_err(text);
     let line = |diagnostic: &crate::diagnostic::Diagnostic| {

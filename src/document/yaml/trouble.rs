@@ -1,4 +1,4 @@
-//! The parser's errors in plain words, with what would mend them.
+//! Diagnostics for mistakes of syntax: translations of the parser's errors, with help texts.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use super::limits::too_deep;
 use crate::diagnostic::{Diagnostic, Place, Source};
 use crate::document::node::{Node, Value};
 
-/// Refuses the control characters that YAML does, and with them most files that are no text.
+/// Returns an error for a control character that YAML excludes, which most binary files contain.
 pub(super) fn check_characters(source: &Arc<Source>) -> Result<(), Diagnostic> {
     let refused = |c: &(usize, char)| c.1.is_control() && !"\t\n\r\u{85}".contains(c.1);
     let Some((start, character)) = source.text().char_indices().find(refused) else {
@@ -28,7 +28,7 @@ pub(super) fn check_characters(source: &Arc<Source>) -> Result<(), Diagnostic> {
     Err(Diagnostic::error(message).at(&Place::new(source, start..start + character.len_utf8())))
 }
 
-/// A file without a document.
+/// Returns the error for a file without a document.
 pub(super) fn empty(source: &Arc<Source>) -> Diagnostic {
     let text = source.text();
     let message = if text.contains('#') {
@@ -41,14 +41,14 @@ pub(super) fn empty(source: &Arc<Source>) -> Diagnostic {
         .hint("a file holds 'key: value' lines, such as 'title: Koch curve'")
 }
 
-/// A second document.
+/// Returns the error for a second document.
 pub(super) fn second_document(place: &Place) -> Diagnostic {
     Diagnostic::error("a second document starts here")
         .at(place)
         .hint("a file holds one document: remove the '---', or put the rest in a file of its own")
 }
 
-/// A tag.
+/// Returns the error for a tag.
 pub(super) fn tag(tag: &str, place: &Place) -> Diagnostic {
     Diagnostic::error(format!(
         "tags such as '{}' are not used here",
@@ -58,7 +58,7 @@ pub(super) fn tag(tag: &str, place: &Place) -> Diagnostic {
     .hint("leave it out, or put text that starts with '!' in quotes")
 }
 
-/// A condition that begins with a '!'.
+/// Returns the error for a condition that begins with '!'.
 pub(super) fn negation(place: &Place) -> Diagnostic {
     let text = place.text();
     let condition = super::repair::short(text.strip_prefix('!').unwrap_or(text).trim_start());
@@ -69,7 +69,7 @@ pub(super) fn negation(place: &Place) -> Diagnostic {
         ))
 }
 
-/// An alias in what it stands for.
+/// Returns the error for an alias inside its own anchor's value.
 pub(super) fn alias_inside_itself(place: &Place) -> Diagnostic {
     Diagnostic::error(format!(
         "'{}' stands inside of what it refers to",
@@ -78,7 +78,7 @@ pub(super) fn alias_inside_itself(place: &Place) -> Diagnostic {
     .at(place)
 }
 
-/// An entry whose key is no text.
+/// Returns the error for a key that is not text.
 pub(super) fn no_key(key: &Node) -> Diagnostic {
     let message = match key.value {
         Value::Sequence(_) | Value::Mapping(_) => format!("{} cannot be a key", key.kind()),
@@ -89,8 +89,8 @@ pub(super) fn no_key(key: &Node) -> Diagnostic {
         .hint("a key is text, as in 'key: value'")
 }
 
-/// A mistake of syntax; `last` is the scalar read before it, `flow` the start of the innermost
-/// list or mapping in flow style that is open.
+/// Translates an error of the parser. `last` is the range of the preceding scalar, and `flow` the start
+/// of the innermost open collection in flow style.
 pub(super) fn translate(
     error: &ScanError,
     source: &Arc<Source>,
@@ -110,7 +110,7 @@ pub(super) fn translate(
         .filter(|c| !"\r\n".contains(*c))
         .map_or(0, char::len_utf8);
     let place = Place::new(source, at..at + char_len);
-    // Such a comment swallows the closing bracket, and the parser reads on in the lines below.
+    // A colour read as a comment swallows the closing bracket, and the parser reports the lines below.
     let unclosed = matches!(
         error.kind(),
         ErrorKind::UnclosedFlowCollection { .. }
@@ -122,12 +122,12 @@ pub(super) fn translate(
             | ErrorKind::InvalidColonPlacement
             | ErrorKind::MismatchedFlowCollectionEnd { .. }
     );
-    // The parser may look ahead so far that it has not told of the bracket yet.
+    // The parser's look-ahead may fail before it has reported the opening bracket.
     let flow = flow.or_else(|| match error.kind() {
         ErrorKind::BlockEntryInFlowCollection => open_bracket(text.get(..at)?),
         _ => None,
     });
-    // A key or an entry in a line below that is not indented further is no part of what is open.
+    // A key or an entry below that is not indented further does not belong to the open collection.
     let open = flow.filter(|start| {
         let [above, here] = [*start, at].map(|at| source.line_column(line_start(source, at)));
         let is_below = here.0 > above.0 && here.1 <= above.1;
@@ -142,7 +142,7 @@ pub(super) fn translate(
     });
     let flow = match flow {
         Some(start) if start < at => start..at,
-        // The place is that of the bracket.
+        // The error is located at the bracket itself.
         _ => at..text.len(),
     };
     let color = super::repair::color_in(&Place::new(source, flow)).filter(|_| unclosed);
@@ -264,7 +264,8 @@ pub(super) fn translate(
     Diagnostic::error(message).at(&place).hint(hint)
 }
 
-/// A condition such as `!(i % 2 == 0)`, where what follows the "tag" cannot be read either.
+/// Returns the place of a condition such as `!(i % 2 == 0)`, where the text after the supposed tag is
+/// not valid YAML either.
 fn cut_negation(source: &Arc<Source>, at: usize) -> Option<Place> {
     let before = source.text().get(..at)?;
     let line = before.rfind(['\n', '\r']).map_or(0, |end| end + 1);
@@ -298,8 +299,8 @@ fn separator(close: char, last: &Range<usize>, source: &Arc<Source>) -> (String,
     )
 }
 
-/// A quote that is never closed. The parser says where it gave up; the quote itself is the first
-/// one behind the last scalar, unless other text comes between.
+/// Returns the error for an unclosed quote. The parser reports the place where it gave up. The quote
+/// itself is the first one after the last scalar, unless other text stands between.
 fn open_quote(gave_up: &Place, last: &Range<usize>) -> Diagnostic {
     let source = gave_up.source();
     let behind = source
@@ -335,7 +336,8 @@ fn tab(source: &Arc<Source>, at: usize) -> Diagnostic {
         .hint("YAML is indented with spaces: use two for each level")
 }
 
-/// A ':' where no key can be: two in a line, or a line that was read as part of the one before.
+/// Returns the error for a misplaced ':': the second one in a line, or one in a line that continues the
+/// previous line's text.
 fn colon(source: &Arc<Source>, at: usize, last: &Range<usize>) -> Diagnostic {
     if spans_lines(source, last) && last.end == at {
         let (line, _) = source.line_column(last.start);
@@ -355,7 +357,7 @@ fn spans_lines(source: &Arc<Source>, range: &Range<usize>) -> bool {
         .is_some_and(|text| text.contains(['\n', '\r']))
 }
 
-/// The last bracket of a text that is not closed in it.
+/// Returns the offset of the last bracket that is not closed in the text.
 fn open_bracket(text: &str) -> Option<usize> {
     let mut closed = 0;
     let mut brackets = text.rmatch_indices(['[', ']', '{', '}']);
@@ -373,7 +375,7 @@ fn open_bracket(text: &str) -> Option<usize> {
     open.map(|(start, _)| start)
 }
 
-/// The first character of a line that is not indentation.
+/// Returns the offset of the first character after the indentation of the line.
 fn line_start(source: &Arc<Source>, at: usize) -> usize {
     let before = source.text().get(..at).unwrap_or_default();
     let line = before.rsplit(['\n', '\r']).next().unwrap_or_default();

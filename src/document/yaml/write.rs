@@ -1,14 +1,14 @@
-//! Nodes written as YAML.
+//! Writing of nodes as YAML.
 
 use super::scalar::{number, resolve};
 use crate::document::node::{Key, Node, Value};
 
-/// Columns that flow style may fill.
+/// Maximum width in columns of collections in flow style.
 const WIDTH: usize = 80;
-/// Characters of a key that YAML finds the end of without a '?' before it, less the quotes.
+/// Maximum length in characters of a key without an explicit '?', less the quotes (YAML allows 1024).
 const LONG_KEY: usize = 1000;
 
-/// The YAML of a node, with a line end at its end.
+/// Writes a node as YAML, with a final line end.
 pub(in crate::document) fn write(node: &Node) -> String {
     let mut out = String::new();
     match &node.value {
@@ -22,7 +22,7 @@ pub(in crate::document) fn write(node: &Node) -> String {
     out
 }
 
-/// The lines of a list; the first is not indented where it stands behind a '- '.
+/// Writes the lines of a list. The first line is not indented if it follows a '- '.
 fn sequence(out: &mut String, items: &[Node], indent: usize, mut inline: bool) {
     for item in items {
         pad(out, if inline { 0 } else { indent });
@@ -32,7 +32,7 @@ fn sequence(out: &mut String, items: &[Node], indent: usize, mut inline: bool) {
     }
 }
 
-/// The lines of a mapping; the first is not indented where it stands behind a '- '.
+/// Writes the lines of a mapping. The first line is not indented if it follows a '- '.
 fn mapping(out: &mut String, entries: &[(Key, Node)], indent: usize, mut inline: bool) {
     for (key, node) in entries {
         pad(out, if inline { 0 } else { indent });
@@ -48,7 +48,7 @@ fn mapping(out: &mut String, entries: &[(Key, Node)], indent: usize, mut inline:
     }
 }
 
-/// A value behind a '-' or ':' up to the end of its line or lines.
+/// Writes a value after a '-' or ':', up to the end of its line or lines.
 fn value(out: &mut String, node: &Node, indent: usize, behind_dash: bool) {
     let column = out.len() - out.rfind('\n').map_or(0, |end| end + 1);
     let fits = |text: &String| column + 1 + text.chars().count() <= WIDTH;
@@ -75,8 +75,8 @@ fn value(out: &mut String, node: &Node, indent: usize, behind_dash: bool) {
     }
 }
 
-/// A value in flow style: a scalar, a list of scalars, or a mapping of both. None for what reads
-/// better in block style. A text at the `root` is written as in a block.
+/// Formats a value in flow style: a scalar, a list of scalars, or a mapping of both. Returns `None` for
+/// values that read better in block style. At the `root`, a text is written as in block style.
 fn flow(node: &Node, root: bool) -> Option<String> {
     match &node.value {
         Value::Null => Some("null".to_owned()),
@@ -100,7 +100,7 @@ fn flow(node: &Node, root: bool) -> Option<String> {
 
 fn flow_entry((key, node): &(Key, Node)) -> Option<String> {
     match &node.value {
-        // Quotes are spared where block style needs none.
+        // Block style avoids quotes that only flow style requires.
         Value::Text(text) if needs_quotes(text, true) && !needs_quotes(text, false) => None,
         Value::Mapping(entries) if !entries.is_empty() => None,
         _ => Some(format!(
@@ -119,7 +119,7 @@ fn pad(out: &mut String, indent: usize) {
     out.extend(std::iter::repeat_n(' ', indent));
 }
 
-/// A text of several lines as a block scalar, if it can be one.
+/// Formats a text of several lines as a block scalar, if that is possible.
 fn literal(text: &str, indent: usize) -> Option<String> {
     let (lines, header) = text
         .strip_suffix('\n')
@@ -152,7 +152,7 @@ fn scalar_key(name: &str, flow: bool) -> String {
     }
 }
 
-/// A key reads as text even where it looks like a number or a word.
+/// Formats a key. A number needs no quotes as a key, which is always text.
 fn scalar_key_text(name: &str, flow: bool) -> String {
     let plain = matches!(resolve(name), Value::Number(_)) && !name.is_empty();
     if plain {
@@ -170,7 +170,7 @@ fn scalar_text(text: &str, flow: bool) -> String {
     }
 }
 
-/// Words that this or another YAML reader takes for something else than text.
+/// Words that this or another YAML parser does not resolve to text.
 const WORDS: [&str; 13] = [
     "true", "false", "yes", "no", "on", "off", "null", "~", "=", "<<", ".nan", ".inf", "+.inf",
 ];
