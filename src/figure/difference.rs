@@ -1,4 +1,5 @@
-//! The difference of two sets: what is in one of them only, and what is in both, in three colours.
+//! Figures of the difference of two sets: the pixels of the first only, of the second only and of both, in
+//! three colours.
 
 use std::io::Write;
 
@@ -11,22 +12,22 @@ use crate::render::{
 use crate::style::{Cap, Colour, Join};
 use crate::whole::whole;
 
-/// What is in the first set only, in the second only, and in both: told apart by all eyes (Okabe and
-/// Ito 2008).
+/// Colours of the pixels in the first set only, in the second only, and in both; distinguishable with any
+/// colour vision (Okabe and Ito 2008).
 pub const COLOURS: [Colour; 3] = [
     Colour::of_rgba([0xd5, 0x5e, 0x00, 255]),
     Colour::of_rgba([0x00, 0x72, 0xb2, 255]),
     Colour::of_rgba([0x99, 0x99, 0x99, 255]),
 ];
 
-/// Draws the pixels that hold points of two sets; tells the number of pixels of every colour.
+/// Draws the pixels that hold points of two sets; returns the number of pixels of every colour.
 ///
-/// A pixel counts as one of both sets if one beside it, corners included, is of the other: so rounding
-/// and points that stand for discs make no difference.
+/// A pixel of one set counts as one of both if a neighbour, corners included, belongs to the other set:
+/// rounding and points that stand for discs then make no difference.
 ///
 /// # Errors
 ///
-/// If the picture is too large, or `out` fails.
+/// Returns an error if the picture is too large, or if `out` fails.
 pub fn write(
     canvas: Canvas,
     sets: [&Pixels; 2],
@@ -55,11 +56,11 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// None yet.
+    /// Returns an empty set of pixels.
     ///
     /// # Errors
     ///
-    /// If the picture is larger than memory may be, which holds it whole.
+    /// Returns an error if the picture is too large to be held in memory as a whole.
     pub fn new(canvas: Canvas) -> Result<Self, TooManyPixels> {
         let size = canvas.size();
         TooManyPixels::check(size)?;
@@ -70,13 +71,14 @@ impl Pixels {
         })
     }
 
-    /// The radius to cover sets by whose points are added: half a pixel.
+    /// Returns half a pixel in the units of the set: the radius to cover the set by, if points of the cover
+    /// are added.
     #[must_use]
     pub fn radius(&self) -> f64 {
         0.5 / self.canvas.scale()
     }
 
-    /// Adds a point; one beyond the picture is left out.
+    /// Adds a point; points outside the picture are ignored.
     pub fn add(&mut self, point: DVec2) {
         let [width, height] = self.canvas.size().map(|side| side as usize);
         let pixel = self.canvas.pixel(point);
@@ -90,10 +92,10 @@ impl Pixels {
     }
 }
 
-/// No set.
+/// Class of pixels that belong to neither set.
 const NONE: u8 = 3;
 
-/// For every pixel, in which set it is.
+/// Returns the class of every pixel, row by row: 0 and 1 for one set only, 2 for both, [`NONE`] for neither.
 fn classes(canvas: &Canvas, planes: &[&[bool]; 2]) -> Vec<u8> {
     let [width, height] = canvas.size().map(|side| side as usize);
     let near = |plane: &[bool], place: usize| {

@@ -1,5 +1,4 @@
-//! The evidence for a box-counting dimension: counts over sizes with the fitted line, and local
-//! slopes below.
+//! Plots of box counting: counts over sizes with the fitted line, and local slopes below.
 
 mod axis;
 mod pad;
@@ -17,29 +16,30 @@ use super::text::Anchor;
 use axis::Axis;
 use pad::{LEFT, Pad, Plot, RIGHT, WORDS, blue, frame, orange};
 
-/// The size in pixels.
+/// Width and height in pixels.
 const SIZE: [u32; 2] = [720, 660];
 
-/// The upper and lower sides of the two panels, in pixels from above.
+/// Upper and lower side of the panel of counts, in pixels from the top.
 const COUNTS: [f64; 2] = [44.0, 404.0];
+/// Upper and lower side of the panel of local slopes, in pixels from the top.
 const SLOPES: [f64; 2] = [432.0, 600.0];
 
-/// How the plot is made.
+/// Options of a plot.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The format.
+    /// Format of the file.
     pub format: Format,
-    /// What the sizes of boxes are measured in, as "pixels"; nothing where they have no unit.
+    /// Unit of the sizes of boxes, such as "pixels"; `None` if they have no unit.
     pub unit: Option<&'static str>,
-    /// What the file says of itself. The title stands above the plot.
+    /// Metadata of the file. The title stands above the plot.
     pub labels: Labels,
 }
 
-/// Plots a measured dimension on white; tells its width and height in pixels.
+/// Plots a measured dimension on white; returns width and height in pixels.
 ///
 /// # Errors
 ///
-/// If `out` fails.
+/// Returns an error if `out` fails.
 pub fn write(
     counting: &BoxCounting,
     options: &Options,
@@ -90,14 +90,14 @@ impl Plot for Evidence<'_> {
 }
 
 impl Evidence<'_> {
-    /// The axis of local slopes.
+    /// Returns the axis of local slopes.
     fn slopes(&self) -> Axis {
         let value = self.counting.estimate.map(|estimate| estimate.value);
         let slopes = local_slopes(&self.counting.boxes).map(|(_, slope, _)| slope);
         Axis::linear(slopes.chain(value), [SLOPES[1], SLOPES[0]])
     }
 
-    /// The range of the fit, shaded in both panels.
+    /// Shades the range of the fit in both panels.
     fn range<S: Surface>(
         pad: &mut Pad<'_, S>,
         estimate: &Estimate,
@@ -110,7 +110,8 @@ impl Evidence<'_> {
         Ok(())
     }
 
-    /// The line of the fit, its slope below with two standard errors on both sides, and the value.
+    /// Draws the line of the fit, its slope with two standard errors on both sides in the panel below, and
+    /// the value as text.
     fn fit<S: Surface>(
         pad: &mut Pad<'_, S>,
         estimate: &Estimate,
@@ -151,7 +152,8 @@ impl Evidence<'_> {
     }
 }
 
-/// Local slopes between two sizes, at their geometric mean; used if both are.
+/// Iterates over the local slopes between neighbouring sizes: the geometric mean of the sizes, the slope, and
+/// whether both sizes are used.
 fn local_slopes(boxes: &[Boxes]) -> impl Iterator<Item = (f64, f64, bool)> {
     boxes.windows(2).filter_map(|pair| {
         let middle = (pair[0].size * pair[1].size).sqrt();

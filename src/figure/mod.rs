@@ -1,4 +1,4 @@
-//! Figures about a rule: its components, its approximants side by side, how it differs from another.
+//! Figures: the components of a rule, approximants side by side, differences of sets, plots of dimensions.
 
 pub mod difference;
 pub mod dimension;
@@ -8,5 +8,5 @@ mod text;
 
 use crate::style::Colour;
 
-/// The colour of labels: it can be read on white and on black.
+/// Colour of labels, legible on white and on black.
 const LABEL: Colour = Colour::grey(118);

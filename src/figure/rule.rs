@@ -1,9 +1,9 @@
 //! Production rules as figures, in the manner of Kaandorp 1987 (figures 1 to 13): initiator,
 //! generators and base element side by side.
 //!
-//! Fertile sides are marked with asterisks, directions by their numbers. A generator stands over
-//! the side that it replaces; its name and the selection are on its left or above, its random
-//! function in words on its right.
+//! Fertile sides are marked with asterisks, directions by their numbers. A generator is drawn over the side
+//! that it replaces, with its name above, the selection on its left and its random function in words on its
+//! right.
 
 mod block;
 mod components;
@@ -37,16 +37,16 @@ use block::Block;
 pub use structure::write_structure;
 pub use system::write_system;
 
-/// How the figure is made.
+/// Options of a figure.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The format; SVG unless said otherwise.
+    /// Format of the file; SVG by default.
     pub format: Format,
-    /// The size; such that labels are of 13 pixels unless said otherwise.
+    /// Size of the figure; by default, text is 13 pixels high.
     pub size: Option<Size>,
-    /// The colour behind it; none unless said otherwise.
+    /// Background colour; none by default.
     pub background: Option<Colour>,
-    /// What the file says of itself. The title stands above the figure.
+    /// Metadata of the file. The title stands above the figure.
     pub labels: Labels,
 }
 
@@ -61,14 +61,14 @@ impl Default for Options {
     }
 }
 
-/// Draws a rule and writes the figure; tells its width and height in pixels.
+/// Draws the figure of a rule and writes it; returns width and height in pixels.
 ///
-/// `document` is what `rule` was resolved from: expressions are shown as they are written. All of the rule
-/// is shown, or the components of one shelf alone.
+/// `document` is the document that `rule` was resolved from: expressions are shown as written in it. With
+/// `alone`, only the components of that shelf are shown.
 ///
 /// # Errors
 ///
-/// If the picture is too large, or if `out` fails.
+/// Returns an error if the picture is too large, or if `out` fails.
 pub fn write(
     rule: &Rule,
     document: &RuleDocument,
@@ -80,9 +80,9 @@ pub fn write(
     Figure::write(page, options, out)
 }
 
-/// The map from what lies in a box to a panel of this scale, and the panel's size.
+/// Returns the map of a box onto a panel of the given scale, and the panel's size.
 fn onto_panel(bounds: &Bounds, scale: f64) -> (DAffine2, DVec2) {
-    /// What lies around it.
+    /// Margin around the box, in pixels.
     const PAD: DVec2 = DVec2::splat(8.0);
     let map = DAffine2::from_translation(PAD)
         * DAffine2::from_scale(DVec2::new(scale, -scale))
@@ -97,7 +97,7 @@ struct Figure {
 }
 
 impl Figure {
-    /// Writes a page as a figure; tells its width and height in pixels.
+    /// Writes a page as a figure; returns width and height in pixels.
     fn write(
         page: Block,
         options: &Options,
@@ -119,7 +119,7 @@ impl Figure {
         Ok(figure.size())
     }
 
-    /// How much larger the page becomes, and where its corner lies.
+    /// Returns the factor that scales the page, and the position of its corner.
     fn fit(&self) -> (f64, DVec2) {
         let own = self.page.size;
         match self.size {

@@ -1,5 +1,4 @@
-//! Sheets: approximants side by side, all of them at one scale, each with its name and its number
-//! of elements.
+//! Sheets: approximants side by side at one scale, each with its name and its number of elements.
 
 use std::io::Write;
 
@@ -17,22 +16,24 @@ use crate::wording::counted;
 use super::LABEL;
 use super::text::{Anchor, Font};
 
-/// The size of captions, and what lies around cells, in pixels.
+/// Font size of captions, in pixels.
 const CAPTION: f64 = 14.0;
+/// Height of a caption, in pixels.
 const CAPTION_HEIGHT: u32 = 24;
+/// Space around cells, in pixels.
 const GAP: u32 = 16;
 
 /// One picture of a sheet.
 pub struct Cell<'a> {
-    /// What the approximant is called.
+    /// Name of the approximant.
     pub name: String,
-    /// The graph that it is grown from.
+    /// Graph that the approximant is grown from.
     pub graph: &'a Graph,
-    /// How it is grown.
+    /// Options of its growth.
     pub growth: Growth<'a>,
 }
 
-/// A sheet that has been written.
+/// Summary of a sheet that has been written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Written {
     /// Width and height in pixels.
@@ -41,15 +42,15 @@ pub struct Written {
     pub elements: u64,
 }
 
-/// Grows approximants and writes them side by side, in rows of `columns` (a sheet about as wide as
-/// high if nothing is said).
+/// Grows approximants and writes them side by side, in rows of `columns`. With `None`, the sides of the sheet
+/// are about 4 to 3.
 ///
-/// [`Options::size`] is the size of every picture, not of the sheet. All show the same part of the
-/// plane, that which the largest of them fills; colours that tell steps mean the same in all.
+/// [`Options::size`] is the size of every picture, not of the sheet. All pictures show the same part of the
+/// plane, the one that the largest approximant fills; colours by step mean the same in all of them.
 ///
 /// # Errors
 ///
-/// If growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
+/// Returns an error if growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
 pub fn write(
     cells: &[Cell<'_>],
     columns: Option<u32>,
@@ -109,11 +110,12 @@ pub fn write(
 struct Sheet<'a> {
     /// The approximants with their captions.
     scenes: Vec<(String, Scene<'a>)>,
-    /// The canvas of each.
+    /// Canvas of every picture.
     canvas: Canvas,
     columns: u32,
-    /// The width of a column and the height of a row, in pixels, without the gaps.
+    /// Width of a column, in pixels, without the gap.
     column: u32,
+    /// Height of a row, in pixels, without the gap.
     row: u32,
     font: Font,
     style: &'a Style,
@@ -160,7 +162,7 @@ impl Drawing for Sheet<'_> {
     }
 }
 
-/// The number of columns that makes the sheet's sides about 4 to 3.
+/// Returns the number of columns for which the sides of the sheet are closest to 4 to 3.
 fn columns_for(count: usize, [width, height]: [u32; 2]) -> u32 {
     let count = u32::try_from(count).unwrap_or(u32::MAX).max(1);
     let [width, height] = [

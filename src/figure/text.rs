@@ -1,5 +1,5 @@
-//! Labels of figures, drawn as outlines of Noto Sans: the same in every viewer, on every machine
-//! and in every format.
+//! Text of figures, drawn as outlines of Noto Sans: identical in every viewer, on every machine and in every
+//! format.
 
 use std::io;
 
@@ -9,17 +9,17 @@ use crate::geometry::DVec2;
 use crate::render::{FINE, Paint, Position, Surface, Tracer, position};
 use crate::style::Colour;
 
-/// The font of all labels.
+/// Font of all labels.
 pub(super) struct Font {
     face: Face<'static>,
 }
 
-/// Where a label stands on its point.
+/// Position of a label relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
-    /// The label begins there.
+    /// The label begins at the point.
     Start,
-    /// Its middle is there.
+    /// The label is centred at the point.
     Middle,
 }
 
@@ -31,7 +31,7 @@ impl Font {
         }
     }
 
-    /// Pixels a unit of the font, where an em has `size` pixels.
+    /// Returns the pixels in a unit of the font, where an em has `size` pixels.
     fn scale(&self, size: f64) -> f64 {
         size / f64::from(self.face.units_per_em())
     }
@@ -44,14 +44,14 @@ impl Font {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or_default())
     }
 
-    /// The width of a text in pixels.
+    /// Returns the width of a text in pixels.
     pub(super) fn width(&self, text: &str, size: f64) -> f64 {
         let glyphs = text.chars().map(|character| self.glyph(character));
         glyphs.map(|glyph| self.advance(glyph)).sum::<f64>() * self.scale(size)
     }
 
-    /// A text broken into lines that are no wider than `width` pixels: between words, and within
-    /// those that are too long.
+    /// Returns a text broken into lines of at most `width` pixels: between words, and within words that are
+    /// too long.
     pub(super) fn wrap(&self, text: &str, size: f64, width: f64) -> Vec<String> {
         let mut lines = Vec::new();
         let mut line = String::new();
@@ -74,7 +74,7 @@ impl Font {
         lines
     }
 
-    /// Draws a text of `size` pixels an em with its baseline at `at`, in pixels, y down.
+    /// Draws a text of `size` pixels an em, with its baseline at `at` in pixels, y down.
     pub(super) fn draw(
         &self,
         surface: &mut impl Surface,
@@ -109,13 +109,13 @@ impl Font {
     }
 }
 
-/// Lays glyphs on a surface.
+/// Draws the outlines of glyphs on a surface.
 struct Outline<'s, S> {
     tracer: Tracer<'s, S>,
-    /// Where the glyph stands, in pixels.
+    /// Origin of the glyph, in pixels.
     origin: DVec2,
     scale: f64,
-    /// The last point, in the font's units.
+    /// The last point, in units of the font.
     pen: DVec2,
 }
 
@@ -138,7 +138,7 @@ impl<S: Surface> OutlineBuilder for Outline<'_, S> {
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
         let (control, to) = (point(x1, y1), point(x, y));
-        // The same parabola as a cubic.
+        // A parabola is also a cubic.
         let (a, b) = (
             self.pen.lerp(control, 2.0 / 3.0),
             to.lerp(control, 2.0 / 3.0),
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(letters(&lines.concat()), letters(text));
         assert_eq!(font.wrap(text, 10.0, 1e3).len(), 1);
         assert_eq!(font.wrap("", 10.0, 60.0), Vec::<String>::new());
-        // What is narrower than a letter gets a letter a line.
+        // A width below that of a letter puts one letter on each line.
         assert_eq!(font.wrap("ab", 10.0, 1.0), ["a", "b"]);
     }
 }

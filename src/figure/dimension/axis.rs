@@ -1,32 +1,33 @@
-//! Axes: from values to pixels, with ticks at round numbers.
+//! Axes: maps from values to pixels, with ticks at round numbers.
 
-/// An axis over some pixels.
+/// A linear or logarithmic axis along a range of pixels.
 pub(super) struct Axis {
     logarithmic: bool,
-    /// The values, or their decimal logarithms, at the two ends.
+    /// Value, or its decimal logarithm, at the start of the axis.
     from: f64,
+    /// Value, or its decimal logarithm, at the end of the axis.
     to: f64,
     pixels: [f64; 2],
 }
 
-/// A mark on an axis.
+/// A tick of an axis.
 pub(super) struct Tick {
-    /// Where, in pixels.
+    /// Position in pixels.
     pub(super) at: f64,
-    /// What it says, where there is room.
+    /// Label, where there is room for one.
     pub(super) label: Option<Label>,
 }
 
-/// What a tick says.
+/// Label of a tick.
 pub(super) enum Label {
-    /// A power of ten.
+    /// A power of ten, by its exponent.
     Power(i32),
-    /// A number with so many decimals.
+    /// A number, and the number of its decimals.
     Number(f64, usize),
 }
 
 impl Label {
-    /// What stands on the line, and what is raised.
+    /// Returns the text on the baseline, and the superscript.
     pub(super) fn parts(&self) -> (String, String) {
         match *self {
             Self::Power(0) => ("1".into(), String::new()),
@@ -37,18 +38,18 @@ impl Label {
     }
 }
 
-/// A part of the range that is left free on both sides.
+/// Share of the range that is left free on either side.
 const MARGIN: f64 = 0.04;
 
 impl Axis {
-    /// A logarithmic axis that holds all values, which are above 0.
+    /// Returns a logarithmic axis that contains all values, which must be positive.
     pub(super) fn logarithmic(values: impl Iterator<Item = f64>, pixels: [f64; 2]) -> Self {
         let mut axis = Self::linear(values.map(libm::log10), pixels);
         axis.logarithmic = true;
         axis
     }
 
-    /// An axis that holds all values.
+    /// Returns a linear axis that contains all values.
     pub(super) fn linear(values: impl Iterator<Item = f64>, pixels: [f64; 2]) -> Self {
         const LEAST: f64 = 0.2;
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -69,7 +70,7 @@ impl Axis {
         from + (to - from) * (place - self.from) / (self.to - self.from)
     }
 
-    /// Where a value lies.
+    /// Returns the position of a value in pixels.
     pub(super) fn at(&self, value: f64) -> f64 {
         self.pixel(if self.logarithmic {
             libm::log10(value)
@@ -78,7 +79,7 @@ impl Axis {
         })
     }
 
-    /// Where a value lies, or the end of the axis if it is beyond.
+    /// Returns the position of a value in pixels, clamped to the axis.
     pub(super) fn clamped(&self, value: f64) -> f64 {
         self.at(value.clamp(self.from, self.to))
     }
@@ -91,7 +92,8 @@ impl Axis {
         }
     }
 
-    /// Powers of ten, with labels that do not stand too close, and what lies between them.
+    /// Returns ticks at powers of ten, with labels at a readable distance, and at their multiples from 2 to
+    /// 9.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "exponents of doubles are small"
@@ -129,7 +131,7 @@ impl Axis {
         ticks
     }
 
-    /// Multiples of 1, 2 or 5 times a power of ten, some five of them.
+    /// Returns ticks at multiples of 1, 2 or 5 times a power of ten, about five of them.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! What both plots are drawn with: a page with a title, framed panels, lines and dots.
+//! Drawing of plots: a page with a title, framed panels, lines and dots.
 
 use std::io::{self, Write};
 use std::num::NonZero;
@@ -15,33 +15,34 @@ use super::super::text::{Anchor, Font};
 use super::Options;
 use super::axis::{Axis, Label};
 
-/// The sides of all panels, in pixels from the left.
+/// Left side of all panels, in pixels.
 pub(super) const LEFT: f64 = 76.0;
+/// Right side of all panels, in pixels.
 pub(super) const RIGHT: f64 = 700.0;
 
 pub(super) const WORDS: f64 = 14.0;
 const INK: Colour = Colour::grey(30);
 const PALE: Colour = Colour::grey(165);
 
-/// The colour of what is measured, or told for one value.
+/// Returns the colour of measured values.
 pub(super) fn blue(opacity: u8) -> Colour {
     Colour::of_rgba([58, 127, 192, opacity])
 }
 
-/// The colour of what is fitted, or joins values.
+/// Returns the colour of fits, and of lines that join values.
 pub(super) fn orange(opacity: u8) -> Colour {
     Colour::of_rgba([205, 98, 30, opacity])
 }
 
-/// What is plotted on a page.
+/// Content of a page.
 pub(super) trait Plot {
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     fn size(&self) -> [u32; 2];
-    /// Draws it below the title.
+    /// Draws the plot below the title.
     fn draw<S: Surface>(&self, pad: &mut Pad<'_, S>) -> io::Result<()>;
 }
 
-/// Writes a plot on white, under its title; tells its width and height in pixels.
+/// Writes a plot on white, under its title; returns width and height in pixels.
 pub(super) fn write(
     plot: &(impl Plot + Sync),
     options: &Options,
@@ -92,7 +93,7 @@ impl<P: Plot + Sync> Drawing for Page<'_, P> {
     }
 }
 
-/// The frame of a panel with the ticks and labels of its axes.
+/// Draws the frame of a panel with the ticks and labels of its axes.
 pub(super) fn frame<S: Surface>(
     pad: &mut Pad<'_, S>,
     across: &Axis,
@@ -131,7 +132,7 @@ pub(super) fn frame<S: Surface>(
     Ok(())
 }
 
-/// A surface to draw on, in pixels.
+/// A surface with the font, in pixels.
 pub(super) struct Pad<'s, S> {
     surface: &'s mut S,
     pub(super) font: &'s Font,
@@ -148,7 +149,8 @@ impl<S: Surface> Pad<'_, S> {
         self.font.draw(self.surface, text, size, at, anchor, INK)
     }
 
-    /// A number, or a power of ten with its exponent; `part` of it stands before the point.
+    /// Draws a number, or a power of ten with its exponent; the share `part` of its width lies left of the
+    /// point.
     fn number(&mut self, label: &Label, at: DVec2, part: f64) -> io::Result<()> {
         const SMALL: f64 = 10.0;
         let (base, exponent) = label.parts();
@@ -167,12 +169,12 @@ impl<S: Surface> Pad<'_, S> {
         )
     }
 
-    /// What an upright axis shows, above its end.
+    /// Draws the label of the vertical axis, above its end.
     pub(super) fn beside(&mut self, words: &str, baseline: f64) -> io::Result<()> {
         self.text(words, WORDS, DVec2::new(10.0, baseline), Anchor::Start)
     }
 
-    /// What the axis of values shows, below it.
+    /// Draws the label of the horizontal axis, below it.
     pub(super) fn below(&mut self, words: &str, baseline: f64) -> io::Result<()> {
         let middle = f64::midpoint(LEFT, RIGHT);
         self.text(words, WORDS, DVec2::new(middle, baseline), Anchor::Middle)
@@ -202,7 +204,7 @@ impl<S: Surface> Pad<'_, S> {
         )
     }
 
-    /// A dot, pale where the fit does not use it.
+    /// Draws a dot, pale where the fit does not use it.
     pub(super) fn dot(&mut self, at: DVec2, used: bool) -> io::Result<()> {
         let colour = if used { blue(255) } else { PALE };
         self.line(&[at, at], colour, 6.0)

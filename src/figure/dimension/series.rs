@@ -1,4 +1,4 @@
-//! A dimension as a function of a parameter, in the manner of Kaandorp 1987, figure 20.
+//! Plots of a dimension as a function of a parameter, in the manner of Kaandorp 1987, figure 20.
 
 use std::io::{self, Write};
 
@@ -12,12 +12,12 @@ use super::pad::{self, LEFT, Pad, Plot, RIGHT, frame, orange};
 const SIZE: [u32; 2] = [720, 480];
 const PANEL: [f64; 2] = [44.0, 420.0];
 
-/// Plots dimensions over the values of a parameter on white, where there are any; tells width and
-/// height in pixels.
+/// Plots dimensions over the values of a parameter on white; returns width and height in pixels. Values
+/// without a dimension are left out.
 ///
 /// # Errors
 ///
-/// If `out` fails.
+/// Returns an error if `out` fails.
 pub fn write_series(
     parameter: &str,
     dimensions: &[(f64, Option<f64>)],
@@ -48,7 +48,7 @@ impl Plot for Series<'_> {
         let up = Axis::linear(told, [PANEL[1], PANEL[0]]);
         frame(pad, &across, &up, PANEL, true)?;
         let at = |value: f64, dimension: f64| DVec2::new(across.at(value), up.at(dimension));
-        // A line joins neighbours that both have a dimension.
+        // A line joins neighbouring values that both have a dimension.
         for pair in self.dimensions.windows(2) {
             if let [(from, Some(first)), (to, Some(second))] = *pair {
                 pad.line(&[at(from, first), at(to, second)], orange(255), 1.5)?;

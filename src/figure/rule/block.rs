@@ -1,4 +1,4 @@
-//! Blocks: parts of a figure with a size, which are put side by side and on top of each other.
+//! Blocks: parts of a figure with a size, composed in rows and columns.
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::render::{FINE, Paint, Position, RenderError, Surface, Tracer};
@@ -7,7 +7,7 @@ use crate::style::Colour;
 
 use super::super::text::{Anchor, Font};
 
-/// A line, open or closed, in pixels, y down.
+/// An open or closed path in pixels, with the y axis down.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     pub(super) start: DVec2,
@@ -25,7 +25,7 @@ impl Outline {
     }
 
     pub(super) fn circle(centre: DVec2, radius: f64) -> Self {
-        // A quarter of a circle as a cubic.
+        // Each quarter of the circle is a cubic.
         let handle = 0.552_284_75 * radius;
         let mut out = DVec2::new(radius, 0.0);
         let mut pieces = Vec::new();
@@ -53,16 +53,16 @@ impl Outline {
     }
 }
 
-/// What is drawn.
+/// A drawable item of a block.
 #[derive(Clone, Debug)]
 pub(super) enum Item {
-    /// A path, and what it says in words.
+    /// A path, its paint, and the text that it stands for.
     Path(Vec<Outline>, Paint, Option<&'static str>),
-    /// A line of text from a point of its baseline on.
+    /// A line of text: its font size, the start of its baseline and its colour.
     Text(String, f64, DVec2, Colour),
 }
 
-/// A part of a figure.
+/// A part of a figure: items and the size that they take.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) size: DVec2,
@@ -70,7 +70,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Lines of text of a size, below each other, each about the same axis if they are centred.
+    /// Returns lines of text of a font size, flush left or centred.
     pub(super) fn text(font: &Font, lines: Vec<String>, size: f64, centred: bool) -> Self {
         let leading = (1.35 * size).round();
         let widths: Vec<_> = lines.iter().map(|line| font.width(line, size)).collect();
@@ -87,7 +87,7 @@ impl Block {
         block
     }
 
-    /// Lays another block over this one with its corner at a point.
+    /// Puts another block onto this one, with its corner at a point; the size grows to contain it.
     pub(super) fn put(&mut self, other: Self, at: DVec2) {
         let map = DAffine2::from_translation(at);
         let moved = other.items.into_iter().map(|item| match item {
@@ -101,7 +101,7 @@ impl Block {
         self.size = self.size.max(at + other.size);
     }
 
-    /// The block in the middle of a width.
+    /// Returns the block centred in a width.
     pub(super) fn centred_in(self, width: f64) -> Self {
         let left = ((width - self.size.x) / 2.0).round();
         let mut centred = Self::default();
@@ -110,7 +110,7 @@ impl Block {
         centred
     }
 
-    /// Blocks side by side, each in the middle of the height.
+    /// Returns blocks side by side, each vertically centred; blocks without width are left out.
     pub(super) fn row(blocks: Vec<Self>, gap: f64) -> Self {
         let height = blocks.iter().map(|it| it.size.y).fold(0.0, f64::max);
         let mut row = Self::default();
@@ -126,7 +126,7 @@ impl Block {
         row
     }
 
-    /// Blocks below each other, flush left or each in the middle of the width.
+    /// Returns blocks below each other, flush left or centred; blocks without height are left out.
     pub(super) fn column(blocks: Vec<Self>, gap: f64, centred: bool) -> Self {
         let width = blocks.iter().map(|it| it.size.x).fold(0.0, f64::max);
         let mut column = Self::default();
@@ -143,7 +143,7 @@ impl Block {
         column
     }
 
-    /// Blocks one after another in lines that are no wider than `width`.
+    /// Returns blocks in rows that are at most `width` wide, unless a single block is wider.
     pub(super) fn flow(blocks: Vec<Self>, gap: DVec2, width: f64) -> Self {
         let mut lines: Vec<Vec<Self>> = Vec::new();
         let mut used = f64::INFINITY;
@@ -161,7 +161,7 @@ impl Block {
         Self::column(lines.collect(), gap.y, false)
     }
 
-    /// Draws it, `scale` times as large and with its corner at `corner`.
+    /// Draws the block, scaled by `scale`, with its corner at `corner`.
     pub(super) fn draw(
         &self,
         surface: &mut impl Surface,

@@ -1,4 +1,4 @@
-//! The three components, each as a block.
+//! Blocks of the three components of a rule: initiator, generators and base elements.
 
 use crate::document::RuleDocument;
 use crate::geometry::{Bounds, DAffine2, DVec2};
@@ -11,14 +11,15 @@ use super::page::{WORDS, shortened};
 use super::panel::{Common, Extent, Panel};
 use super::{ink, lines, words};
 
-/// The width of words beside generators in pixels, and the most lines that there are.
+/// Width of text beside generators, in pixels.
 const WORDS_WIDTH: f64 = 215.0;
+/// Limit of the number of lines of text.
 const MOST_LINES: usize = 40;
 
-/// Draws of a random generator that lie behind the typical one.
+/// Number of draws shown behind the typical one of a random generator.
 const DRAWS: u32 = 6;
 
-/// The initiator.
+/// Returns the block of the initiator.
 pub(super) fn initiator(rule: &Rule, common: &Common<'_>) -> Block {
     let panel = Panel {
         parts: std::slice::from_ref(rule.initiator()),
@@ -36,7 +37,7 @@ pub(super) fn initiator(rule: &Rule, common: &Common<'_>) -> Block {
     })
 }
 
-/// The generators, below each other, between the selection and what else is to be said of them.
+/// Returns the block of the generators, below each other, between the selection and their descriptions.
 pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'_>) -> Block {
     let font = &common.font;
     let several = rule.generators().len() > 1;
@@ -75,7 +76,7 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
     }
     let widths = panels.iter().map(|(drawn, _)| drawn.size.x);
     let widest = widths.fold(0.0, f64::max);
-    // Words begin below each other.
+    // The descriptions begin at the same distance from the left.
     let rows = panels
         .into_iter()
         .map(|(drawn, words)| Block::row(vec![drawn.centred_in(widest), words], 18.0));
@@ -87,7 +88,7 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
     Block::row(vec![paragraphs(&selection, font), rows], 18.0)
 }
 
-/// Lines of words, those that are too long broken, and those that are too many left out.
+/// Returns paragraphs of text, wrapped; lines beyond the limit are replaced by an ellipsis.
 fn paragraphs(lines: &[String], font: &Font) -> Block {
     let more = (lines.len() > MOST_LINES).then(|| "…".into());
     let blocks = lines.iter().take(MOST_LINES).chain(more.as_ref());
@@ -98,7 +99,8 @@ fn paragraphs(lines: &[String], font: &Font) -> Block {
     Block::column(blocks.collect(), 5.0, false)
 }
 
-/// The first moment at which a generator is selected and all of its points are finite.
+/// Returns the first moment at which a generator is selected and all of its points are finite, or else the
+/// first at which they are finite.
 fn moment(rule: &Rule, generator: usize) -> Moment {
     let at = |step: u32, index: u32| Moment {
         index: index.into(),
@@ -120,7 +122,7 @@ fn moment(rule: &Rule, generator: usize) -> Moment {
     found.unwrap_or(at(0, 1))
 }
 
-/// The base elements, each over the line between its ends.
+/// Returns the block of the base elements, each over the line between its ends.
 pub(super) fn base_elements(common: &Common<'_>) -> Block {
     let blocks = common.base_elements.iter().map(|base| {
         let mut bounds = Bounds::new(DVec2::ZERO, DVec2::X);

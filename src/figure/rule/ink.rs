@@ -1,9 +1,9 @@
-//! The colours and lines of the figure; all of them can be seen on white and on black.
+//! Colours and lines of the figure, all visible on white and on black.
 
 use crate::render::{Paint, Pen, Stroke};
 use crate::style::{Cap, Colour, Join};
 
-/// The pen of elements.
+/// Pen of elements.
 pub(super) const PEN: Pen = Pen {
     width: 2.0,
     cap: Cap::Round,
@@ -15,16 +15,16 @@ const FERTILE: [u8; 3] = [58, 127, 192];
 const INFERTILE: [u8; 3] = [140, 140, 140];
 const SEEDS: [u8; 3] = [205, 118, 40];
 
-/// What an element is drawn as.
+/// Kind of an element, which determines its colour and line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// It is replaced.
+    /// A fertile element.
     Fertile,
-    /// It stays.
+    /// An infertile element.
     Infertile,
-    /// It belongs to a new fractal and is replaced there.
+    /// A fertile element of a seed part.
     Seed,
-    /// It belongs to a new fractal and stays.
+    /// An infertile element of a seed part.
     InfertileSeed,
 }
 
@@ -53,12 +53,12 @@ impl Kind {
         }
     }
 
-    /// The colour of its elements.
+    /// Returns the colour of elements of the kind.
     pub(super) fn colour(self) -> Colour {
         of(self.rgb(), 255)
     }
 
-    /// The line of an element.
+    /// Returns the line of an element; dotted if invisible.
     pub(super) fn element(self, visible: bool) -> Paint {
         let thin = matches!(self, Self::Infertile | Self::InfertileSeed);
         let pen = Pen {
@@ -70,7 +70,7 @@ impl Kind {
         stroke(self.colour(), pen)
     }
 
-    /// The outline of a base element where an element stands.
+    /// Returns the outline of a base element in the place of an element.
     pub(super) fn outline(self, closed: bool) -> Paint {
         Paint {
             fill: closed.then(|| of(self.rgb(), 34)),
@@ -78,13 +78,13 @@ impl Kind {
         }
     }
 
-    /// One of several draws.
+    /// Returns the line of elements in one of several draws.
     pub(super) fn draw(self) -> Paint {
         stroke(of(self.rgb(), 120), Pen { width: 1.0, ..PEN })
     }
 }
 
-/// The side that a generator replaces.
+/// Returns the line of the side that a generator replaces.
 pub(super) fn side() -> Paint {
     let pen = Pen {
         width: 1.0,
@@ -95,19 +95,19 @@ pub(super) fn side() -> Paint {
     stroke(Colour::grey(140), pen)
 }
 
-/// The rings around its ends.
+/// Returns the line of the rings around its ends.
 pub(super) fn side_end() -> Paint {
     let pen = Pen { width: 1.0, ..PEN };
     stroke(Colour::grey(140), pen)
 }
 
-/// The lines between the components.
+/// Returns the line between components.
 pub(super) fn hairline() -> Paint {
     let pen = Pen { width: 1.0, ..PEN };
     stroke(of([140; 3], 170), pen)
 }
 
-/// The strokes of an asterisk.
+/// Returns the strokes of an asterisk.
 pub(super) fn asterisk(colour: Colour, size: f64) -> Paint {
     let pen = Pen {
         width: 1.4 * size,
@@ -116,7 +116,7 @@ pub(super) fn asterisk(colour: Colour, size: f64) -> Paint {
     stroke(colour, pen)
 }
 
-/// Dots of a diameter where elements begin and end.
+/// Returns the dots of a diameter at the ends of elements.
 pub(super) fn dots(colour: Colour, diameter: f64) -> Paint {
     let pen = Pen {
         width: diameter,
@@ -125,7 +125,7 @@ pub(super) fn dots(colour: Colour, diameter: f64) -> Paint {
     stroke(colour, pen)
 }
 
-/// The base element itself.
+/// Returns the line and the fill of a base element.
 pub(super) fn base_element(closed: bool) -> Paint {
     Paint {
         fill: closed.then(|| of(FERTILE, 34)),
@@ -133,7 +133,8 @@ pub(super) fn base_element(closed: bool) -> Paint {
     }
 }
 
-/// What an instance holds, in its tint if it has one.
+/// Returns the outline of an object in the place of an instance, filled with the instance's tint if it has
+/// one.
 pub(super) fn instance(closed: bool, tint: Option<Colour>) -> Paint {
     let tinted = tint.map(|colour| {
         let [red, green, blue, _] = colour.rgba();

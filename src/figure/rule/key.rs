@@ -1,4 +1,4 @@
-//! What is drawn, explained: samples of the lines, and notes.
+//! The key of a figure: samples of its lines, and notes.
 
 use crate::catalogue::Shelf;
 use crate::geometry::{DVec2, Direction};
@@ -11,7 +11,8 @@ use super::page::SMALL;
 use super::panel::MOST_MARKS;
 use super::{marks, words};
 
-/// Samples of the lines that occur, each with what it means; of all components, or of one shelf's alone.
+/// Returns samples of the lines that occur, each with its meaning, for all components or for those of one
+/// shelf.
 pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) -> Block {
     let (from, to) = (DVec2::new(1.0, 8.0), DVec2::new(31.0, 8.0));
     let line = || vec![Outline::line(from, to)];
@@ -69,7 +70,7 @@ pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) ->
     Block::flow(blocks.collect(), DVec2::new(22.0, 2.0), width)
 }
 
-/// What the figure says below itself.
+/// Returns the notes below the figure: directions, parameters, random functions, and missing marks.
 pub(super) fn notes(rule: &Rule) -> Vec<String> {
     let mut notes = Vec::new();
     let elements = rule.generators().iter().flat_map(|it| it.elements());

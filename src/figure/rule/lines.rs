@@ -1,4 +1,4 @@
-//! The lines of a panel.
+//! Lines of a panel: sides, elements, base elements, arrowheads and dots.
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
@@ -8,7 +8,7 @@ use super::ink::{self, Kind};
 use super::panel::{Drawn, Panel};
 
 impl Panel<'_> {
-    /// All lines, what lies below first.
+    /// Returns the lines of a panel, back to front.
     pub(super) fn lines(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Item> {
         let place = |point: DVec2| map.transform_point2(point);
         let mut items = Vec::new();
@@ -17,7 +17,7 @@ impl Panel<'_> {
             let side = Outline::line(place(DVec2::ZERO), place(DVec2::X));
             items.push(Item::Path(vec![side], ink::side(), None));
         }
-        // The looks that there are, in the order in which they first occur.
+        // The kinds and visibilities that occur, in order of first occurrence.
         let mut looks: Vec<(Kind, bool)> = Vec::new();
         for element in drawn {
             let look = (element.kind, element.element.visible);
@@ -75,7 +75,7 @@ impl Panel<'_> {
     }
 }
 
-/// The outline of a base element in the unit frame.
+/// Returns the outline of a base element in the unit frame.
 pub(super) fn outline(base: &BaseElement) -> Outline {
     Outline {
         start: base.start(),
@@ -84,7 +84,7 @@ pub(super) fn outline(base: &BaseElement) -> Outline {
     }
 }
 
-/// An open arrowhead behind the middle of an element, if that is long enough for one.
+/// Returns an open arrowhead behind the middle of an element; `None` if the element is too short.
 pub(super) fn arrowhead([from, to]: [DVec2; 2]) -> Option<Outline> {
     const SIZE: f64 = 5.5;
     let along = (to - from).normalize_or_zero();
@@ -97,7 +97,7 @@ pub(super) fn arrowhead([from, to]: [DVec2; 2]) -> Option<Outline> {
     })
 }
 
-/// Straight lines along an outline.
+/// Iterates over line segments along an outline; a cubic becomes eight.
 pub(super) fn flattened(outline: &Outline) -> impl Iterator<Item = [DVec2; 2]> + use<> {
     let mut points = vec![outline.start];
     let mut from = outline.start;

@@ -1,5 +1,5 @@
-//! Marks beside elements and points: asterisks, numbers, names. They are put where they cover
-//! nothing, if there is such a place.
+//! Marks beside elements and points: asterisks, numbers and names, placed where they cover nothing if
+//! possible.
 
 use crate::geometry::DVec2;
 use crate::render::Paint;
@@ -9,24 +9,26 @@ use super::super::text::Font;
 use super::block::{Block, Item, Outline};
 use super::ink;
 
-/// The size of text in marks, the radius of asterisks, and the space around marks, in pixels.
+/// Font size of marks, in pixels.
 const TEXT: f64 = 12.5;
+/// Radius of asterisks, in pixels.
 const ASTERISK: f64 = 4.2;
+/// Space around marks, in pixels.
 const CLEAR: f64 = 2.0;
 
-/// What a place costs where a mark would lie on another one or on an element.
+/// Cost of a place where a mark would cover another one or an element.
 const BLOCKED: f64 = 1000.0;
 
-/// What is marked.
+/// The element or point that a mark belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
-    /// An element from a point to a point.
+    /// An element from one point to another.
     Element(DVec2, DVec2),
-    /// A point.
+    /// A single point.
     Point(DVec2),
 }
 
-/// A mark: a number, an asterisk, a name, in this order.
+/// A mark: a number, an asterisk and a name, in this order.
 #[derive(Clone, Debug)]
 pub(super) struct Mark {
     pub(super) anchor: Anchor,
@@ -36,14 +38,14 @@ pub(super) struct Mark {
     pub(super) colour: Colour,
 }
 
-/// A line that marks keep clear of, and what it costs to cover it.
+/// A line that marks avoid, and the cost of covering it.
 pub(super) struct Obstacle {
     pub(super) ends: [DVec2; 2],
     pub(super) cost: f64,
 }
 
 impl Obstacle {
-    /// A line that no mark may cover.
+    /// Returns a line that no mark may cover.
     pub(super) fn element(from: DVec2, to: DVec2) -> Self {
         Self {
             ends: [from, to],
@@ -52,7 +54,7 @@ impl Obstacle {
     }
 }
 
-/// A box by its centre and half its size.
+/// A box, given by its centre and half its size.
 #[derive(Clone, Copy, Debug)]
 struct Bounding {
     centre: DVec2,
@@ -66,7 +68,7 @@ impl Bounding {
         apart.x < room.x && apart.y < room.y
     }
 
-    /// Whether a line from point to point comes close (by separating axes).
+    /// Returns whether a line segment comes close to the box, by separating axes.
     fn meets_line(&self, [from, to]: [DVec2; 2]) -> bool {
         let half = self.half + CLEAR;
         let (middle, reach) = (from.midpoint(to) - self.centre, (to - from) / 2.0);
@@ -78,7 +80,7 @@ impl Bounding {
 }
 
 impl Mark {
-    /// The widths of its three parts, with the space before the second and the third.
+    /// Returns the widths of number, asterisk and name, with the gaps before the second and the third.
     fn widths(&self, font: &Font, size: f64) -> [f64; 3] {
         let width = |text: &str| font.width(text, TEXT * size);
         let (number, name) = (width(&self.number), width(&self.name));
@@ -101,20 +103,20 @@ impl Mark {
         let height = if self.number.is_empty() && self.name.is_empty() {
             2.0 * ASTERISK
         } else {
-            // Digits, ascenders and a part of what hangs down.
+            // Digits, ascenders and part of the descenders.
             0.86 * TEXT
         };
         DVec2::new(width, height * size) / 2.0
     }
 
-    /// Places for its centre, with what each costs.
+    /// Returns candidate positions of the mark's centre, each with its cost.
     fn places(&self, half: DVec2) -> Vec<(DVec2, f64)> {
         let reach = |normal: DVec2| half.dot(normal.abs());
         let mut places = Vec::new();
         match self.anchor {
             Anchor::Element(from, to) => {
                 let along = to - from;
-                // To the left of the element, as y runs down.
+                // With y down, the left of the element is the negated perpendicular.
                 let left = -along.perp().normalize_or(DVec2::Y);
                 for (side, other) in [(left, 0.0), (-left, 30.0)] {
                     for off in [0.0, 4.0, 9.0, 16.0] {
@@ -139,12 +141,12 @@ impl Mark {
         places
     }
 
-    /// The mark with its centre at a point.
+    /// Returns the mark as a block, centred at a point.
     fn block(&self, font: &Font, size: f64, centre: DVec2) -> Block {
         let [number, star, name] = self.widths(font, size);
         let mut block = Block::default();
         let mut left = centre.x - (number + star + name) / 2.0;
-        // Half the height of a digit below the centre.
+        // The baseline lies half the height of a digit below the centre.
         let baseline = centre.y + 0.357 * TEXT * size;
         let mut text = |text: &str, left: f64| {
             if !text.is_empty() {
@@ -170,7 +172,7 @@ impl Mark {
     }
 }
 
-/// An asterisk of six points.
+/// Returns the strokes of an asterisk with six points, and their paint.
 pub(super) fn asterisk(at: DVec2, size: f64, colour: Colour) -> (Vec<Outline>, Paint) {
     let strokes = [90.0f64, 30.0, 150.0].map(|angle| {
         let angle = angle.to_radians();
@@ -180,15 +182,15 @@ pub(super) fn asterisk(at: DVec2, size: f64, colour: Colour) -> (Vec<Outline>, P
     (strokes.into(), ink::asterisk(colour, size))
 }
 
-/// Marks that have been placed.
+/// Marks after placement.
 pub(super) struct Placed {
     pub(super) block: Block,
-    /// The corners of what they cover.
+    /// Corners of the boxes that the marks cover.
     pub(super) corners: Vec<DVec2>,
 }
 
-/// Places marks in their order, each where it costs least. If all must be clear, there is nothing
-/// where one would cover another or an element.
+/// Places marks in their order, each at the least cost. With `clear`, returns `None` if a mark would cover
+/// another one or an element.
 pub(super) fn place(
     font: &Font,
     marks: &[Mark],
@@ -213,7 +215,7 @@ pub(super) fn place(
         places.sort_by(|a, b| a.1.total_cmp(&b.1));
         let mut best = (DVec2::ZERO, f64::INFINITY);
         for (centre, cost) in places {
-            // The places behind this one cost more even if they cover nothing.
+            // Later places cost more even if they cover nothing.
             if cost >= best.1 {
                 break;
             }

@@ -1,4 +1,4 @@
-//! The page: title, three components side by side, and a key to what is drawn.
+//! Layout of a page: title, components side by side, and a key.
 
 use crate::catalogue::Shelf;
 use crate::document::RuleDocument;
@@ -10,22 +10,28 @@ use super::block::{Block, Item, Outline};
 use super::panel::{self, Common};
 use super::{components, ink, key};
 
-/// Sizes of text in pixels.
+/// Font size of the title, in pixels.
 const TITLE: f64 = 21.0;
+/// Font size of the headings of columns, in pixels.
 const HEADING: f64 = 14.0;
+/// Font size of text beside components, in pixels.
 pub(super) const WORDS: f64 = 13.0;
+/// Font size of the source and of notes, in pixels.
 pub(super) const SMALL: f64 = 11.5;
 
-/// What lies around the page, and between its parts; the least width of parts.
+/// Margin around the page, in pixels.
 const MARGIN: f64 = 20.0;
+/// Space on either side of the line between columns, in pixels.
 const GUTTER: f64 = 26.0;
+/// Least width of a page without its margins, in pixels.
 const LEAST_WIDTH: f64 = 480.0;
+/// Least width of a column, in pixels.
 const LEAST_COLUMN: f64 = 96.0;
 
-/// Texts longer than this are cut.
+/// Limit of the number of characters in a text; longer ones are truncated.
 const MOST_CHARACTERS: usize = 600;
 
-/// Lays a rule out, or the components of one shelf alone, under a title.
+/// Lays out a rule, or the components of one shelf, under a title.
 pub(super) fn page(
     rule: &Rule,
     document: &RuleDocument,
@@ -60,7 +66,7 @@ pub(super) fn page(
     lay_out(font, columns, [title, source], key, &key::notes(rule))
 }
 
-/// A page of columns under a title and a source, with a key as wide as they are, and notes.
+/// Lays out columns under a title and a source, with a key as wide as the columns, and notes.
 pub(super) fn lay_out(
     font: &Font,
     columns: Vec<(&str, Block)>,
@@ -94,7 +100,7 @@ pub(super) fn plural(count: usize, one: &'static str, several: &'static str) -> 
     if count == 1 { one } else { several }
 }
 
-/// A text, cut if it is very long.
+/// Returns a text, truncated to [`MOST_CHARACTERS`] characters and an ellipsis.
 pub(super) fn shortened(text: &str) -> String {
     let mut shortened: String = text.chars().take(MOST_CHARACTERS).collect();
     if shortened.len() < text.len() {
@@ -103,7 +109,7 @@ pub(super) fn shortened(text: &str) -> String {
     shortened
 }
 
-/// A line across.
+/// Returns a horizontal line.
 fn across(width: f64) -> Block {
     let line = Outline::line(DVec2::new(0.0, 0.5), DVec2::new(width, 0.5));
     Block {
@@ -112,7 +118,7 @@ fn across(width: f64) -> Block {
     }
 }
 
-/// Columns with their headings, and lines between them.
+/// Lays out columns side by side with their headings, and lines between them.
 fn beside(columns: Vec<(&str, Block)>, font: &Font) -> Block {
     let heights = columns.iter().map(|(_, block)| block.size.y);
     let height = heights.fold(0.0, f64::max).ceil();

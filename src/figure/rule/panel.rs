@@ -1,4 +1,4 @@
-//! A list of elements as it stands: the initiator, or a generator over the side that it replaces.
+//! Panels: a list of elements in place, the initiator or a generator over the side that it replaces.
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, placement};
 use crate::rule::{BaseElement, ListedElement, Part};
@@ -9,54 +9,54 @@ use super::ink::Kind;
 use super::lines::{arrowhead, flattened, outline};
 use super::marks::{self, Anchor, Mark, Obstacle};
 
-/// Lists with more elements than this are drawn without marks.
+/// Limit of the number of elements that are drawn with marks.
 pub(super) const MOST_MARKS: usize = 400;
 
-/// Coordinates beyond this are not drawn.
+/// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
 
-/// What a component shows, in the units of the rule.
+/// Content of a panel, in the units of the rule.
 pub(super) struct Panel<'a> {
     pub(super) parts: &'a [Part],
     pub(super) points: Vec<DVec2>,
-    /// The points for some other draws.
+    /// Points of other draws.
     pub(super) draws: Vec<Vec<DVec2>>,
-    /// The points that are told apart by their number.
+    /// Indices of the points that are labelled with their numbers.
     pub(super) named: Vec<usize>,
-    /// Whether it stands over the side from (0, 0) to (1, 0).
+    /// Whether the side from (0, 0) to (1, 0), which a generator replaces, is drawn.
     pub(super) replaces: bool,
     pub(super) common: &'a Common<'a>,
 }
 
-/// What all panels of a figure share.
+/// Data that all panels of a figure share.
 pub(super) struct Common<'a> {
     pub(super) font: Font,
     pub(super) base_elements: &'a [BaseElement],
-    /// The names of the generators, where elements tell theirs.
+    /// Names of the generators, for elements that name theirs.
     pub(super) names: Vec<&'a str>,
-    /// Whether elements tell their directions.
+    /// Whether elements are labelled with their directions.
     pub(super) directions: bool,
 }
 
-/// How large a panel is to be, in pixels.
+/// Target size of a panel, in pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
-    /// The length of a unit, if nothing else asks for more or less.
+    /// Length of a unit of the rule, unless elements are too short or the panel too large.
     pub(super) unit: f64,
-    /// The width and height that it fits into, unless marks need more.
+    /// Width and height that the panel fits into, unless marks need more.
     pub(super) most: DVec2,
 }
 
-/// An element with its ends.
+/// A drawable element.
 pub(super) struct Drawn<'a> {
     pub(super) element: &'a ListedElement,
     pub(super) kind: Kind,
     pub(super) ends: [DVec2; 2],
-    /// Whether it has an arrowhead.
+    /// Whether the element has an arrowhead.
     pub(super) arrow: bool,
 }
 
-/// How much larger a panel and how much smaller its marks become until marks cover nothing.
+/// Factors of a panel's size and of its marks' size, tried in this order until marks cover nothing.
 const ATTEMPTS: [(f64, f64); 9] = [
     (1.0, 1.0),
     (1.0, 0.85),
@@ -69,11 +69,11 @@ const ATTEMPTS: [(f64, f64); 9] = [
     (2.6, 0.6),
 ];
 
-/// What is done if some cover something all the same.
+/// Factors where every attempt leaves marks that cover something.
 const LAST_ATTEMPT: (f64, f64) = (2.0, 0.6);
 
 impl<'a> Panel<'a> {
-    /// Draws it.
+    /// Draws the panel.
     pub(super) fn block(&self, extent: Extent) -> Block {
         let drawn = self.drawn();
         let bounds = self.bounds(&drawn);
@@ -94,7 +94,7 @@ impl<'a> Panel<'a> {
         };
         let mut items = self.lines(&drawn, &map);
         items.extend(placed.block.items);
-        // As much room on either side, so that what is drawn stays in the middle.
+        // Equal room on either side keeps the drawing in the middle.
         let size = map.matrix2 * (bounds.max() - bounds.min());
         let size = DVec2::new(size.x, -size.y);
         let corners = placed.corners.iter();
@@ -109,7 +109,7 @@ impl<'a> Panel<'a> {
         block
     }
 
-    /// The elements that can be drawn.
+    /// Returns the elements whose ends can be drawn.
     fn drawn(&self) -> Vec<Drawn<'a>> {
         let mut drawn = Vec::new();
         for part in self.parts {
@@ -138,7 +138,7 @@ impl<'a> Panel<'a> {
         &self.common.base_elements[element.base_element]
     }
 
-    /// The outline of an element's base element, if that is more than the element's line.
+    /// Returns the outline of a visible element's base element, unless it is just the element's line.
     pub(super) fn outline(&self, drawn: &Drawn<'_>) -> Option<Outline> {
         let base = self.base(drawn.element);
         if base.is_line() || !drawn.element.visible || drawn.ends[0] == drawn.ends[1] {
@@ -172,7 +172,7 @@ impl<'a> Panel<'a> {
         bounds
     }
 
-    /// The ends of all elements of a kind for other points, where they can be drawn.
+    /// Returns the ends of all elements of a kind at other points, where they can be drawn.
     pub(super) fn ends(&self, points: &[DVec2], kind: Kind) -> Vec<[DVec2; 2]> {
         let mut ends = Vec::new();
         for part in self.parts {
@@ -185,7 +185,7 @@ impl<'a> Panel<'a> {
         ends
     }
 
-    /// Pixels a unit: more where elements are short, less where the whole is large.
+    /// Returns the pixels in a unit: more where elements are short, fewer where the panel would be too large.
     fn unit(&self, drawn: &[Drawn<'_>], bounds: &Bounds, extent: Extent) -> f64 {
         let mut lengths: Vec<_> = drawn
             .iter()
@@ -242,7 +242,7 @@ impl<'a> Panel<'a> {
         marks
     }
 
-    /// What marks keep clear of.
+    /// Returns the lines that marks avoid.
     fn obstacles(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Obstacle> {
         let place = |point: DVec2| map.transform_point2(point);
         let mut obstacles = Vec::new();
@@ -275,7 +275,7 @@ fn can_be_drawn(point: DVec2) -> bool {
     point.is_finite() && point.abs().max_element() < FARTHEST
 }
 
-/// Whether a list uses directions.
+/// Returns whether an element has a direction other than normal.
 pub(super) fn has_directions(parts: &[Part]) -> bool {
     let mut elements = parts.iter().flat_map(|part| &part.elements);
     elements.any(|element| element.direction != Direction::Normal)

@@ -1,5 +1,5 @@
-//! An instancing structure as a figure: the scene and the canonical objects side by side, each with
-//! its shapes and with boxes of what its instances hold.
+//! Figures of object instancing: the scene and the canonical objects side by side, each with its shapes and
+//! with the bounding boxes of its instances.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -16,32 +16,35 @@ use super::lines::{flattened, outline};
 use super::page::{SMALL, WORDS, lay_out, plural};
 use super::{Figure, Options, onto_panel};
 
-/// The sides of panels in pixels, at most.
+/// Largest side of the scene's panel, in pixels.
 const SCENE: f64 = 300.0;
+/// Largest side of an object's panel, in pixels.
 const OBJECT: f64 = 170.0;
 
-/// Panels stand side by side up to this width.
+/// Width up to which panels stand side by side, in pixels.
 const WIDTH: f64 = 640.0;
 
-/// More objects than these are not shown, nor more levels of one name.
+/// Limit of the number of objects shown.
 const MOST_OBJECTS: usize = 24;
+/// Limit of the number of levels shown of one name.
 const MOST_LEVELS: usize = 3;
 
-/// More instances than these are not shown, or have no names.
+/// Limit of the number of instances shown in a panel.
 const MOST_INSTANCES: usize = 400;
+/// Limit of the number of named instances in a panel.
 const MOST_NAMES: usize = 40;
 
-/// Names longer than this are cut.
+/// Limit of the number of characters in a name; longer ones are truncated.
 const MOST_CHARACTERS: usize = 16;
 
-/// What lies farther out is not drawn.
+/// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
 
-/// Draws a structure and writes the figure; tells its width and height in pixels.
+/// Draws the figure of an instancing structure and writes it; returns width and height in pixels.
 ///
 /// # Errors
 ///
-/// If the picture is too large, or if `out` fails.
+/// Returns an error if the picture is too large, or if `out` fails.
 pub fn write_structure(
     structure: &Instancing,
     options: &Options,
@@ -83,7 +86,7 @@ pub fn write_structure(
     Figure::write(page, options, out)
 }
 
-/// The objects that have panels: of those that differ by their level the first few.
+/// Returns the indices of the objects shown; of objects that differ only by their level, the first few.
 fn shown(structure: &Instancing) -> Vec<usize> {
     let mut levels: BTreeMap<&str, usize> = BTreeMap::new();
     let mut shown = Vec::new();
@@ -98,7 +101,7 @@ fn shown(structure: &Instancing) -> Vec<usize> {
     shown
 }
 
-/// The boxes of all objects that stand in a panel.
+/// Returns the bounding boxes of all objects that are instanced in a panel.
 fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
     let panels = shown
         .iter()
@@ -127,14 +130,14 @@ struct Plan<'a> {
     boxes: BTreeMap<usize, Bounds>,
 }
 
-/// An instance where it stands, in the coordinates of the object.
+/// A drawable instance, in the coordinates of the object that contains it.
 struct Drawn<'a> {
     outline: Outline,
     instance: &'a Instance,
 }
 
 impl<'a> Plan<'a> {
-    /// What a union is made of, no larger than a side.
+    /// Returns the panel of a list of instances, with sides of at most `side` pixels.
     fn panel(&self, instances: &'a [Instance], side: f64) -> Block {
         let drawn = instances.iter().take(MOST_INSTANCES);
         let drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
@@ -184,7 +187,8 @@ impl<'a> Plan<'a> {
         can_be_drawn.then_some(Drawn { outline, instance })
     }
 
-    /// Names what the instances are, where that covers nothing; tells the names that have no room.
+    /// Labels instances with the names of their objects where a label covers nothing; returns the names
+    /// without room.
     fn put_names(&self, block: &mut Block, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<String> {
         let objects = || drawn.iter().filter(|drawn| !drawn.is_shape());
         let lines: Vec<_> = drawn
@@ -246,7 +250,7 @@ impl Drawn<'_> {
     }
 }
 
-/// Where a name may stand: the middle of a box, or else anywhere in it, what is nearer first.
+/// Returns candidate positions of a name in a box, its middle first.
 fn places(within: &Bounds) -> [DVec2; 25] {
     const STEPS: [f64; 5] = [0.5, 0.3, 0.7, 0.12, 0.88];
     let at = |x: f64, y: f64| within.min() + within.size() * DVec2::new(x, y);
@@ -257,7 +261,7 @@ fn overlap(a: &Bounds, b: &Bounds) -> bool {
     a.min().cmplt(b.max()).all() && b.min().cmplt(a.max()).all()
 }
 
-/// Whether a line passes by a label in less than a few pixels.
+/// Returns whether a line segment passes within a few pixels of a label.
 fn comes_near(label: &Bounds, [from, to]: &[DVec2; 2]) -> bool {
     const STEP: f64 = 2.0;
     let mut along = 0.0;
@@ -284,7 +288,7 @@ fn bounds_of(outline: &Outline) -> Bounds {
     bounds
 }
 
-/// A name, cut if it is very long.
+/// Returns a name, truncated to [`MOST_CHARACTERS`] characters.
 fn cut(name: &str) -> String {
     if name.chars().count() <= MOST_CHARACTERS {
         return name.into();

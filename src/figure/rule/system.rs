@@ -1,5 +1,5 @@
-//! An iterated function system as a figure: what approximant 0 draws, its images under the maps
-//! with their numbers, and the condensation sets.
+//! Figures of iterated function systems: the initial set, its images under the maps with their numbers, and
+//! the condensation sets.
 
 use std::io::Write;
 
@@ -16,18 +16,19 @@ use super::lines::outline;
 use super::page::{WORDS, lay_out, plural};
 use super::{Figure, Options, onto_panel};
 
-/// The sides of panels in pixels, at most.
+/// Largest width and height of the panel of images, in pixels.
 const MOST: DVec2 = DVec2::new(380.0, 380.0);
+/// Factor of the size of the other panels.
 const SMALL: f64 = 0.55;
 
-/// More maps than this are drawn without numbers.
+/// Limit of the number of maps that are drawn with numbers.
 const MOST_NUMBERS: usize = 100;
 
-/// Draws a system and writes the figure; tells its width and height in pixels.
+/// Draws the figure of a system and writes it; returns width and height in pixels.
 ///
 /// # Errors
 ///
-/// If the picture is too large, or if `out` fails.
+/// Returns an error if the picture is too large, or if `out` fails.
 pub fn write_system(
     system: &System,
     options: &Options,
@@ -59,7 +60,7 @@ pub fn write_system(
     Figure::write(page, options, out)
 }
 
-/// What of a recurrent system's digraph is said in words.
+/// Returns the edges of a recurrent system's digraph as text, one line for each map.
 fn edges(ifs: &Ifs) -> Vec<String> {
     let Some(edges) = ifs.edges() else {
         return Vec::new();
@@ -78,14 +79,15 @@ fn edges(ifs: &Ifs) -> Vec<String> {
         .collect()
 }
 
-/// What is drawn, and to what scale.
+/// Content of the figure, and its bounds.
 struct Plan<'a> {
     ifs: &'a Ifs,
-    /// The outlines of the initial set.
+    /// Outlines of the initial set.
     initial: Vec<&'a BaseElement>,
-    /// Those of the condensation sets.
+    /// Outlines of the condensation sets.
     sets: &'a [BaseElement],
-    /// What the images are shown of: the initial set, or a box around it if that is a line, or several.
+    /// Shape whose images are shown: the initial set, or a box around it if it is a curve or several
+    /// outlines.
     shown: BaseElement,
     bounds: Bounds,
 }
@@ -124,12 +126,12 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Whether a box is shown around the initial set.
+    /// Returns whether a box is shown around the initial set.
     fn is_boxed(&self) -> bool {
         self.initial != [&self.shown]
     }
 
-    /// The map from the plane to a panel, and the panel's size.
+    /// Returns the map from the plane to a panel of a share of the full size, and the panel's size.
     fn panel(&self, share: f64) -> (DAffine2, DVec2) {
         let size = self.bounds.size();
         let scale = (MOST * share / size.max(DVec2::splat(1e-300))).min_element();

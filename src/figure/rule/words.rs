@@ -1,4 +1,4 @@
-//! What a figure says in words: the selection, random functions, seeding.
+//! Text of figures: the selection, random functions and seed parts of a rule in words.
 
 use crate::diagnostic::Place;
 use crate::document::{
@@ -9,10 +9,10 @@ use crate::expression::{Dependence, Expression};
 use crate::heading::Parameter;
 use crate::rule::{Generator, Moment, Placement};
 
-/// More points than this are not told one by one.
+/// Limit of the number of points that are described one by one.
 const MOST_POINTS: usize = 6;
 
-/// The selection, line by line; nothing where there is but one generator.
+/// Describes the selection, line by line; returns nothing where there is only one generator.
 pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
     match &document.select {
         None if document.generators.len() > 1 => vec!["every side names its own".into()],
@@ -40,7 +40,7 @@ pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
     }
 }
 
-/// The shares of a selection at random, line by line.
+/// Describes the shares of a selection by weight, line by line.
 pub(super) fn shares(generators: &[Generator], weights: &[(f64, usize)]) -> Vec<String> {
     let total: f64 = weights.iter().map(|(weight, _)| weight).sum();
     let share = |&(weight, generator): &(f64, usize)| {
@@ -52,16 +52,16 @@ pub(super) fn shares(generators: &[Generator], weights: &[(f64, usize)]) -> Vec<
         .collect()
 }
 
-/// What is to be said of a generator.
+/// Description of a generator.
 #[derive(Default)]
 pub(super) struct Said {
-    /// Line by line.
+    /// Lines of text.
     pub(super) lines: Vec<String>,
-    /// The points that are told by their numbers.
+    /// Indices of the points that the text names by number.
     pub(super) named: Vec<usize>,
 }
 
-/// The random function of a generator, what depends on the moment, and its seeds.
+/// Describes a generator: its random function, the points that depend on the moment, and its seed parts.
 pub(super) fn generator(
     generator: &Generator,
     document: &GeneratorDocument,
@@ -123,7 +123,7 @@ fn distribution(expression: &Expression) -> String {
     }
 }
 
-/// An expression as it stands in a file, without what the file needs around it.
+/// Returns an expression as written in a file, without the quotes that the file needs.
 fn written(place: &Place) -> String {
     let text = place.text();
     match Expression::parse(text) {
@@ -166,7 +166,7 @@ fn moving(moving: &MoveDocument, points: &[usize]) -> String {
     format!("{subject}: {}", verbs.join(", "))
 }
 
-/// An expression as a unit can follow it.
+/// Returns an expression in a form that a unit can follow: in parentheses unless it is simple.
 fn bound(expression: &Expression) -> String {
     let text = expression.to_string();
     let is_simple = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
@@ -177,7 +177,7 @@ fn bound(expression: &Expression) -> String {
     }
 }
 
-/// What the seeding parts do.
+/// Describes the seed parts, line by line.
 fn seeds(generator: &Generator) -> Vec<String> {
     let parts = generator.parts();
     let mut lines = Vec::new();
@@ -204,14 +204,14 @@ fn seeds(generator: &Generator) -> Vec<String> {
     lines
 }
 
-/// "angle = 45, ratio = 0.5".
+/// Formats parameters as "angle = 45, ratio = 0.5".
 pub(super) fn parameters(parameters: &[Parameter]) -> String {
     let values = parameters.iter();
     let values = values.map(|it| format!("{} = {}", it.name, number(it.value)));
     values.collect::<Vec<_>>().join(", ")
 }
 
-/// A number to six digits.
+/// Formats a number with six significant digits.
 fn number(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse::<f64>();
     rounded.unwrap_or(value).to_string()
