@@ -1,10 +1,10 @@
-//! The box of an approximant and of the limit set, from the graph alone.
+//! Bounding boxes of approximants and of the limit set, computed from the graph alone.
 //!
-//! The support function h(u) = max x·u is carried down the graph for the four directions of the
-//! axes. An instance with linear part L and shift t turns the direction into Lᵀu and adds t·u, so
-//! a state is an object with a vector and an offset. States that are equal but for the offset are
-//! merged to the one that reaches farthest, and states that cannot reach the best one are dropped;
-//! what is left stays small (finitely many directions where turns are rational).
+//! The support function h(u) = max x·u is propagated down the graph for the four directions of the axes.
+//! An instance with linear part L and translation t maps the direction to Lᵀu and adds t·u, so a state is
+//! an object with a vector and an offset. Of states that are equal but for the offset only the farthest
+//! is kept, and states that cannot exceed the best one are dropped; the number of states stays small
+//! (where rotations are rational, directions are finitely many).
 
 use std::collections::hash_map::Entry;
 
@@ -15,50 +15,52 @@ use crate::rule::Placement;
 use super::hull::{Fineness, Hulls};
 use super::{Graph, Instance, Object, Replacement};
 
-/// More states than this, at one level and at all of them, are given up.
+/// Limit of the number of states at one level.
 const MOST_STATES: usize = 20_000;
+/// Limit of the number of states at all levels together.
 const MOST_WORK: usize = 1_000_000;
 
-/// More levels than this are given up.
+/// Limit of the number of levels.
 const MOST_LEVELS: u32 = 20_000;
 
-/// What is smaller than this multiple of the whole adds nothing to a double.
+/// Relative size of terms that do not change a double.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// The same where maps are any affine ones, so that rounding merges less.
+/// Relative size of terms that are neglected where maps are affine: vectors of equal states differ by
+/// rounding there, so fewer states merge.
 const ROUNDING: f64 = 1e-15;
 
 struct State {
     object: usize,
     vector: DVec2,
     offset: f64,
-    /// What rounding has taken from the offset.
+    /// Accumulated rounding error of the offset.
     lost: f64,
 }
 
-/// What the search needs to know of the graph.
+/// Bounds on the subtrees of objects, on which the search relies.
 struct Reach {
     spread: f64,
     ratio: f64,
-    /// Where ratios do not tell it, polygons about what becomes of every object.
+    /// Polygons that contain the subtrees of objects, where ratios give no bound.
     hulls: Option<Hulls>,
-    /// Objects that surely draw something.
+    /// Objects that are certain to draw something.
     alive: Vec<bool>,
-    /// What lies around every object, as a multiple of its length.
+    /// Padding around every object, as a multiple of its length.
     pads: Vec<f64>,
-    /// What the box may leave out.
+    /// Length that the box may fall short of.
     spared: f64,
 }
 
-/// The boxes of what approximants draw, without stroke width: see [`Graph::bounds`].
+/// Bounding boxes of approximants, without stroke width: see [`Graph::bounds`].
 pub struct Boxes<'g> {
     graph: &'g Graph,
     reach: Reach,
 }
 
 impl Reach {
-    /// How far a state may reach along its vector, and how far it reaches at least if it draws anything:
-    /// in the limit, the farthest of it.
+    /// Returns an upper bound of x·u over the points x that a state draws, and a lower bound that holds
+    /// if it draws anything: of the least x·u, or in the limit with polygons, of the greatest.
     fn span(&self, state: &State, levels: Option<u32>) -> [f64; 2] {
         let Some(hulls) = &self.hulls else {
             let size = state.vector.length() * self.radius(levels);
@@ -72,14 +74,16 @@ impl Reach {
         [state.offset + farthest, state.offset + least]
     }
 
-    /// What a state adds to its offset in the limit, where that is known to `negligible`.
+    /// Returns the contribution of a state to its offset in the limit, if polygons determine it to within
+    /// `negligible`.
     fn rest(&self, state: &State, negligible: f64) -> Option<f64> {
         let hulls = self.hulls.as_ref()?;
         let [farthest, surely] = hulls.along(state.object, state.vector);
         (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
     }
 
-    /// How far from its origin, along its vector, anything of a state may lie.
+    /// Returns a bound on the distance, along the vector of a state, of all that it draws from its
+    /// origin.
     fn size(&self, state: &State, levels: Option<u32>) -> f64 {
         match &self.hulls {
             Some(hulls) => {
@@ -91,18 +95,19 @@ impl Reach {
         }
     }
 
-    /// Rounding must not drop all that reaches farthest, where points of the limit tell what does.
+    /// Returns the relative tolerance for dropping states: with polygons, lower bounds are so tight that
+    /// rounding could drop all states that reach farthest.
     fn slack(&self) -> f64 {
         self.hulls.as_ref().map_or(0.0, |_| ROUNDING)
     }
 
-    /// What adds nothing, as a multiple of the whole.
+    /// Returns the relative size of terms that are neglected.
     fn negligible(&self) -> f64 {
         self.hulls.as_ref().map_or(NEGLIGIBLE, |_| ROUNDING)
     }
 
-    /// The radius around its origin, in its own unit frame, of all that an object draws within a
-    /// number of levels, or ever: the sum of a geometric series.
+    /// Returns the radius about the origin of an object's unit frame that contains all that it draws
+    /// within a number of levels, or in all levels: the sum of a geometric series.
     fn radius(&self, levels: Option<u32>) -> f64 {
         if self.ratio < 1.0 {
             return self.spread / (1.0 - self.ratio);
@@ -116,33 +121,35 @@ impl Reach {
 }
 
 impl Graph {
-    /// The box of what approximant `steps` draws, without stroke width.
+    /// Returns the bounding box of approximant `steps` without stroke width, in the graph's coordinates.
     ///
-    /// Exact to some 15 digits. `None` where nothing is drawn, where the graph does not tell (random
-    /// and irregular rules, seeds placed as the initiator, too many directions), or where the graph
+    /// Exact to some 15 digits. `None` if nothing is drawn, if the graph does not determine the box
+    /// (random and irregular rules, seeds placed as the initiator, too many directions), or if the graph
     /// was compiled for fewer steps.
     #[must_use]
     pub fn bounds(&self, steps: u32) -> Option<Bounds> {
         self.padded_bounds(steps, |_| 0.0)
     }
 
-    /// The boxes of several approximants: what they have in common is worked out once. `None` where
-    /// the graph tells none of them.
+    /// Returns the bounding boxes of approximants, which share the computations that do not depend on the
+    /// step. `None` if the graph determines none of them.
     #[must_use]
     pub fn boxes(&self) -> Option<Boxes<'_>> {
         self.boxes_with(false, |_| 0.0)
     }
 
-    /// The same with so much around every object, as a multiple of its length.
+    /// Returns the bounding box of approximant `steps` with padding around every object: `pad` returns it
+    /// as a multiple of the object's length.
     pub(crate) fn padded_bounds(&self, steps: u32, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
         self.boxes_with(false, pad)?.at(steps)
     }
 
-    /// The box of the limit set: of the limit of the approximants as drawn, to which infertile
-    /// visible elements belong.
+    /// Returns the bounding box of the limit set: of the limit of the approximants as drawn, which
+    /// contains infertile visible elements.
     ///
-    /// Exact to some 15 digits, or to 1e-10 of its long side where maps contract so slowly that these would
-    /// take too long. `None` where there is none or the graph does not tell.
+    /// Exact to some 15 digits, or to 1e-10 of its longer side where maps contract so slowly that full
+    /// precision would take too long. `None` if there is no limit set, or if the graph does not determine
+    /// the box.
     #[must_use]
     pub fn limit_bounds(&self) -> Option<Bounds> {
         if self.depth.is_some() || !self.contracts() {
@@ -154,12 +161,12 @@ impl Graph {
         found.find_map(|bounds| bounds)
     }
 
-    /// Boxes of approximants, or of the limit.
+    /// Returns the boxes of approximants, or of the limit if `limit` is set.
     fn boxes_with(&self, limit: bool, pad: impl Fn(&Object) -> f64) -> Option<Boxes<'_>> {
         self.boxes_within(limit, Fineness::COARSE, pad)
     }
 
-    /// The same with polygons about what becomes of objects that are as fine as that.
+    /// Returns the boxes of approximants, or of the limit, with polygons of the given fineness.
     fn boxes_within(
         &self,
         limit: bool,
@@ -195,12 +202,12 @@ impl Graph {
         Some(Boxes { graph: self, reach })
     }
 
-    /// All instances of fixed productions, with how they are placed.
+    /// Iterates over all instances of fixed productions, with their placements.
     pub(super) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
         (0..self.objects.len()).flat_map(|object| self.children(object))
     }
 
-    /// The largest ratio of a fertile instance.
+    /// Returns the largest ratio of a fertile instance.
     pub(super) fn longest_ratio(&self) -> f64 {
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let fertile = self
@@ -211,7 +218,8 @@ impl Graph {
             .fold(0.0, f64::max)
     }
 
-    /// How far what an object draws, or where its instances stand, may lie from its origin.
+    /// Returns the largest distance from an object's origin at which it draws something or places an
+    /// instance.
     fn spread(&self, pad: impl Fn(&Object) -> f64) -> f64 {
         let shape = |object: usize| {
             let base_element = &self.base_elements()[self.objects[object].base_element];
@@ -237,8 +245,9 @@ impl Graph {
         constant
     }
 
-    /// Objects that surely draw something at every later level or, for the limit, that are drawn
-    /// again and again: those that lead to a visible kept object, or for ever to visible ones.
+    /// Returns, for every object, whether its subtree is certain to draw something: for approximants, at
+    /// every later level; for the limit, infinitely often. The latter are objects that lead to a visible
+    /// kept object, or to visible objects for ever.
     pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
         let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
             Replacement::Fixed(production) => {
@@ -310,7 +319,7 @@ impl Graph {
                     continue;
                 }
                 if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
-                    // What is not surely drawn at this very step is followed to its end.
+                    // A state that is not certain to draw at this step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
                     let negligible = negligible.max(reach.spared);
@@ -352,19 +361,19 @@ impl Graph {
 }
 
 impl Boxes<'_> {
-    /// The box of approximant `steps`.
+    /// Returns the bounding box of approximant `steps`.
     #[must_use]
     pub fn at(&self, steps: u32) -> Option<Bounds> {
         let is_resolved = self.graph.depth.is_none_or(|depth| depth >= steps);
         is_resolved.then(|| self.of(Some(steps))).flatten()
     }
 
-    /// The box of an approximant or of the limit.
+    /// Returns the bounding box of an approximant, or of the limit set if `steps` is `None`.
     fn of(&self, steps: Option<u32>) -> Option<Bounds> {
         let support = |direction| self.graph.support(direction, steps, &self.reach);
         let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
         let min = -DVec2::new(support(-DVec2::X)?, support(-DVec2::Y)?);
-        // What rounding leaves of zero.
+        // Coordinates below the rounding error are replaced by zero.
         let nothing = self.reach.slack() * min.abs().max(max.abs()).max_element();
         let rounded = |corner: DVec2| {
             let is_nothing = corner.abs().cmple(DVec2::splat(nothing));
@@ -375,7 +384,7 @@ impl Boxes<'_> {
     }
 }
 
-/// Applies a rule to every member of a set until nothing changes.
+/// Iterates a membership rule on all members of a set until it is a fixed point.
 fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<bool> {
     loop {
         let next: Vec<bool> = (0..set.len()).map(|object| member(object, &set)).collect();
@@ -389,7 +398,7 @@ fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<b
 fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
     let map = &instance.frame.map;
     let shift = vector.dot(map.translation);
-    // Knuth's exact sum of two doubles (TwoSum): errors of many levels do not add up.
+    // Knuth's exact sum of two doubles (TwoSum) keeps the errors of many levels from accumulating.
     let sum = offset + shift;
     let rounded = sum - offset;
     let error = (offset - (sum - rounded)) + (shift - rounded);
@@ -422,19 +431,19 @@ fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
     kept
 }
 
-/// The same for vectors that differ by rounding: a direction to ten decimals, and a length to as many
-/// digits.
+/// Returns a key that is equal for vectors that differ by rounding: the direction to ten decimals, and
+/// the length to as many digits.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
 fn key(vector: DVec2) -> ([i64; 2], u64) {
-    /// The bits of a double that are left out; what is on an edge, as powers of two are, is rounded
-    /// to it from both sides.
+    /// Number of low bits of a double that are dropped, by rounding: truncation would separate the
+    /// neighbours of powers of two.
     const ROUNDED: u32 = 19;
     let (unit, length) = match vector.length() {
         length if length > 0.0 && length.is_finite() => (vector / length, length),
-        // Of large and small ones, squares leave the range of doubles.
+        // Squares of large and of small numbers leave the range of doubles.
         _ => {
             let unit = (vector / vector.abs().max_element()).normalize_or_zero();
             (unit, vector.dot(unit))

@@ -1,4 +1,4 @@
-//! From a rule to its graph: the dependence on the moment becomes more objects.
+//! Compilation of a rule to its graph: dependence on the moment is resolved into more objects.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,15 +12,16 @@ use crate::rule::{Moment, Part, Placement, Rule, Selection};
 use super::state::{Class, Dependences, State};
 use super::{Alternative, CompileError, Evaluated, Graph, Object, Production, Replacement};
 
-/// A graph with more objects than this is not resolved further: its indices are counted instead.
+/// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
 const MOST_OBJECTS: usize = 200_000;
 
-/// So is one with more instances, or one that takes more work: conditions that are tried, and
-/// numbers of elements that are carried along.
+/// Limit of the number of instances, with the same consequence.
 const MOST_INSTANCES: usize = 2_000_000;
+/// Limit of the work, with the same consequence: conditions that are tried, and counts of elements that
+/// are carried along.
 const MOST_WORK: usize = 20_000_000;
 
-/// A graph that is not asked for more steps is resolved further only up to this many objects.
+/// Limit of the number of objects up to which a graph is resolved for more steps than were requested.
 const SOON: usize = 4_096;
 
 impl Graph {
@@ -54,9 +55,9 @@ impl Graph {
     }
 }
 
-/// Why a compilation stops.
+/// Reason why a compilation stops.
 enum Stop {
-    /// The index cannot be resolved, or that is too much work.
+    /// The index cannot be resolved, or only with too much work.
     Irregular,
     Error(CompileError),
 }
@@ -67,23 +68,23 @@ struct Compiler<'r> {
     steps: u32,
     kinds: BTreeMap<Option<usize>, usize>,
     numbers: MixMap<(Class, State), usize>,
-    /// The class and state of every object, in the order of their numbers.
+    /// Class and state of every object, in the order of their numbers.
     keys: Vec<(Class, State)>,
     objects: Vec<Object>,
-    /// Numbers for whether an element is fertile, the generator that it names and its state.
+    /// Numbers of behaviours, by fertility, named generator and state.
     behaviours: MixMap<(bool, Option<usize>, State), usize>,
-    /// What is known of the behaviours.
+    /// Replacements of behaviours, as far as known.
     replacements: MixMap<usize, Replacement>,
-    /// What has been used up of the most that is allowed.
+    /// Number of instances and amount of work so far.
     instances: usize,
     work: usize,
-    /// The replacement matrix modulo m for an age and step: a column a kind.
+    /// Replacement matrix modulo m for an age and step: one column for each kind.
     columns: MixMap<(u32, u32), Vec<Vec<u32>>>,
 }
 
 impl<'r> Compiler<'r> {
     fn new(rule: &'r Arc<Rule>, depends: Dependences, steps: u32) -> Self {
-        // Kind 0 are the infertile elements; the others differ in what selects their generator.
+        // Kind 0 contains the infertile elements; other kinds differ in the selection of their generator.
         let mut kinds = BTreeMap::new();
         let listed = rule
             .initiator()
@@ -130,11 +131,12 @@ impl<'r> Compiler<'r> {
         };
         whole.set(&[part], rule.initiator_points(), &objects);
 
-        // Objects are reached breadth first, so that those of one number of steps follow each other.
+        // Objects are reached breadth first: the objects of one depth have consecutive numbers.
         let mut resolved = 0;
         let mut depth = 0;
         while resolved < self.objects.len() {
-            // What does not depend on the time is soon closed: resolved for any number of steps.
+            // Without dependence on time the set of objects closes soon: it is resolved for any number of
+            // steps.
             let needed = depth < self.steps;
             if !needed && (self.depends.on_time() || self.objects.len() > SOON) {
                 break;
@@ -191,8 +193,8 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    /// Counts instances that are made and other work that is done. Where indices are counted, there
-    /// is no more of either than the file is long.
+    /// Adds to the counts of instances and of work. In graphs that count indices both are bounded by the
+    /// length of the file, so there is no limit.
     fn spend(&mut self, instances: usize, work: usize) -> Result<(), Stop> {
         self.instances += instances;
         self.work += work;
@@ -207,7 +209,7 @@ impl<'r> Compiler<'r> {
         if fertile { self.kinds[&generator] } else { 0 }
     }
 
-    /// The number of an object, which is made if it is new.
+    /// Returns the number of an object, which is created if it is new.
     fn object(&mut self, class: Class, state: State) -> Result<usize, Stop> {
         let state = if class.fertile {
             state
@@ -245,8 +247,8 @@ impl<'r> Compiler<'r> {
         Ok(number)
     }
 
-    /// The objects of a part's elements, by their place in the listing; `first` is the state of
-    /// the one that is traversed first.
+    /// Returns the objects of a part's elements, by their place in the listing; `first` is the state of
+    /// the element that is traversed first.
     fn place(
         &mut self,
         part: &Part,
@@ -282,13 +284,13 @@ impl<'r> Compiler<'r> {
         Ok(objects)
     }
 
-    /// The index of an element in a state, give or take a multiple of the modulus.
+    /// Returns the index of an element in a state, up to a multiple of the modulus.
     fn index(state: &State, modulus: u32) -> u32 {
         state.preceding.iter().sum::<u32>() % modulus + 1
     }
 
-    /// What the expressions see of an element in a state; `index` stands for all that are equal to
-    /// it modulo m.
+    /// Returns the values that expressions see of an element in a state; `index` represents all indices
+    /// that are equal to it modulo m.
     fn moment(state: &State, index: u32) -> Moment {
         Moment {
             index: f64::from(index),
@@ -298,7 +300,7 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    /// The number of conditions that are tried where an element's generator is looked for.
+    /// Returns the number of conditions that are evaluated to find the generator of an element.
     fn conditions(&self, generator: Option<usize>) -> usize {
         match generator {
             Some(_) => 1,
@@ -306,7 +308,7 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    /// The generators that may replace an element.
+    /// Returns the generators that may replace an element.
     fn candidates(&self, generator: Option<usize>, moment: &Moment) -> Vec<usize> {
         if let Some(named) = generator {
             return vec![named];
@@ -413,7 +415,7 @@ impl<'r> Compiler<'r> {
         Ok(Replacement::Evaluated(alternatives.into()))
     }
 
-    /// Whether a generator's points are the same wherever an object in this state stands.
+    /// Returns whether the points of a generator are equal for all elements in one state.
     fn is_fixed(&self, generator: usize) -> bool {
         let listed = &self.rule.generators()[generator];
         !listed.is_random()
@@ -426,8 +428,8 @@ impl<'r> Compiler<'r> {
             })
     }
 
-    /// The points of a generator that does not draw; zeros for one that does or that is evaluated
-    /// where the element stands.
+    /// Returns the points of a generator that does not depend on the element; zeros for a generator that
+    /// draws or that is evaluated for each element.
     fn fixed_points(&self, generator: usize, moment: &Moment) -> Result<Vec<DVec2>, Stop> {
         let listed = &self.rule.generators()[generator];
         let mut points = vec![DVec2::ZERO; listed.points.len()];
@@ -440,8 +442,8 @@ impl<'r> Compiler<'r> {
         Ok(points)
     }
 
-    /// The numbers of elements before the first child of an element in a state: the replacement
-    /// matrix applied to the numbers before the element.
+    /// Returns the counts of elements before the first child of an element in a state: the replacement
+    /// matrix applied to the counts before the element.
     fn advanced(&mut self, state: &State) -> Result<Vec<u32>, Stop> {
         let modulus = self.depends.modulus;
         if modulus == 1 {
@@ -463,9 +465,10 @@ impl<'r> Compiler<'r> {
         Ok(advanced)
     }
 
-    /// The replacement matrix modulo m: a column a kind, the numbers of children that stay by kind.
+    /// Returns the replacement matrix modulo m: one column for each kind, with the numbers of children
+    /// that stay by kind.
     ///
-    /// Irregular where the generators that an element may get differ in these numbers.
+    /// The compilation is irregular if the possible generators of an element differ in these numbers.
     fn replacement_matrix(&mut self, state: &State) -> Result<Vec<Vec<u32>>, Stop> {
         let modulus = self.depends.modulus;
         let size = self.kinds.len() + 1;

@@ -1,28 +1,29 @@
-//! Whether maps contract that may not do so one by one, but one after the other.
+//! Contraction of products of maps, for graphs whose single maps do not all contract.
 
 use crate::geometry::DVec2;
 use crate::ifs::Shrinking;
 
 use super::{Graph, Instance, Replacement};
 
-/// How much products of maps stretch: with objects' weights u, one from an object c to one o that it is
-/// in, over n instances, no more than N(n) u(o) / u(c).
+/// Bound on the stretch of products of maps: with weights u of the objects, the product over n instances
+/// that leads from an object c to an object o whose subtree contains it stretches at most by N(n) u(o) /
+/// u(c).
 pub(crate) struct Products {
-    /// No less than the sum of N(n) over all n.
+    /// Upper bound of the sum of N(n) over all n.
     pub(crate) sum: f64,
-    /// By object, 1 or more.
+    /// Weights by object, at least 1.
     pub(crate) weights: Vec<f64>,
 }
 
 impl Graph {
-    /// Whether fertile elements become smaller than any length, by the maps of instances alone or by
-    /// their products.
+    /// Returns whether fertile elements become smaller than any length, by the maps of single instances
+    /// or by their products.
     #[must_use]
     pub fn contracts(&self) -> bool {
         self.products().is_some()
     }
 
-    /// How much products stretch; `None` if they are not found to contract.
+    /// Returns a bound on the stretch of products, or `None` if no bound is found by which they contract.
     pub(crate) fn products(&self) -> Option<Products> {
         let ratio = self.longest_ratio();
         let even = |sum| Products {
@@ -36,10 +37,10 @@ impl Graph {
             .or_else(|| self.products_by_hulls().map(even))
     }
 
-    /// Where single maps do not contract but their products do: the radius about `centre`, in any
-    /// object's unit frame, of all that becomes of an object. `own` is the radius of all that
-    /// objects draw themselves and that kept instances do. `None` where there is no need to try, or
-    /// products are not found that contract.
+    /// Returns the radius about `centre`, in any object's unit frame, that contains the subtree of an
+    /// object, if single maps do not contract but products do. `own` is the radius that contains what
+    /// objects and kept instances draw themselves. `None` if single maps contract, or if no products are
+    /// found that do.
     pub(super) fn reach_by_products(&self, centre: DVec2, own: f64) -> Option<f64> {
         if self.longest_ratio() < 1.0 {
             return None;
@@ -57,10 +58,10 @@ impl Graph {
         Some(far.fold(0.0, f64::max) * sum * longest)
     }
 
-    /// Where every way that leads back to its object shrinks by what its single maps stretch, as in
-    /// structures whose objects are drawn to scales of their own: weights such that no instance stretches
-    /// by more than λ u(o) / u(c), λ < 1. They are the largest products of stretches over λ along any way
-    /// (Bellman 1958).
+    /// Finds weights such that no instance stretches by more than λ u(o) / u(c), λ < 1. These exist if
+    /// every cycle contracts although single maps expand, as in structures whose objects are drawn to
+    /// different scales: the weights are the largest products of stretches over λ along any path (Bellman
+    /// 1958).
     fn products_by_weights(&self) -> Option<Products> {
         const FACTORS: [f64; 8] = [0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999];
         let count = self.objects.len();
@@ -89,7 +90,7 @@ impl Graph {
         FACTORS.into_iter().find_map(weights)
     }
 
-    /// The sum of the most that products of n maps stretch anything, over all n.
+    /// Returns the sum, over all n, of the largest stretch of products of n maps.
     fn products_by_hulls(&self) -> Option<f64> {
         if !self.affine || !self.is_plain() {
             return None;
@@ -103,7 +104,7 @@ impl Graph {
         Some(shrinking.sum)
     }
 
-    /// The instances of an object that may be replaced.
+    /// Iterates over the fertile instances of an object.
     fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance> {
         let children = self.children(object).map(|(_, instance)| instance);
         children.filter(|instance| {

@@ -1,15 +1,17 @@
+//! Unbounded counts in decimal, for forecasts.
+
 use std::cmp::Ordering;
 use std::fmt;
 use std::iter::Sum;
 use std::ops::AddAssign;
 
-/// A whole number of any size, from 0 on.
+/// Natural number of any size.
 ///
-/// Forecasts add numbers and print every one of them, so numbers are kept in decimal: printing takes
-/// no longer than adding.
+/// Forecasts add numbers and print every one of them. The representation is decimal, so that printing
+/// takes no longer than adding.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Count {
-    /// Digits to the base [`BASE`], the lowest first, without zeros at the end.
+    /// Digits to the base [`BASE`], least significant first, without leading zeros.
     limbs: Vec<u64>,
 }
 
@@ -17,7 +19,7 @@ const DIGITS: usize = 18;
 const BASE: u64 = 1_000_000_000_000_000_000;
 
 impl Count {
-    /// The number of decimal digits; 1 for 0.
+    /// Returns the number of decimal digits; 1 for 0.
     #[must_use]
     pub fn digits(&self) -> usize {
         match self.limbs.split_last() {
@@ -26,8 +28,8 @@ impl Count {
         }
     }
 
-    /// The nearest number that a double can hold, give or take a few units in its last place;
-    /// infinite beyond its range.
+    /// Returns the number as a double, to within a few units in the last place; infinity beyond the
+    /// range.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "the value is rounded")]
     pub fn to_f64(&self) -> f64 {
@@ -38,7 +40,7 @@ impl Count {
         limbs.fold(0.0, |value, &limb| value * BASE as f64 + limb as f64)
     }
 
-    /// The number, if it is small enough.
+    /// Returns the number, or `None` if it exceeds 64 bits.
     #[must_use]
     pub fn to_u64(&self) -> Option<u64> {
         let limbs = self.limbs.iter().rev();
@@ -109,7 +111,7 @@ impl PartialOrd for Count {
     }
 }
 
-/// In decimal digits.
+/// Formats the number in decimal digits.
 impl fmt::Display for Count {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = String::with_capacity(self.digits());

@@ -1,9 +1,11 @@
+//! Errors of compilation and of walks, and their diagnostics.
+
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
 use crate::model::OutOfRange;
 use crate::rule::{Moment, Rule};
 
-/// A model that cannot be grown.
+/// Error: a model cannot be compiled or grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CompileError {
     /// A generator has a point that is not finite.
@@ -12,21 +14,21 @@ pub enum CompileError {
          step = {step}, length = {length}"
     )]
     NotFinite {
-        /// The generator's name.
+        /// Name of the generator.
         generator: String,
-        /// The element's rank in its fractal (modulo m, where only that matters).
+        /// Index of the element in its fractal (modulo m, where only the remainder matters).
         index: f64,
-        /// The age of its fractal.
+        /// Age of its fractal.
         age: f64,
-        /// The number of the approximant that was being replaced.
+        /// Number of the approximant that was replaced.
         step: f64,
-        /// Its length relative to the initiator's.
+        /// Length of the element relative to that of its initiator element.
         length: f64,
     },
-    /// The word of an L-system cannot be written.
+    /// The word of an L-system cannot be derived.
     #[error(transparent)]
     Word(#[from] RewriteError),
-    /// A turtle goes farther than a double can say.
+    /// A coordinate of the turtle is beyond the range of doubles.
     #[error("the turtle goes too far: a coordinate is not finite")]
     TooFar,
     /// The model is too large, too small, or too far from the origin.
@@ -45,7 +47,7 @@ impl CompileError {
         }
     }
 
-    /// The error as a mistake in the file that the rule was read from.
+    /// Converts the error to a diagnostic of the file from which the rule was read.
     #[must_use]
     pub fn diagnostic(&self, rule: &Rule) -> Diagnostic {
         let Self::NotFinite {

@@ -1,7 +1,7 @@
-//! How large the approximants will be, from the graph alone.
+//! Forecasts: the sizes of approximants, computed from the graph alone.
 //!
-//! The numbers of elements of step n are the graph's matrix to the power n applied to the
-//! initiator; they are worked out step by step in whole numbers of any size.
+//! The numbers of elements of step n are the n-th power of the graph's matrix applied to the initiator;
+//! they are computed step by step in natural numbers of any size.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -15,67 +15,69 @@ mod levels;
 
 use levels::Totals;
 
-/// The size of one approximant.
+/// Size of an approximant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// The number of elements, infertile and invisible ones included.
+    /// Number of elements, infertile and invisible ones included.
     pub elements: Count,
-    /// The number of fertile elements.
+    /// Number of fertile elements.
     pub fertile: Count,
-    /// The number of fractals that have been started: 1, and one for every seed.
+    /// Number of fractals that have been started: 1, and one for every seed.
     pub fractals: Count,
-    /// Σ |p1 − p0| over all elements, in the rule's units; `None` if it depends on draws, or
-    /// on more than the ratios of the maps.
+    /// Σ |p1 − p0| over all elements, in the graph's units; `None` if it depends on draws, or on more
+    /// than the ratios of the maps.
     pub length: Option<f64>,
-    /// The enclosed area, in square units, where all outlines are closed: the sum over the outlines,
-    /// so that what overlaps counts as often as it occurs.
+    /// Enclosed area, in square units, if all outlines are closed: the sum over the outlines, which
+    /// counts overlaps once for each outline.
     pub area: Option<f64>,
 }
 
-/// The sizes of successive approximants, from approximant 0 on.
+/// Sizes of successive approximants, from approximant 0 on.
 pub struct Forecast<'g> {
     graph: &'g Graph,
-    /// Whether every production is a list of fixed maps, and whether all maps are similarities.
+    /// Whether every production is a list of fixed maps.
     is_plain: bool,
+    /// Whether all maps are similarities.
     is_similar: bool,
-    /// By object.
+    /// Elements of the current approximant, by object.
     standing: BTreeMap<usize, Tally>,
     fractals: Count,
     step: u32,
-    /// How many elements were born in the last step beside one of another length, and Σ of the
-    /// longer lengths.
+    /// Approximate number of elements that were created in the last step next to one of another length,
+    /// and the sum of the longer lengths.
     new_lengths: [f64; 2],
-    /// How many tallies have been added.
+    /// Number of tallies that have been added.
     pub(super) work: usize,
-    /// What objects come to, if the graph is levelled.
+    /// Totals of objects, if the graph is time-indexed.
     totals: Totals,
     outlines: Outlines,
-    /// The signed areas of the base elements, by number.
+    /// Signed areas of the base elements, by number.
     areas: Vec<f64>,
-    /// The area that the closed paths through the elements' end points enclose.
+    /// Area enclosed by the closed paths through the end points of elements.
     path_area: f64,
 }
 
-/// The elements of one object in an approximant.
+/// Elements of one object in an approximant.
 ///
-/// The numbers are rounded, and may be beyond a double's range.
+/// The numbers are rounded, and may exceed the range of a double.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Population {
-    /// The object, by number.
+    /// Number of the object.
     pub object: usize,
-    /// How many elements there are.
+    /// Number of elements.
     pub count: f64,
-    /// Σ |p1 − p0|, in the rule's units.
+    /// Σ |p1 − p0|, in the graph's units.
     pub length: f64,
     /// Σ |p1 − p0|².
     pub square: f64,
-    /// About how many of them a pen does not reach along the element before.
+    /// Approximate number of elements that a stroke does not continue from the element before.
     pub apart: f64,
-    /// About how many of the others it reaches along one that was born in another step.
+    /// Approximate number of the other elements: those that a stroke continues from an element created in
+    /// another step.
     pub parted: f64,
 }
 
-/// The elements of an object.
+/// Count of the elements of an object, with sums over them.
 #[derive(Default)]
 struct Tally {
     count: Count,
@@ -85,22 +87,24 @@ struct Tally {
 /// Sums over elements.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// About how many do not join the element before them: what traversal backwards, and what
-    /// vanishes, change in that is left out.
+    /// Approximate number of elements that do not join the element before; the effects of reversed
+    /// traversal and of vanishing elements are neglected.
     apart: f64,
-    /// Of the others: about how many join an element that is kept, and are not, or the other way;
-    /// and how many join one that was born in another step, as those do one step later.
+    /// Approximate number of the others that join an element of different fertility: one step later, the
+    /// two were created in different steps.
     beside: f64,
+    /// Approximate number of the others that join an element created in another step.
     parted: f64,
     length: f64,
-    /// Of squares of lengths.
+    /// Sum of squares of lengths.
     square: f64,
-    /// Of squares of lengths, negative where the element's left side is outside its outline.
+    /// Sum of squares of lengths, negative where the left side of the element is outside its outline.
     signed: f64,
-    /// Of the lengths, and of their squares, of the initiator elements that the elements descend from.
+    /// Sum of the lengths of the initiator elements from which the elements descend.
     root_length: f64,
+    /// Sum of the squares of these lengths.
     root_square: f64,
-    /// Of the areas of the closed base elements.
+    /// Sum of the areas of the closed base elements.
     area: f64,
 }
 
@@ -118,10 +122,10 @@ impl AddAssign for Sums {
     }
 }
 
-/// Lengths that differ by no more, as a power of two, count as the same.
+/// Largest difference of lengths that count as equal, in powers of two.
 const SAME_LENGTH: f64 = 1.0 / 16.0;
 
-/// What kinds of outline a graph draws.
+/// Kind of the outlines that a graph draws.
 #[derive(Clone, Copy, PartialEq)]
 enum Outlines {
     /// All base elements are closed.
@@ -132,8 +136,8 @@ enum Outlines {
 }
 
 impl Graph {
-    /// The sizes of the approximants, as far as the graph is resolved; `None` if they cannot be
-    /// told without growing: for irregular rules, and for those whose numbers depend on draws.
+    /// Returns the forecast of the approximants, as far as the graph is resolved; `None` if the sizes are
+    /// not known without a walk: for irregular rules, and if numbers of elements depend on draws.
     #[must_use]
     pub fn forecast(&self) -> Option<Forecast<'_>> {
         let known = self.is_regular()
@@ -144,7 +148,7 @@ impl Graph {
         known.then(|| Forecast::new(self))
     }
 
-    /// Whether alternatives have the same numbers of children of every behaviour.
+    /// Returns whether alternatives have equal numbers of children of every behaviour.
     fn are_equal(&self, alternatives: &[Alternative]) -> bool {
         let census = |alternative: &Alternative| {
             let mut body = Vec::new();
@@ -171,7 +175,7 @@ impl Graph {
             .all(|pair| census(&pair[0]) == census(&pair[1]))
     }
 
-    /// Whether every fractal is one closed path of stroked elements at every step.
+    /// Returns whether every fractal is one closed path of stroked elements at every step.
     #[must_use]
     pub fn draws_closed_paths(&self) -> bool {
         self.outlines() == Outlines::ClosedPaths
@@ -198,7 +202,8 @@ impl Graph {
     }
 }
 
-/// +1 for directions whose left side is the replaced element's left side, −1 for the others.
+/// Returns +1 for directions that keep the left side of the replaced element on the left, −1 for the
+/// others.
 fn side(direction: Direction) -> f64 {
     if direction.is_mirrored() == direction.is_reversed() {
         1.0
@@ -207,7 +212,8 @@ fn side(direction: Direction) -> f64 {
     }
 }
 
-/// The signed area between a chain of elements, as straight lines, and the line back to its start.
+/// Returns the signed area between a chain of elements, as straight lines, and the line back to its
+/// start.
 fn area_under(chain: &Chain) -> f64 {
     let ends = chain.instances.iter().map(|instance| instance.frame.ends());
     ends.map(|[from, to]| from.perp_dot(to)).sum::<f64>() / 2.0
@@ -259,7 +265,7 @@ impl<'g> Forecast<'g> {
         forecast
     }
 
-    /// By how much areas change in an instance.
+    /// Returns the factor by which an instance changes areas.
     fn square(&self, instance: &Instance) -> f64 {
         if self.graph.affine {
             instance.frame.map.matrix2.determinant().abs()
@@ -276,7 +282,7 @@ impl<'g> Forecast<'g> {
         standing.sums += Sums { area, ..sums };
     }
 
-    /// The area of an object's base element where it is closed and drawn.
+    /// Returns the area of an object's base element if it is closed and drawn, otherwise 0.
     fn own_area(&self, object: usize) -> f64 {
         let object = &self.graph.objects[object];
         let base_element = &self.graph.base_elements()[object.base_element];
@@ -287,32 +293,32 @@ impl<'g> Forecast<'g> {
         }
     }
 
-    /// The number of the approximant that stands now.
+    /// Returns the number of the current approximant.
     #[must_use]
     pub fn step(&self) -> u32 {
         self.step
     }
 
-    /// The number of fractals of the approximant that stands now.
+    /// Returns the number of fractals of the current approximant.
     #[must_use]
     pub fn fractals(&self) -> &Count {
         &self.fractals
     }
 
-    /// About how many elements were born in the last step beside one of another length, and the sum of
-    /// the longer lengths.
+    /// Returns the approximate number of elements that were created in the last step next to one of
+    /// another length, and the sum of the longer lengths.
     #[must_use]
     pub fn new_lengths(&self) -> [f64; 2] {
         self.new_lengths
     }
 
-    /// The number of elements of the approximant that stands now.
+    /// Returns the number of elements of the current approximant.
     #[must_use]
     pub fn elements(&self) -> Count {
         self.standing.values().map(|tally| &tally.count).sum()
     }
 
-    /// The size of the approximant that stands now.
+    /// Returns the size of the current approximant.
     #[must_use]
     pub fn level(&self) -> Level {
         let plain = self.is_plain;
@@ -327,7 +333,7 @@ impl<'g> Forecast<'g> {
             fertile: fertile.map(|(_, tally)| &tally.count).sum(),
             fractals: self.fractals.clone(),
             length: (plain && self.is_similar)
-                // Not a sum: that of nothing is -0.
+                // The sum of no numbers would be -0.
                 .then(|| all().fold(0.0, |length, (_, tally)| length + tally.sums.length)),
             area: match self.outlines {
                 Outlines::ClosedElements if plain => {
@@ -341,7 +347,7 @@ impl<'g> Forecast<'g> {
         }
     }
 
-    /// The elements of the approximant that stands now, by object; `None` if they depend on draws.
+    /// Iterates over the elements of the current approximant, by object; `None` if they depend on draws.
     pub fn populations(&self) -> Option<impl Iterator<Item = Population>> {
         let populations = self.standing.iter().map(|(&object, tally)| Population {
             object,
@@ -358,14 +364,16 @@ impl<'g> Forecast<'g> {
         !matches!(self.graph.objects[object].replacement, Replacement::Kept)
     }
 
-    /// Whether every object that stands now is resolved, so that [`Forecast::advance`] may be called.
+    /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
+    /// requires.
     fn is_resolved(&self) -> bool {
         let beyond =
             |number: &usize| matches!(self.graph.objects[*number].replacement, Replacement::Beyond);
         !self.standing.keys().any(beyond)
     }
 
-    /// Takes what stands, what is replaced by the same as one.
+    /// Takes the tallies of the current approximant, with those of fertile objects of one behaviour
+    /// merged.
     fn standing_by_behaviour(&mut self) -> BTreeMap<usize, Tally> {
         let mut first = BTreeMap::new();
         let mut standing: BTreeMap<usize, Tally> = BTreeMap::new();
@@ -384,7 +392,8 @@ impl<'g> Forecast<'g> {
         standing
     }
 
-    /// Goes on to the next approximant. `false`, and nothing happens, where the graph ends.
+    /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved
+    /// further.
     pub fn advance(&mut self) -> bool {
         if self.graph.is_levelled() {
             return self.advance_level();
@@ -441,7 +450,7 @@ impl<'g> Forecast<'g> {
         true
     }
 
-    /// Adds what a chain puts in the place of elements, or beside them.
+    /// Adds the elements of a chain that replaces elements, or that they seed.
     fn add_chain(&mut self, number: &Count, parent: Sums, chain: &Chain) {
         let count = number.to_f64();
         let Some(mut before) = chain.instances.last() else {

@@ -1,5 +1,5 @@
-//! Convex polygons about what becomes of objects: tight where maps contract little, or only one after
-//! the other.
+//! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
+//! in products.
 
 use crate::geometry::{Bounds, DAffine2, DVec2, convex_hull, distance_to_hull, thinned};
 
@@ -7,16 +7,16 @@ use super::contract::Products;
 use super::policy::{farthest, followed, rightmost};
 use super::{Graph, Instance, Replacement};
 
-/// How near polygons are to the least ones.
+/// Precision of polygons as approximations of the convex hulls.
 #[derive(Clone, Copy)]
 pub(super) struct Fineness {
-    /// As near as this multiple of their size, if that does not take too long.
+    /// Relative distance from the hulls at which iteration stops.
     tolerance: f64,
-    /// Corners that may be mapped,
+    /// Limit of the number of corners that are mapped.
     most_work: usize,
-    /// and polygons of more corners are made coarser.
+    /// Number of corners beyond which polygons are thinned more.
     most_corners: usize,
-    /// What a box may leave out, as a multiple of its extent; rounding leaves out some in any case.
+    /// Length that a box may fall short of, relative to its extent; rounding adds to it in any case.
     spared: f64,
 }
 
@@ -36,28 +36,30 @@ impl Fineness {
     };
 }
 
-/// Rounding leaves no more than this multiple of coordinates unknown.
+/// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-14;
 
-/// The rounds that are taken however many corners are mapped, and those after which corners are followed
-/// to their end.
+/// Number of rounds that are taken regardless of the number of corners that are mapped.
 const LEAST_ROUNDS: usize = 4;
+/// Number of rounds after which corners are followed to their limits.
 const FEW_ROUNDS: usize = 4;
 
-/// Polygons about what becomes of objects.
+/// Polygons that approximate the convex hulls of subtrees.
 pub(super) struct Hulls {
-    /// The number of each object's polygon: its behaviour, or one of its own if it is not replaced.
+    /// Number of each object's polygon: that of its behaviour, or its own if the object is not replaced.
     of: Vec<usize>,
-    /// Their corners, counter-clockwise; none where nothing is left.
+    /// Corners of the polygons, counter-clockwise; none for an empty subtree.
     corners: Vec<Vec<DVec2>>,
-    /// The corner that is farthest to the right; the first one is farthest to the left.
+    /// Number of the rightmost corner of each polygon; the leftmost corner is the first.
     rightmost: Vec<usize>,
-    /// All lies within these distances of the polygons; in the limit, they are as near to its hull.
+    /// Error of each polygon: the distance within which it contains the subtree; in the limit, the
+    /// Hausdorff distance from the hull.
     within: Vec<f64>,
 }
 
 impl Hulls {
-    /// How far what becomes of an object may reach along a vector, and surely reaches in the limit.
+    /// Returns an upper bound of x·u over the subtree of an object, u being the vector, and a lower bound
+    /// of its maximum in the limit.
     pub(super) fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
         let along = self.farthest(object, vector);
         let within = vector.length() * self.within[self.of[object]];
@@ -73,14 +75,14 @@ impl Hulls {
         }
     }
 
-    /// The radius of a disc about a point that holds all that becomes of an object.
+    /// Returns the radius of a disc about a point that contains the subtree of an object.
     pub(super) fn radius(&self, object: usize, centre: DVec2) -> f64 {
         let corners = self.corners(object).iter();
         let far = corners.map(|corner| corner.distance(centre));
         far.fold(0.0, f64::max) + self.within[self.of[object]]
     }
 
-    /// What a box of instances may leave out.
+    /// Returns the length that a box of instances may fall short of.
     pub(super) fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
         let extents = instances.iter().map(|instance| {
             let mut bounds = Bounds::EMPTY;
@@ -98,25 +100,25 @@ impl Hulls {
         self
     }
 
-    /// The corners of an object's polygon.
+    /// Returns the corners of an object's polygon.
     pub(super) fn corners(&self, object: usize) -> &[DVec2] {
         &self.corners[self.of[object]]
     }
 }
 
-/// Points whose convex hull holds an object by itself.
+/// Function that returns points whose convex hull contains an object by itself.
 type Own<'a> = dyn Fn(usize) -> Vec<DVec2> + 'a;
 
 impl Graph {
-    /// Polygons about what becomes of objects: at every step, or in the limit if it is told which objects
-    /// are drawn there.
+    /// Returns polygons that contain the subtrees of objects: at every step, or in the limit if `drawn`
+    /// states which objects are drawn there.
     ///
     /// The hulls K(o) = conv(own(o) ∪ ⋃ f(K(c))) over the instances c in the place of o are a fixed
-    /// point. Polygons that one round changes by ε are within ε times the sum of what products of maps
-    /// stretch of it (Banach), however they were found: between rounds corners are [followed] to where
-    /// they would come to in the end.
+    /// point. Polygons that one round changes by ε are within ε times the sum of the stretches of
+    /// products of maps of that fixed point (Banach), regardless of how they were found: between rounds
+    /// corners are [followed] to their limits.
     ///
-    /// `None` where products are not found that contract, and where graphs are not plain.
+    /// `None` if no products are found that contract, and for graphs that are not plain.
     pub(super) fn hulls(
         &self,
         own: &Own<'_>,
@@ -135,7 +137,7 @@ impl Graph {
             behaviours[object.behaviour] = weight;
         }
         for (behaviour, corners) in hulls.corners[..images.len()].iter_mut().enumerate() {
-            // Whatever polygons begin with is gone in the limit.
+            // The initial polygon is arbitrary: it vanishes in the limit.
             let is_empty = points[behaviour].is_empty() && images[behaviour].is_empty();
             corners.extend((!is_empty).then_some(self.middle));
         }
@@ -166,7 +168,7 @@ impl Graph {
                 let changes: Vec<f64> = { next.iter().zip(polygons) }
                     .map(|(a, b)| apart(a, b))
                     .collect();
-                // What is left is what thinning does.
+                // The remaining change is that of thinning.
                 let settled = changes.iter().all(|change| *change <= 2.0 * tolerance);
                 let change = changes.iter().zip(&behaviours);
                 let change = change.map(|(change, weight)| (change + tolerance) / weight);
@@ -202,8 +204,9 @@ impl Graph {
         None
     }
 
-    /// What each behaviour's polygon is made of beside images: what is drawn and not replaced, and at
-    /// every step what is. Polygons of what is not replaced stand behind those of behaviours.
+    /// Returns the polygons of objects that are not replaced, numbered after those of the behaviours, and
+    /// for each behaviour the points that are not images of polygons: those of children that are not
+    /// replaced and, at every step, those of the objects themselves.
     fn points_of_hulls(
         &self,
         own: &Own<'_>,
@@ -251,7 +254,7 @@ impl Graph {
         (hulls, points.collect())
     }
 
-    /// The maps in the place of each behaviour's objects, and the behaviours that are replaced there.
+    /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
     pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(DAffine2, usize)>> {
         let mut images = vec![Vec::new(); self.behaviours().count()];
         for (number, object) in self.behaviours_by_number() {
@@ -267,7 +270,7 @@ impl Graph {
         images
     }
 
-    /// Points whose convex hull holds an object's outline, with so much around it.
+    /// Returns points whose convex hull contains an object's outline with padding.
     pub(super) fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
         let points = self.base_elements()[self.objects[object].base_element].control_points();
         if pad > 0.0 {
@@ -282,7 +285,7 @@ impl Graph {
     }
 }
 
-/// The corners of a polygon about a disc.
+/// Iterates over the corners of a polygon around a disc.
 pub(super) fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
     const CORNERS: u32 = 32;
     let turn = std::f64::consts::TAU / f64::from(CORNERS);
@@ -293,7 +296,7 @@ pub(super) fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> 
     })
 }
 
-/// How far two convex polygons are apart (Hausdorff).
+/// Returns the Hausdorff distance of two convex polygons.
 fn apart(a: &[DVec2], b: &[DVec2]) -> f64 {
     match (a.is_empty(), b.is_empty()) {
         (true, true) => return 0.0,

@@ -1,4 +1,4 @@
-//! From an iterated function system to its graph.
+//! Compilation of an iterated function system to its graph.
 
 use std::sync::Arc;
 
@@ -10,31 +10,31 @@ use super::hull::Fineness;
 use super::instancing::instance;
 use super::{Chain, Graph, Object, Production, Replacement};
 
-/// Where the last map is told, a graph has no more instances.
+/// Limit of the number of instances in a graph whose objects record the last map.
 const MOST_INSTANCES: usize = 4_000_000;
 
-/// The base element of what has its base element still to come, or none.
+/// Number of the base element of the initial set; it is provisional until the limit set is known.
 const INITIAL: usize = 0;
 
 impl Graph {
     /// Compiles a system to its graph, whose unit frame is the plane itself.
     ///
-    /// There is an object for the whole, drawn as the initial set, and one for what stands inside
-    /// every map; in a recurrent system, inside f_j there are the images f_i of what stands inside
-    /// f_i, over the edges from i to j, for f_j is applied after f_i. So approximant 0 is the initial
-    /// set I, approximant 1 the union of all f_j(I), approximant 2 that of all f_j(f_i(I)), and so on.
-    /// Condensation sets are infertile. Where no initial set is given but they are, they are drawn
-    /// from the beginning, beside objects that are not drawn themselves. Of an initial set of several
-    /// outlines the others are objects that vanish when the first one is replaced.
+    /// The graph has an object for the whole, drawn as the initial set, and one for the set inside every
+    /// map. In a recurrent system, the set inside f_j consists of the images f_i of the sets inside f_i,
+    /// over the edges from i to j, because f_j is applied after f_i. Approximant 0 is therefore the
+    /// initial set I, approximant 1 the union of all f_j(I), approximant 2 that of all f_j(f_i(I)), and
+    /// so on. Condensation sets are infertile. If there are condensation sets and no initial set is
+    /// given, the former are drawn from step 0 on, and the other objects are invisible. If the initial
+    /// set has several outlines, all but the first are objects that vanish when the first is replaced.
     ///
-    /// A map that is listed again, with the same maps before it, makes the same images: it is left out.
+    /// A duplicate map, with the same maps before it, yields the same images and is omitted.
     #[must_use]
     pub fn of_system(system: &System) -> Self {
         Self::compile_system(system, false)
     }
 
-    /// The same with objects that tell the map that is applied last. They are more; `None` if they are
-    /// too many.
+    /// Compiles a system to a graph whose objects record the map that is applied last, which takes more
+    /// objects. `None` if the graph would have too many instances.
     #[must_use]
     pub fn telling_last_maps(system: &System) -> Option<Self> {
         let size = system
@@ -64,7 +64,7 @@ impl Graph {
     }
 }
 
-/// About the middle of what a graph comes to in the limit.
+/// Returns the approximate centre of the limit of a graph.
 fn middle(graph: &Graph) -> DVec2 {
     let mut bounds = Bounds::EMPTY;
     let drawn = graph.alive(true);
@@ -85,7 +85,7 @@ fn middle(graph: &Graph) -> DVec2 {
     }
 }
 
-/// A box, filled; the unit square if it is not known.
+/// Returns the filled rectangle of a box; the unit square if it is `None`.
 pub(crate) fn filling(bounds: Option<Bounds>) -> BaseElement {
     let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
     let (min, max) = (bounds.min(), bounds.max());
@@ -99,7 +99,7 @@ pub(crate) fn filling(bounds: Option<Bounds>) -> BaseElement {
     outline(&shape.unwrap_or(Shape::Point(min)))
 }
 
-/// A shape's outlines.
+/// Returns the outlines of a shape.
 fn outlines(shape: &Shape) -> Vec<BaseElement> {
     match shape {
         Shape::Union(outlines) => outlines.to_vec(),
@@ -107,8 +107,8 @@ fn outlines(shape: &Shape) -> Vec<BaseElement> {
     }
 }
 
-/// A shape's outline, of a union the first; a point is the shortest line that there is, of which a pen
-/// makes a dot.
+/// Returns the outline of a shape, the first of a union; for a point, the shortest possible line, which
+/// is stroked as a dot.
 pub(crate) fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
@@ -123,15 +123,16 @@ pub(crate) fn outline(shape: &Shape) -> BaseElement {
 
 struct Compiler<'s> {
     ifs: &'s Ifs,
-    /// The outlines of the condensation sets.
+    /// Outlines of the condensation sets.
     sets: Vec<BaseElement>,
-    /// Those of a given initial set but for the first.
+    /// Outlines of a given initial set, without the first.
     others: Vec<BaseElement>,
     chained: bool,
-    /// Whether there are objects for every map that may be applied last.
+    /// Whether there are separate objects for every map that may be applied last.
     tells_last: bool,
-    /// The maps that may be applied before each, and all maps, without those that are listed again.
+    /// Maps that may be applied before each map, without duplicates.
     before: Vec<Vec<usize>>,
+    /// Maps without duplicates.
     maps: Vec<usize>,
 }
 
@@ -171,7 +172,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The number of branches, each with objects of its own.
+    /// Returns the number of branches, each with its own objects.
     fn branches(&self) -> usize {
         if self.tells_last {
             self.ifs.maps().len()
@@ -180,23 +181,24 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The outlines that stand inside every map: of the condensation sets, then the others of the
-    /// initial set.
+    /// Returns the number of outlines inside every map: those of the condensation sets, then the others
+    /// of the initial set.
     fn outlines(&self) -> usize {
         self.sets.len() + self.others.len()
     }
 
-    /// The objects of a branch: one inside every map, and the outlines inside every map.
+    /// Returns the number of objects of a branch: one inside every map, and the outlines inside every
+    /// map.
     fn branch(&self) -> usize {
         self.ifs.maps().len() * (1 + self.outlines())
     }
 
-    /// The object inside a map; of the whole there is one, the first.
+    /// Returns the object inside a map of a branch; object 0 is the whole.
     fn inside(&self, branch: usize, map: usize) -> usize {
         1 + branch * self.branch() + map
     }
 
-    /// An outline inside a map of a branch, or inside none.
+    /// Returns the object of an outline inside a map of a branch, or outside all maps.
     fn drawn(&self, place: Option<(usize, usize)>, outline: usize) -> usize {
         let (maps, outlines) = (self.ifs.maps().len(), self.outlines());
         match place {
@@ -274,7 +276,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The outlines that are drawn wherever what stands inside a map is drawn as the first one.
+    /// Returns the outlines that are drawn together with the first one inside every map.
     fn drawn_with_first(&self) -> std::ops::Range<usize> {
         match self.ifs.initial() {
             Some(_) => self.sets.len()..self.outlines(),
@@ -298,12 +300,12 @@ impl<'s> Compiler<'s> {
         })
     }
 
-    /// Objects that are replaced by the same have one behaviour.
+    /// Numbers the behaviours: objects with equal replacements share one.
     fn number_behaviours(&self, objects: &mut [Object]) {
         let maps = self.ifs.maps().len();
         let mut numbers: Vec<(usize, usize)> = Vec::new();
         for (number, object) in objects.iter_mut().enumerate() {
-            // The whole is replaced as what stands inside a map is without a digraph.
+            // Without a digraph, the whole has the same replacement as the set inside a map.
             let key = match (&object.replacement, object.origin) {
                 (Replacement::Kept, _) => usize::MAX,
                 (Replacement::Fixed(gone), _) if gone.body.instances.is_empty() => usize::MAX - 1,
@@ -323,11 +325,11 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// What stands in a place, the whole or inside a map of a branch: images under some maps, and the
-    /// condensation sets.
+    /// Returns the production of the whole or of the set inside a map of a branch: images under some
+    /// maps, and the condensation sets.
     fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Production {
         let mut instances = Vec::new();
-        // What stands inside the outermost map belongs to its branch.
+        // The outermost map determines the branch.
         let branch = |map: usize| match place {
             Some((branch, _)) => branch,
             None if self.tells_last => map,
@@ -344,7 +346,7 @@ impl<'s> Compiler<'s> {
             let object = self.drawn(place, set);
             instances.push(instance(object, &DAffine2::IDENTITY, instances.len()));
         }
-        // These stand inside the maps already when what is drawn as the first one does.
+        // Outlines that are drawn together with the first one are inside the maps already.
         for outline in with_first {
             for &map in maps {
                 let object = self.drawn(Some((branch(map), map)), outline);

@@ -1,4 +1,4 @@
-//! From a structure of objects to its graph.
+//! Compilation of a structure of objects to its graph.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,19 +11,19 @@ use crate::rule::{BaseElement, Piece};
 use super::ifs::{filling, outline};
 use super::{Chain, Graph, Instance, Object, Production, Replacement};
 
-/// Boxes of more objects than this are not told apart where nothing else is drawn.
+/// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MOST_BOXES: usize = 256;
 
-/// Nor are those of large structures: so many instances are looked at for all boxes together.
+/// Limit of the number of instances that are visited for all boxes together.
 const MOST_LOOKS: usize = 250_000;
 
 impl Graph {
     /// Compiles a structure to its graph, whose unit frame is the plane itself.
     ///
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
-    /// there is one, with what the object does to all of it; with each step, instances of objects are
-    /// replaced by what the objects are made of. Shapes are infertile. Where there are neither shapes
-    /// nor an initial set, an object is drawn as the box of its limit set.
+    /// there is one, under the map that the object applies to itself; each step replaces instances of
+    /// objects by the instances of which the objects consist. Shapes are infertile. Without shapes and
+    /// initial set, an object is drawn as the bounding box of its limit set.
     #[must_use]
     pub fn of_structure(structure: &Instancing) -> Self {
         let mut graph = Compiler::new(structure).run();
@@ -39,17 +39,16 @@ impl Graph {
         graph
     }
 
-    /// For every object of the graph of a structure, the canonical object that it is; `None` for
-    /// shapes.
+    /// Returns, for every object of the graph of a structure, its canonical object; `None` for shapes.
     pub(crate) fn canonical_objects(structure: &Instancing) -> Vec<Option<usize>> {
         let mut compiler = Compiler::new(structure);
         compiler.reach();
         compiler.of
     }
 
-    /// Draws every object as the box of its limit set.
+    /// Draws every object as the bounding box of its limit set.
     fn draw_boxes(&mut self) {
-        // Only what is visible has a limit.
+        // The limit set contains visible objects only.
         self.objects
             .iter_mut()
             .for_each(|object| object.visible = true);
@@ -59,7 +58,7 @@ impl Graph {
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
-                // Where one takes too much to be told, so do the others.
+                // If one box takes too long, the others do as well.
                 let is_told = boxes.len() < most && boxes.iter().all(Option::is_some);
                 boxes.push(is_told.then(|| self.box_of(number)).flatten());
             }
@@ -77,14 +76,14 @@ impl Graph {
         MOST_BOXES.min(MOST_LOOKS / self.instances().count().max(1))
     }
 
-    /// The box of what an object comes to. Where the initiator was is not known from here on.
+    /// Returns the bounding box of the subtree of an object. Overwrites the initiator.
     fn box_of(&mut self, object: usize) -> Option<Bounds> {
         self.initiators[0].instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
         self.limit_bounds()
     }
 
-    /// The boxes of what some objects of a structure come to, in their own coordinates; `None` where
-    /// one is not known.
+    /// Returns the bounding boxes of the subtrees of some objects of a structure, in their own
+    /// coordinates; `None` where one is unknown.
     pub(crate) fn boxes_of(structure: &Instancing, objects: &[usize]) -> Vec<Option<Bounds>> {
         let scene = objects.iter().map(|&number| instancing::Instance {
             map: DAffine2::IDENTITY,
@@ -113,7 +112,7 @@ impl Graph {
     }
 }
 
-/// An instance by its map alone, not joined to any.
+/// Creates an instance with a map, not joined to any other.
 pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
     let frame = Frame {
         map: *map,
@@ -128,11 +127,11 @@ pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instan
     }
 }
 
-/// What an instance is one of, by number.
+/// Canonical object or shape, by number.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Canonical(usize),
-    /// A shape: its base element.
+    /// Shape, by the number of its base element.
     Shape(usize),
 }
 
@@ -140,11 +139,11 @@ struct Compiler<'s> {
     structure: &'s Instancing,
     base_elements: Vec<BaseElement>,
     objects: Vec<Object>,
-    /// The numbers of base elements by their outlines.
+    /// Numbers of base elements, by their outlines.
     outlines: BTreeMap<Vec<u64>, usize>,
-    /// The numbers of objects, by what an instance is one of and by its tint.
+    /// Numbers of objects, by canonical object or shape, and by tint.
     numbers: BTreeMap<(Kind, [u64; 2]), usize>,
-    /// For every object of the graph, the canonical object that it is.
+    /// Canonical object of every object of the graph.
     of: Vec<Option<usize>>,
 }
 
@@ -161,10 +160,10 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// Makes the objects that are reached from the scene, which is the initiator.
+    /// Creates the objects that the scene reaches, and returns the scene as the initiator.
     fn reach(&mut self) -> Chain {
         let initiator = self.chain(&self.structure.scene);
-        // The objects that are reached; those of one canonical object share what replaces them.
+        // Graph objects of one canonical object share its production.
         let mut made: BTreeMap<usize, Arc<Production>> = BTreeMap::new();
         let mut behaviours: BTreeMap<Option<usize>, usize> = BTreeMap::new();
         let mut done = 0;
@@ -230,7 +229,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// The object that an instance is one of, made if it is new.
+    /// Returns the graph object of an instance, which is created if it is new.
     fn object(&mut self, instance: &instancing::Instance) -> usize {
         let kind = match &instance.master {
             Master::Object(number) => Kind::Canonical(*number),
@@ -261,7 +260,7 @@ impl<'s> Compiler<'s> {
         number
     }
 
-    /// The base element of a shape, which is another one than that of the initial set.
+    /// Returns the base element of a shape, which is never that of the initial set.
     fn base_element(&mut self, shape: &Shape) -> usize {
         let made = outline(shape);
         let next = self.base_elements.len();
@@ -273,7 +272,7 @@ impl<'s> Compiler<'s> {
     }
 }
 
-/// What tells tints apart.
+/// Returns a key of a tint.
 fn tint_bits(tint: Option<Tint>) -> [u64; 2] {
     tint.map_or([0; 2], |tint| {
         let [red, green, blue, _] = tint.colour.rgba();
@@ -282,7 +281,7 @@ fn tint_bits(tint: Option<Tint>) -> [u64; 2] {
     })
 }
 
-/// What tells outlines apart.
+/// Returns a key of an outline.
 fn outline_bits(outline: &BaseElement) -> Vec<u64> {
     let mut bits = vec![u64::from(outline.is_closed())];
     let mut add = |point: DVec2| bits.extend([point.x, point.y].map(f64::to_bits));
@@ -291,7 +290,7 @@ fn outline_bits(outline: &BaseElement) -> Vec<u64> {
         match *piece {
             Piece::Line(end) => add(end),
             Piece::Cubic(a, b, end) => {
-                // No line leads there.
+                // NaN marks a curve: no line ends there.
                 add(DVec2::NAN);
                 [a, b, end].into_iter().for_each(&mut add);
             }

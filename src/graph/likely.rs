@@ -1,29 +1,30 @@
-//! How far what becomes of an object is likely to reach, where draws may lead anywhere.
+//! Probable radii of the subtrees of objects, for rules whose draws are unbounded.
 
 use super::{Graph, Object, Replacement};
 
-/// Powers whose means are looked at.
+/// Exponents of the moments that are tried.
 const POWERS: [f64; 5] = [8.0, 16.0, 24.0, 36.0, 54.0];
 
-/// Once in 2 to the power of this many objects, what becomes of one reaches farther.
+/// Probability, as a negative exponent of 2, with which a subtree exceeds its radius.
 const NEVER: f64 = 64.0;
 
-/// So many times, at most, all means are brought up to date.
+/// Limit of the number of sweeps that update all norms.
 const MOST_SWEEPS: usize = 200;
 
-/// Means that grow beyond this have no end.
+/// Limit beyond which norms are taken to diverge.
 const MOST: f64 = 1e6;
 
 impl Graph {
-    /// As [`reaches`](Graph::reaches), where draws are not too improbable: the chance that what becomes
-    /// of an object reaches beyond the radius is below 2⁻⁶⁴. Infinite where the graph does not tell.
+    /// Returns radii as [`reaches`](Graph::reaches) does, for all but improbable draws: the probability
+    /// that the subtree of an object exceeds its radius is below 2⁻⁶⁴. Infinite where the graph gives no
+    /// bound.
     ///
-    /// With M(o) the radius of all that becomes of an object as it is drawn, a random number, and c the
-    /// objects in its place, M(o) ≤ max(own(o), away(c) + ratio(c) · M(c)), where M(c) does not depend on
-    /// what is drawn at o. For the norms ‖x‖ = E(x^q)^(1/q), with Minkowski's inequality,
-    /// ‖M(o)‖^q ≤ own(o)^q + Σ (‖away(c)‖ + ‖ratio(c)‖ · ‖M(c)‖)^q. Numbers that satisfy this instead of
-    /// the norms are no less than these; and by Markov's inequality M(o) is above t with a chance of
-    /// (‖M(o)‖ / t)^q at most.
+    /// Let M(o) be the radius of the random subtree of an object, and c the objects in its place. Then
+    /// M(o) ≤ max(own(o), away(c) + ratio(c) · M(c)), where M(c) is independent of the draws at o. For
+    /// the norms ‖x‖ = E(x^q)^(1/q), Minkowski's inequality yields ‖M(o)‖^q ≤ own(o)^q + Σ (‖away(c)‖ +
+    /// ‖ratio(c)‖ · ‖M(c)‖)^q. Numbers that satisfy this inequality in place of the norms are upper
+    /// bounds of them; by Markov's inequality M(o) exceeds t with a probability of at most (‖M(o)‖ /
+    /// t)^q.
     pub(crate) fn likely_reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let mut reaches = vec![f64::INFINITY; own.len()];
@@ -51,9 +52,9 @@ impl Graph {
         reaches
     }
 
-    /// No less than the norms of the radii; `None` where none are found.
+    /// Returns upper bounds of the norms of the radii, or `None` if none are found.
     fn norms(&self, own: &[f64], power: f64) -> Option<Vec<f64>> {
-        // Less than this is missing.
+        // Relative growth below which iteration stops.
         const TOLERANCE: f64 = 1e-3;
         let edges = self.edges(power);
         let next = |norms: &[f64], object: usize| {
@@ -96,8 +97,8 @@ mod tests {
     use crate::graph::{Graph, Production, Replacement};
     use crate::grow::{Evaluator, Moment, Standing};
 
-    /// How far the ends of all that becomes of an element reach from its middle, down to a part of its
-    /// length.
+    /// Returns the largest distance of end points in the subtree of an element from its middle, down to
+    /// elements of length 0.01.
     fn reached(graph: &Graph, standing: &Standing, object: usize, level: u32) -> f64 {
         let middle = standing.frame.map.transform_point2(graph.middle());
         let mut evaluator = Evaluator::default();
@@ -157,7 +158,7 @@ mod tests {
             assert!(reached <= reaches[object], "{seed}: {reached}");
             farthest = farthest.max(reached);
         }
-        // They tell something.
+        // The bound is not trivial.
         assert!(
             farthest > reaches[object] / 16.0,
             "{farthest}, {}",

@@ -1,29 +1,29 @@
-//! Whether an approximant is within a number of elements.
+//! Check of the number of elements of an approximant against a limit.
 
 use super::{Count, Graph};
 
-/// An approximant that has more elements than are allowed.
+/// Error: an approximant has more elements than are allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// The number of elements, unless it has more than some thousand digits.
+    /// Number of elements; `None` if it was not computed because it has several thousand digits.
     pub elements: Option<Count>,
-    /// The deepest step within the limit; `None` if there is none.
+    /// Deepest step within the limit; `None` if step 0 exceeds it.
     pub deepest: Option<u32>,
 }
 
-/// Numbers of more digits than this are not worked out only to be refused.
+/// Limit of digits beyond which the number of elements of a refused approximant is not computed.
 const MOST_DIGITS: usize = 5_000;
 
-/// A forecast that takes more additions than this is given up.
+/// Limit of additions beyond which a forecast is abandoned.
 const MOST_WORK: usize = 2_000_000;
 
 impl Graph {
-    /// The number of elements of an approximant, if all up to it are within a number of elements;
-    /// where the graph does not tell, or not soon, they are.
+    /// Returns the number of elements of approximant `steps`, provided that no approximant up to it
+    /// exceeds `most_elements`; `None` if the graph has no forecast, or none within a reasonable time.
     ///
     /// # Errors
     ///
-    /// If they are not: how many elements there are, and how deep one can go.
+    /// If the limit is exceeded: the number of elements, and the deepest step within the limit.
     pub fn check_size(&self, steps: u32, most_elements: u64) -> Result<Option<u64>, TooLarge> {
         let Some(mut forecast) = self.forecast() else {
             return Ok(None);

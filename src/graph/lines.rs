@@ -1,17 +1,17 @@
-//! Whether elements are lines that follow each other.
+//! Recognition of graphs whose elements are lines that join each other.
 
 use crate::rule::Part;
 
 use super::{Chain, Graph, Replacement};
 
 impl Chain {
-    /// Whether every instance but the first joins the one before it.
+    /// Returns whether every instance but the first joins the one before it.
     pub(crate) fn is_joined(&self) -> bool {
         let mut later = self.instances.iter().skip(1);
         later.all(|instance| instance.joined)
     }
 
-    /// Whether the last instance joins the first one.
+    /// Returns whether the last instance joins the first one.
     #[must_use]
     pub fn is_ring(&self) -> bool {
         self.instances
@@ -21,7 +21,8 @@ impl Chain {
 }
 
 impl Graph {
-    /// Whether every element is a line from end to end of its frame, and what takes its place is one.
+    /// Returns whether every element is a visible line from end to end of its frame and is replaced by
+    /// such a line.
     pub(crate) fn keeps_lines(&self) -> bool {
         self.objects.iter().all(|object| {
             object.visible
@@ -43,7 +44,8 @@ impl Graph {
     }
 }
 
-/// Whether the elements that parts put in an element's place are one line from end to end of its frame.
+/// Returns whether the elements of the parts that stay form one line from end to end of the replaced
+/// element's frame.
 fn is_line(parts: &[Part]) -> bool {
     let stay = || {
         let stay = parts.iter().filter(|part| !part.placement.seeds());

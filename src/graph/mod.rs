@@ -1,21 +1,23 @@
 //! The instancing graph (Hart 1992): objects, and the instances that replace them.
 //!
-//! Every way of writing a linear fractal is compiled to a [`Graph`]: objects with a base element
-//! of their own and a [`Production`], the instances that stand in an object's place one step
-//! later. What depends on the moment (on age, step, length or, modulo m, on the index) has become
-//! more objects, so that the productions of a deterministic rule are lists of fixed maps. Only
-//! where numbers are drawn, or where an index has to be counted, an object says
-//! [`Replacement::Evaluated`], and its instances are worked out where it stands. A rule in which the
-//! choice of a generator hangs on such an index is *irregular*.
+//! Every description of a linear fractal is compiled to a [`Graph`]: objects with a base element of their
+//! own and a [`Production`], the instances that take an object's place one step later. All that the
+//! productions of an object yield in any number of steps, seeds included, is the *subtree* of the object.
+//! Dependence on the moment (on age, step, length or, modulo m, on the index) is resolved into more
+//! objects, so that the productions of a deterministic rule are lists of fixed maps. Where numbers are
+//! drawn, or where an index has to be counted, an object has [`Replacement::Evaluated`], and its
+//! instances are computed for each element. A rule in which the choice of a generator depends on such an
+//! index is *irregular*.
 //!
-//! What every number of steps is grown out of is the initiator, the same for all but in *levelled* graphs, whose
-//! objects know how many steps are still to come.
+//! All numbers of steps are grown from one initiator, except in *time-indexed* graphs, whose objects know
+//! the number of steps that remain: these have one initiator for each number of steps.
 //!
 //! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
 //! ([`Placement::SeedsAsInitiator`]) keeps the position only.
 //!
-//! A graph's coordinates are those of the model unless it is [compiled near](crate::model::Model::compile_near)
-//! the unit box around the origin: [`Graph::place`] leads from them to the model's.
+//! A graph's coordinates are those of the model unless it is [compiled
+//! near](crate::model::Model::compile_near) the unit box around the origin: [`Graph::place`] maps them to
+//! the model's.
 
 mod bounds;
 mod compile;
@@ -57,145 +59,147 @@ use crate::instancing::{Coat, Thickness, Tint};
 use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
 
-/// An object: a kind of element in a state that decides what it becomes.
+/// Object: a class of elements in a state that determines their subtrees.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Its base element, by number.
+    /// Number of its base element.
     pub base_element: usize,
     /// Whether it is drawn.
     pub visible: bool,
-    /// The generator that listed it, or the map that is applied to it first, by number; `None` for the
+    /// Number of the generator that lists it, or of the map that is applied to it first; `None` for the
     /// initiator, and for the condensation sets of a system.
     pub origin: Option<usize>,
-    /// The map of a system that is applied last to what stands there, by number, where that is told.
+    /// Number of the system's map that is applied to it last, if the graph records it.
     pub last_map: Option<usize>,
-    /// What it tints all that stands in its place with.
+    /// Tint of its subtree.
     pub tint: Option<Tint>,
-    /// The colour of what stands in its place and has none of its own.
+    /// Colour of the parts of its subtree that have none of their own.
     pub paint: Option<Colour>,
-    /// What becomes of the widths of all that stands in its place.
+    /// Change of stroke width of its subtree.
     pub thickness: Option<Thickness>,
-    /// The index that expressions see of it, or another one that is the same to them: from 1; 1 where no
-    /// index is resolved.
+    /// Index that expressions see of it, or an equivalent one, from 1; 1 if no index is resolved.
     pub(crate) index: u32,
-    /// What it becomes: objects of one behaviour have the same replacements, however they look.
+    /// Number of its behaviour: objects of one behaviour have equal replacements, regardless of
+    /// appearance.
     pub(crate) behaviour: usize,
-    /// What takes its place in the next step.
+    /// Replacement in the next step.
     pub replacement: Replacement,
 }
 
-/// What takes an object's place in the next step; objects of one behaviour share it.
+/// Replacement of an object in the next step; objects of one behaviour share it.
 #[derive(Clone, Debug)]
 pub enum Replacement {
     /// Infertile: the element is kept.
     Kept,
     /// Fixed instances.
     Fixed(Arc<Production>),
-    /// Instances that are worked out where the element stands, by one of these alternatives.
+    /// Instances that are computed for each element, by one of these alternatives.
     Evaluated(Arc<[Alternative]>),
-    /// Not resolved: the object is first reached at the depth that the graph was compiled for.
+    /// Not resolved: the object is first reached at the depth for which the graph was compiled.
     Beyond,
 }
 
-/// What works out instances where elements stand.
+/// Source of instances that are computed for each element.
 #[derive(Clone, Debug)]
 pub(crate) enum Evaluated {
-    /// A rule whose generators depend on draws or on an index.
+    /// Rule whose generators depend on draws or on an index.
     Rule(Arc<Rule>),
-    /// An L-system whose productions are drawn.
+    /// L-system with random productions.
     Words(Arc<Words>),
 }
 
-/// A generator that may replace an object, and what its elements are.
+/// Generator that may replace an object, with the objects of its elements.
 #[derive(Clone, Debug)]
 pub struct Alternative {
-    /// The generator, by number; of an L-system, the word.
+    /// Number of the generator; for an L-system, of the word.
     pub generator: usize,
-    /// The objects of its elements, by position.
+    /// Objects of its elements, by position.
     pub objects: Vec<usize>,
 }
 
-/// An instance: a frame inside its parent's, and the object that stands there.
+/// Instance: a frame inside its parent's frame, and the object that is placed there.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// Map and direction relative to the parent.
     pub frame: Frame,
-    /// Its length as a multiple of its parent's: |to − from|, or the most that its map stretches
-    /// anything where that is no similarity.
+    /// Length as a multiple of its parent's: |to − from|, or the largest stretch of its map if that is
+    /// not a similarity.
     pub length: f64,
-    /// Whether it joins the instance listed before it (the first one: the last, in a closed chain).
+    /// Whether it joins the instance listed before it (the first joins the last, in a closed chain).
     pub joined: bool,
-    /// Its position in the initiator or generator as listed, from 0, counted across parts.
+    /// Position in the initiator or generator as listed, from 0, counted across parts.
     pub position: u32,
-    /// The object, by number.
+    /// Number of the object.
     pub object: usize,
 }
 
-/// Instances that stand in a row.
+/// Sequence of instances.
 #[derive(Clone, Debug, Default)]
 pub struct Chain {
-    /// In the order of listing.
+    /// Instances in the order of listing.
     pub instances: Vec<Instance>,
-    /// Whether the first instance starts, and the last one ends, where the replaced element does.
+    /// Whether the first instance starts, and whether the last one ends, at the end points of the
+    /// replaced element.
     pub meets_frame: [bool; 2],
 }
 
-/// A chain that starts a new fractal.
+/// Chain that starts a new fractal.
 #[derive(Clone, Debug)]
 pub struct Seed {
-    /// How the new fractal is placed.
+    /// Placement of the new fractal.
     pub placement: Placement,
-    /// Its elements.
+    /// Elements of the new fractal.
     pub chain: Chain,
 }
 
-/// What takes an element's place, and the new fractals that it seeds.
+/// Instances that replace an element, and the new fractals that it seeds.
 #[derive(Clone, Debug, Default)]
 pub struct Production {
-    /// The instances that take the element's place; none if it vanishes.
+    /// Instances that take the place of the element; empty if it vanishes.
     pub body: Chain,
     /// New fractals, in the order of their parts.
     pub seeds: Vec<Seed>,
 }
 
-/// The instancing graph of a rule.
+/// Instancing graph of a model.
 ///
-/// Guarantees: all numbers of objects and base elements are in range; every object that is reached
-/// within the depth that the graph was compiled for has its replacement.
+/// Guarantees: all numbers of objects and base elements are in range; every object that is reached within
+/// the depth for which the graph was compiled has its replacement.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// What works out instances where elements stand; `None` if nothing does.
+    /// Source of instances that are computed for each element; `None` if all are fixed.
     pub(crate) evaluated: Option<Evaluated>,
     pub(crate) base_elements: Arc<[BaseElement]>,
-    /// The number of origins that objects may have.
+    /// Number of origins that objects may have.
     pub(crate) origins: usize,
     pub(crate) objects: Vec<Object>,
-    /// By the number of steps that are grown out of it; the last one for all others. One at least.
+    /// Initiators, by the number of steps that are grown from them; the last is that of all larger
+    /// numbers. Never empty.
     pub(crate) initiators: Vec<Chain>,
-    /// What the initiator's elements descend from, and what has been seeded before; empty where they are
-    /// a beginning.
+    /// Ancestry of the initiator's elements, and fractals seeded before; empty if growth begins with the
+    /// initiator.
     pub(crate) roots: Arc<Roots>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,
     pub(crate) draws: bool,
     pub(crate) seeds: bool,
-    /// Whether any object tints.
+    /// Whether any object has a tint or a paint.
     pub(crate) tints: bool,
-    /// The most that strokes are widened, if any object changes widths.
+    /// Largest factor of stroke widths, if any object changes them.
     pub(crate) widest: Option<f64>,
-    /// Whether maps may be any affine ones.
+    /// Whether maps may be arbitrary affine maps.
     pub(crate) affine: bool,
-    /// The length of an element whose frame is the unit frame.
+    /// Length of an element whose frame is the unit frame.
     pub(crate) unit: f64,
-    /// A point of the unit frame about which lies what becomes of an element.
+    /// Approximate centre of the subtree of an element, in the unit frame.
     pub(crate) middle: DVec2,
-    /// What leads from its coordinates to those of the model.
+    /// Homothety from the graph's coordinates to those of the model.
     pub(crate) place: Homothety,
 }
 
 impl Graph {
-    /// What works out instances where elements stand.
+    /// Returns the source of instances that are computed for each element.
     pub(crate) fn evaluated(&self) -> &Evaluated {
         let Some(evaluated) = &self.evaluated else {
             unreachable!("nothing else is evaluated while a walk goes on");
@@ -203,7 +207,7 @@ impl Graph {
         evaluated
     }
 
-    /// The parts of an alternative: none where all of it takes the place of what is replaced.
+    /// Returns the parts of an alternative; empty if all of its elements stay.
     pub(crate) fn parts(&self, alternative: &Alternative) -> &[Part] {
         match self.evaluated() {
             Evaluated::Rule(rule) => rule.generators()[alternative.generator].parts(),
@@ -211,70 +215,72 @@ impl Graph {
         }
     }
 
-    /// The number of origins that objects may have: of generators of a rule.
+    /// Returns the number of origins that objects may have: for a rule, the number of generators.
     #[must_use]
     pub fn origins(&self) -> usize {
         self.origins
     }
 
-    /// The objects.
+    /// Returns the objects.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         &self.objects
     }
 
-    /// What a number of steps are grown out of: approximant 0, unless the graph [is levelled](Graph::is_levelled).
+    /// Returns the chain from which a number of steps is grown: approximant 0, unless the graph [is
+    /// time-indexed](Graph::is_levelled).
     #[must_use]
     pub fn initiator(&self, steps: u32) -> &Chain {
         let last = self.initiators.len() - 1;
         &self.initiators[(steps as usize).min(last)]
     }
 
-    /// All chains that nothing comes before: initiators, and what has been seeded before.
+    /// Iterates over all chains from which growth starts: initiators, and fractals seeded before.
     pub(crate) fn starts(&self) -> impl Iterator<Item = &Chain> {
         let sown = self.roots.sown.iter().map(|sown| &sown.chain);
         self.initiators.iter().chain(sown)
     }
 
-    /// Whether objects know how many steps are still to come, so that every number of steps is grown
-    /// out of an initiator of its own.
+    /// Returns whether the graph is time-indexed: whether its objects know the number of steps that
+    /// remain, and each number of steps has its own initiator.
     #[must_use]
     pub fn is_levelled(&self) -> bool {
         self.initiators.len() > 1
     }
 
-    /// The base elements that objects refer to.
+    /// Returns the base elements to which objects refer.
     #[must_use]
     pub fn base_elements(&self) -> &[BaseElement] {
         &self.base_elements
     }
 
-    /// The number of steps for which every object is resolved; `None` if for any number.
+    /// Returns the number of steps for which every object is resolved; `None` if the graph is resolved
+    /// for any number.
     #[must_use]
     pub fn depth(&self) -> Option<u32> {
         self.depth
     }
 
-    /// Whether the structure is known without a walk: which generator replaces an element does not
-    /// hang on an index that has to be counted.
+    /// Returns whether the structure is known without a walk: whether the generator that replaces an
+    /// element does not depend on an index that has to be counted.
     #[must_use]
     pub fn is_regular(&self) -> bool {
         self.regular
     }
 
-    /// Whether a walk counts indices, for the selection or for points that depend on them.
+    /// Returns whether a walk counts indices, for the selection or for points that depend on them.
     #[must_use]
     pub fn counts_index(&self) -> bool {
         self.counts_index
     }
 
-    /// Whether numbers are drawn.
+    /// Returns whether random numbers are drawn.
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
     }
 
-    /// What an object does to the looks of all that stands in its place.
+    /// Returns the change of appearance that an object applies to its subtree.
     #[inline]
     pub(crate) fn coat(&self, object: usize) -> Coat {
         let Object {
@@ -290,32 +296,32 @@ impl Graph {
         all.fold(tint, Coat::over)
     }
 
-    /// Whether any object changes the looks of what stands in its place.
+    /// Returns whether any object changes the appearance of its subtree.
     #[inline]
     pub(crate) fn coats(&self) -> bool {
         self.tints || self.widest.is_some()
     }
 
-    /// No stroke is wider than so many times what the style says, if widths differ in the graph; those
-    /// of parts that are not drawn may be.
+    /// Returns an upper bound of the factor of stroke widths, if widths differ in the graph. It does not
+    /// hold for parts that are not drawn.
     #[must_use]
     pub fn widest(&self) -> Option<f64> {
         self.widest
     }
 
-    /// Whether any object tints what stands in its place.
+    /// Returns whether any object colours its subtree.
     #[must_use]
     pub fn tints(&self) -> bool {
         self.tints
     }
 
-    /// Whether maps may be any affine ones, as in systems; those of rules are similarities.
+    /// Returns whether maps may be arbitrary affine maps, as in systems; those of rules are similarities.
     #[must_use]
     pub fn is_affine(&self) -> bool {
         self.affine
     }
 
-    /// Whether all maps are similarities, up to rounding.
+    /// Returns whether all maps are similarities, up to rounding.
     #[must_use]
     pub fn is_similar(&self) -> bool {
         const ROUNDING: f64 = 1e-12;
@@ -327,26 +333,26 @@ impl Graph {
         !self.affine || self.instances().all(|(_, instance)| similar(instance))
     }
 
-    /// Whether any element may join the one before it.
+    /// Returns whether any element may join the one before it.
     pub(crate) fn joins(&self) -> bool {
         let all = self.instances().map(|(_, instance)| instance);
         let all = all.chain(self.starts().flat_map(|start| &start.instances));
         !self.is_plain() || { all }.any(|instance| instance.joined)
     }
 
-    /// The length of an element whose frame is the unit frame: 1 in rules, in systems the long side of
-    /// the limit set's box.
+    /// Returns the length of an element whose frame is the unit frame: 1 in rules, in systems the longer
+    /// side of the limit set's box.
     #[must_use]
     pub fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// The first object of every behaviour.
+    /// Iterates over the first object of every behaviour.
     pub(crate) fn behaviours(&self) -> impl Iterator<Item = &Object> {
         self.behaviours_by_number().map(|(_, object)| object)
     }
 
-    /// The same with their numbers.
+    /// Iterates over the first object of every behaviour, with its number.
     pub(crate) fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object)> {
         // Behaviours are numbered in the order of the objects.
         let mut next = 0;
@@ -357,7 +363,7 @@ impl Graph {
         })
     }
 
-    /// Whether every production is a list of fixed maps.
+    /// Returns whether the graph is plain: whether every production is a list of fixed maps.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         !self
@@ -368,7 +374,7 @@ impl Graph {
 }
 
 impl Production {
-    /// All instances, with how they are placed: the body, then the seeds.
+    /// Iterates over all instances with their placements: the body, then the seeds.
     pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
         let body = self.body.instances.iter();
         let seeds = self.seeds.iter().flat_map(|seed| {
@@ -379,10 +385,10 @@ impl Production {
             .chain(seeds)
     }
 
-    /// The production of a generator whose points have been evaluated.
+    /// Overwrites the production with that of a generator whose points have been evaluated, and reuses
+    /// its memory.
     ///
-    /// `objects` are the objects of the generator's elements by position; `self` is overwritten,
-    /// its memory used again.
+    /// `objects` are the objects of the generator's elements by position.
     pub(crate) fn set(&mut self, parts: &[Part], points: &[DVec2], objects: &[usize]) {
         let mut seeds = std::mem::take(&mut self.seeds).into_iter();
         self.body.instances.clear();

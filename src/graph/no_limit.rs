@@ -1,23 +1,23 @@
-//! Whether there is a limit set that the graph tells.
+//! Reasons why a graph does not determine a limit set.
 
 use super::Graph;
 
-/// Why a graph tells no limit set.
+/// Reason why a graph does not determine a limit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoLimit {
-    /// It is another one for every seed.
+    /// The set depends on the seed of random draws.
     #[error("numbers are drawn in it at random, so it has no one limit set")]
     Draws,
-    /// What becomes of an element hangs on how many stand before it.
+    /// The replacement of an element depends on the number of elements before it.
     #[error("what becomes of its elements hangs on their index, which no map tells")]
     CountsIndex,
-    /// There are ever more kinds of elements.
+    /// The number of objects is unbounded.
     #[error("what replaces an element changes from step to step without end")]
     Endless,
-    /// Seeds stand as the initiator.
+    /// Seeds are placed as the initiator.
     #[error("it has no limit set: its seeds are placed as the initiator, so nothing shrinks")]
     Resets,
-    /// Elements do not become smaller.
+    /// Elements do not shrink.
     #[error("it has no limit set: its elements do not shrink")]
     DoesNotShrink,
     /// The limit set is empty.
@@ -26,12 +26,12 @@ pub enum NoLimit {
 }
 
 impl Graph {
-    /// Whether the graph tells the limit set: that of the approximants as drawn, to which infertile
-    /// visible elements belong.
+    /// Checks that the graph determines the limit set: that of the approximants as drawn, which contains
+    /// infertile visible elements.
     ///
     /// # Errors
     ///
-    /// Why it does not.
+    /// The reason why it does not.
     pub fn check_limit_set(&self) -> Result<(), NoLimit> {
         if self.draws() {
             return Err(NoLimit::Draws);

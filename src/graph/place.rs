@@ -1,14 +1,15 @@
-//! The coordinates of a graph and those of its model.
+//! The homothety between the coordinates of a graph and those of its model.
 
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::rule::Placement;
 
 use super::{Chain, Graph};
 
-/// Sides that become longer than 2 to this power are told in larger units.
+/// Growth, as an exponent of 2, up to which coordinates keep their units.
 const TALL: f64 = 64.0;
 
-/// Beyond 2 to this power, nothing is left for the sums of what stands one beside the other.
+/// Largest growth, as an exponent of 2; above it, sums of elements side by side would leave the range of
+/// doubles.
 const MOST_GROWTH: f64 = 1010.0;
 
 impl Graph {
@@ -41,8 +42,9 @@ impl Graph {
         self
     }
 
-    /// Scales the graph to an approximant that is much larger than the initiator, where generators have
-    /// parts longer than the element that they replace; `None` if it leaves the range of doubles.
+    /// Scales the graph to the extent of an approximant that is much larger than the initiator, because
+    /// generators have parts longer than the element that they replace; `None` if the approximant leaves
+    /// the range of doubles.
     pub(crate) fn in_units_of(self, steps: u32) -> Option<Self> {
         let growth = f64::from(steps) * libm::log2(self.longest_ratio());
         if growth.is_nan() || growth <= TALL || !self.is_plain() {
@@ -55,7 +57,8 @@ impl Graph {
         if growth > MOST_GROWTH {
             return None;
         }
-        // No more than elements may grow, if not all of it.
+        // Scales by the growth of the longest element, which keeps the bounds in range, then by the
+        // actual extent.
         let most = in_powers_of_two(growth);
         let (before, shift) = (self.place.exponent(), self.place.point(DVec2::ZERO));
         let small = self.started_within(&Homothety::new(most, DVec2::ZERO));
@@ -72,7 +75,8 @@ impl Graph {
 }
 
 impl Graph {
-    /// The length of the longest element within some steps, as a multiple of that of the initiator's.
+    /// Returns the length of the longest element within some steps, as a multiple of the initiator
+    /// element's.
     fn longest_within(&self, steps: u32) -> f64 {
         let mut lengths = vec![0.0; self.objects.len()];
         for start in self.starts().flat_map(|start| &start.instances) {
@@ -101,7 +105,7 @@ impl Graph {
     }
 }
 
-/// The exponent of the power of two that a positive number is no less than and less than twice of.
+/// Returns the exponent e of a positive number x: 2^e ≤ x < 2^(e+1).
 pub(crate) fn exponent_of(size: f64) -> i32 {
     libm::frexp(size).1 - 1
 }

@@ -1,28 +1,26 @@
-//! Policy iteration on convex polygons about what becomes of objects: their corners, followed to their end at
-//! once.
+//! Policy iteration on the convex polygons of subtrees: follows corners to their limits at once.
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
-/// Where a corner comes from.
+/// Origin of a corner.
 #[derive(Clone, Copy)]
 enum Origin {
-    /// A point that is no image.
+    /// Point that is not an image.
     Point(DVec2),
-    /// A map's image of another corner, by number.
+    /// Image of another corner, by number, under a map.
     Image(DAffine2, usize),
 }
 
-/// Evaluates the present policy: returns the points that corners converge to if each is mapped, again and
-/// again, from the origin of the farthest point along its direction.
+/// Evaluates the current policy: returns the limits of the corners if each is mapped repeatedly from the
+/// origin of the farthest point along its direction.
 ///
-/// This is Howard's policy iteration ("Dynamic Programming and Markov Processes", 1960): support
-/// functions solve h(u) = max (h(Lᵀu) + t·u) over maps x → Lx + t, a choice of a map for every
-/// direction leads back to a direction that was there before, and what it comes to there is the fixed
-/// point of a product of maps. Rounds of images alone come as near in a step as the maps contract,
-/// which may be very little.
+/// This is Howard's policy iteration ("Dynamic Programming and Markov Processes", 1960). Support
+/// functions solve h(u) = max (h(Lᵀu) + t·u) over maps x → Lx + t. With a map chosen for every direction,
+/// directions recur, and the limit at a recurring direction is the fixed point of a product of maps.
+/// Iterating images alone converges at the rate at which the maps contract, which may be slow.
 ///
 /// Every kind has a polygon, points of its own, and images of kinds by number. Corners are
-/// counter-clockwise from the one that is farthest to the left.
+/// counter-clockwise from the leftmost.
 pub(super) fn followed(
     polygons: &[Vec<DVec2>],
     images: &[Vec<(DAffine2, usize)>],
@@ -73,13 +71,13 @@ pub(super) fn followed(
     polygons.iter().map(ends_of).collect()
 }
 
-/// The progress of following a corner.
+/// Progress of following a corner.
 #[derive(Clone, Copy)]
 enum Followed {
     Not,
-    /// It is on the way, at this place.
+    /// The corner is on the current path, at this place.
     Now(usize),
-    /// To what it becomes; NaN where that is not known.
+    /// Limit of the corner; NaN if unknown.
     Fully(DVec2),
 }
 
@@ -89,7 +87,7 @@ struct Ends<'o> {
 }
 
 impl Ends<'_> {
-    /// What a corner becomes: all that it comes from is followed.
+    /// Returns the limit of a corner, following its chain of origins.
     fn of(&mut self, corner: usize) -> DVec2 {
         let mut way: Vec<(usize, DAffine2)> = Vec::new();
         let mut at = corner;
@@ -97,7 +95,7 @@ impl Ends<'_> {
             match (self.states[at], self.origins[at]) {
                 (Followed::Fully(end), _) => break end,
                 (Followed::Now(first), _) => {
-                    // It has come back: the fixed point of the maps since then.
+                    // The chain has closed: the limit is the fixed point of the maps around the cycle.
                     let maps = way[first..].iter().map(|(_, map)| *map);
                     break fixed_point(&maps.fold(DAffine2::IDENTITY, |all, map| all * map));
                 }
@@ -124,12 +122,12 @@ impl Ends<'_> {
     }
 }
 
-/// The point that a map leaves where it is.
+/// Returns the fixed point of a map.
 fn fixed_point(map: &DAffine2) -> DVec2 {
     (DMat2::IDENTITY - map.matrix2).inverse() * map.translation
 }
 
-/// Directions along which the corners of a polygon are farthest.
+/// Iterates over directions along which the corners of a polygon are farthest.
 fn directions(corners: &[DVec2]) -> impl Iterator<Item = DVec2> {
     let count = corners.len();
     (0..count).map(move |number| {
@@ -141,16 +139,16 @@ fn directions(corners: &[DVec2]) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// The corner that is farthest to the right.
+/// Returns the number of the rightmost corner.
 pub(super) fn rightmost(corners: &[DVec2]) -> usize {
     let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
     (0..corners.len()).max_by(order).unwrap_or_default()
 }
 
-/// The corner that is farthest along a vector, where one is known that is farthest to the right.
+/// Returns the number of the corner that is farthest along a vector; `right` is the rightmost corner.
 pub(super) fn farthest(corners: &[DVec2], right: usize, vector: DVec2) -> Option<usize> {
     let first = corners.first()?;
-    // Along the lower and along the upper half, corners reach farther and farther, then less.
+    // Along the lower and along the upper half, the distance increases up to one corner, then decreases.
     let half = if vector.y < 0.0 {
         0..right
     } else {

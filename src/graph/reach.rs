@@ -1,5 +1,4 @@
-//! How far what becomes of an object reaches, from the graph alone, so that it need not be grown
-//! where it cannot be seen.
+//! Radii of the subtrees of objects, computed from the graph alone, for culling.
 
 use std::collections::BTreeMap;
 
@@ -10,37 +9,38 @@ use crate::rule::Placement;
 use super::hull::{Fineness, around};
 use super::{Evaluated, Graph, Instance, Object, Replacement};
 
-/// Radii that still change by less than this multiple are good enough.
+/// Relative change of the radii below which iteration stops.
 const TOLERANCE: f64 = 1e-3;
 
-/// Where maps contract less than this, radii of discs one after the other are far too large.
+/// Largest ratio for which discs alone give good radii; with weaker contraction they are far too large.
 const LITTLE: f64 = 0.75;
 
-/// So many times, at most, all radii are made smaller.
+/// Limit of the number of sweeps that decrease the radii.
 const MOST_SWEEPS: usize = 64;
 
-/// An object that may come of another one.
+/// Object in the place of another one, or seeded by it.
 pub(super) struct Edge {
     pub(super) object: usize,
-    /// The most that its middle lies from that of the other one's frame,
+    /// Largest distance of its middle from the middle of the parent's frame, as a multiple of the
+    /// parent's length.
     pub(super) away: f64,
-    /// and that it is long, as multiples of the other one's length.
+    /// Largest length, as a multiple of the parent's.
     pub(super) length: f64,
 }
 
 impl Graph {
-    /// For every object, the radius of a disc about the [middle](Graph::middle) of its unit frame that
-    /// holds it and all that becomes of it, seeds included, at every step, whatever is drawn; infinite
-    /// where the graph does not tell: where seeds are placed as the initiator, and where what becomes of
-    /// the object does not surely shrink.
+    /// Returns, for every object, the radius of a disc about the [middle](Graph::middle) of its unit
+    /// frame that contains it and its subtree, seeds included, at every step and for all draws; infinite
+    /// where the graph gives no bound: if seeds are placed as the initiator, or if the subtree is not
+    /// certain to shrink.
     ///
-    /// `own` is the radius of an object that is drawn itself, about the same point. The result may
-    /// be larger than the smallest disc, never smaller but by rounding.
+    /// `own` returns the radius of what an object draws itself, about the same point. The result may be
+    /// larger than the smallest disc, but not smaller, except for rounding.
     ///
-    /// The smallest radii solve r(o) = max(own(o), |m − m(c)| + ratio(c) · r(c)) over the instances
-    /// c in the object's place, with m the middles. They are approached from above, from the sum of
-    /// a geometric series or from infinity. Of instances that are drawn, what is farthest and what
-    /// is longest counts.
+    /// The smallest radii solve r(o) = max(own(o), |m − m(c)| + ratio(c) · r(c)) over the instances c in
+    /// the object's place, with m the middles. The iteration approaches them from above, from the sum of
+    /// a geometric series or from infinity. For random instances, the largest distance and the largest
+    /// length are used.
     #[must_use]
     pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
@@ -71,13 +71,14 @@ impl Graph {
             .collect();
         for _ in 0..MOST_SWEEPS {
             let mut change = 1.0;
-            // Children have larger numbers than those that reach them first.
+            // Children have larger numbers than the objects that reach them first.
             for object in (0..own.len()).rev() {
                 if unknown[object] {
                     continue;
                 }
                 let reached = edges[object].iter().map(|edge| {
-                    // What has no length draws nothing, however far it would reach.
+                    // An instance of length 0 draws nothing, even if the radius of its object is
+                    // infinite.
                     let own = if edge.length > 0.0 {
                         edge.length * radii[edge.object]
                     } else {
@@ -101,7 +102,7 @@ impl Graph {
         radii
     }
 
-    /// Takes smaller radii where polygons about what becomes of objects tell them.
+    /// Decreases the radii to those of the polygons that contain the subtrees.
     fn narrow(&self, radii: &mut [f64], own: &[f64]) {
         let disc = |object: usize| around(self.middle, own[object]).collect();
         if let Some(hulls) = self.hulls(&disc, None, Fineness::COARSE) {
@@ -111,10 +112,10 @@ impl Graph {
         }
     }
 
-    /// The radius of a disc that holds the outline of an object, where it is drawn, and its unit
-    /// frame, about the middle of the latter.
+    /// Returns the radius, about the middle of the unit frame, of a disc that contains the outline of an
+    /// object, if it is drawn, and its unit frame.
     pub(crate) fn outline_radius(&self, object: &Object) -> f64 {
-        // Elements that are not drawn have a place nevertheless; in systems that is a point.
+        // Invisible elements have a position nevertheless; in systems it is a point.
         let frame = if self.affine { 0.0 } else { self.middle.x };
         if object.visible {
             let base_element = &self.base_elements()[object.base_element];
@@ -124,8 +125,8 @@ impl Graph {
         }
     }
 
-    /// For every object, those that may take its place or be seeded by it, all at once where it
-    /// depends on draws which; and the most that they are long, as multiples of its length.
+    /// Returns, for every object, the objects that may take its place or that it may seed, including all
+    /// random alternatives, with upper bounds of their lengths as multiples of its length.
     pub(crate) fn ratios(&self) -> Vec<Vec<(usize, f64)>> {
         let of = |edges: Vec<Edge>| {
             edges
@@ -136,8 +137,8 @@ impl Graph {
         self.edges(f64::INFINITY).into_iter().map(of).collect()
     }
 
-    /// What may come of every object: as far and as long as it may be or, of a finite power, as that of
-    /// the mean of the powers is (see [`Generator::means`](crate::rule::Generator)).
+    /// Returns the edges to the possible children of every object: with upper bounds of distance and
+    /// length or, for a finite power, with upper bounds of their power means (see `Generator::means`).
     pub(super) fn edges(&self, power: f64) -> Vec<Vec<Edge>> {
         let mut extents = BTreeMap::new();
         let edges = |object: usize| {
@@ -175,7 +176,7 @@ impl Graph {
         (0..self.objects.len()).map(edges).collect()
     }
 
-    /// All that expressions may see of an element.
+    /// Returns the ranges of all values that expressions see of an element.
     fn moments(&self) -> [Interval; 4] {
         let time = Interval::new(0.0, self.depth.map_or(f64::INFINITY, f64::from));
         let index = Interval::new(1.0, f64::INFINITY);
@@ -183,20 +184,20 @@ impl Graph {
         [index, time, time, length]
     }
 
-    /// About where, in the unit frame of an element, what becomes of it lies.
+    /// Returns the approximate centre of the subtree of an element, in its unit frame.
     #[must_use]
     pub fn middle(&self) -> DVec2 {
         self.middle
     }
 
-    /// Whether an object leads to seeds that are placed as the initiator, by object. However small
-    /// the object is, what becomes of it is not.
+    /// Returns, for every object, whether it leads to seeds that are placed as the initiator. The subtree
+    /// of such an object does not shrink with the object.
     #[must_use]
     pub fn resets(&self) -> Vec<bool> {
         self.leading_to(|object| self.places_as_initiator(object))
     }
 
-    /// Whether an object leads to seeds, by object.
+    /// Returns, for every object, whether it leads to seeds.
     pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
         self.leading_to(|object| match &self.objects[object].replacement {
             Replacement::Fixed(production) => !production.seeds.is_empty(),
@@ -209,7 +210,7 @@ impl Graph {
         })
     }
 
-    /// The objects of a kind, and those that such may come of.
+    /// Returns, for every object, whether it is of a kind or may lead to an object of the kind.
     pub(crate) fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();
         let mut changes = leading.contains(&true);
@@ -225,8 +226,8 @@ impl Graph {
         leading
     }
 
-    /// The most that an element is long which is born in the last of so many steps; infinite where
-    /// the graph does not tell.
+    /// Returns an upper bound of the length of elements that are created in the last of `steps` steps;
+    /// infinite where the graph gives none.
     #[must_use]
     pub fn longest_after(&self, steps: u32) -> f64 {
         if self.resets().contains(&true) {
@@ -238,8 +239,8 @@ impl Graph {
         longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
     }
 
-    /// The most that what may be replaced is long, as a multiple of the element's length that it comes
-    /// of; infinite where the graph does not tell.
+    /// Returns an upper bound of the length of a fertile child, as a multiple of its parent's length;
+    /// infinite where the graph gives none.
     #[must_use]
     pub fn longest_child(&self) -> f64 {
         if self.resets().contains(&true) {
@@ -248,16 +249,16 @@ impl Graph {
         self.longest_edge(&self.edges(f64::INFINITY))
     }
 
-    /// The largest ratio of what may be fertile.
+    /// Returns the largest ratio of edges to objects that may be fertile.
     fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let fertile = edges.iter().flatten().filter(|edge| !kept(edge.object));
         fertile.map(|edge| edge.length).fold(0.0, f64::max)
     }
 
-    /// The length that all fertile elements of the initiator have, and the ratio of all fertile
-    /// instances, if there is one of each, the graph is plain and all begins in step 0: elements are
-    /// replaced down to a length in so many steps then.
+    /// Returns the common length of all fertile elements of the initiator, and the common ratio of all
+    /// fertile instances, provided that each exists, that the graph is plain and that growth begins in
+    /// step 0: reaching a given length then takes a fixed number of steps.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
         if !self.is_plain() || !self.is_similar() || self.is_levelled() {
@@ -275,13 +276,13 @@ impl Graph {
         Some([start * self.unit, one_length(later.filter(fertile))?])
     }
 
-    /// Whether all that is replaced again and again becomes smaller than any length: no object
-    /// comes back to itself at its own size or larger, and no seed is placed as the initiator.
+    /// Returns whether all fertile elements shrink below any length: no object leads back to itself at
+    /// its own size or larger, and no seed is placed as the initiator.
     ///
-    /// What depends on draws is taken to shrink.
+    /// Random instances are assumed to shrink.
     #[must_use]
     pub fn shrinks(&self) -> bool {
-        // Ratios are rounded; what comes back at its own size must not seem to shrink.
+        // Ratios are rounded; an object that returns at its own size must not seem to shrink.
         const SLACK: f64 = 1.0 + 1e-9;
         if self.resets().contains(&true) {
             return false;
@@ -292,7 +293,7 @@ impl Graph {
         if self.affine {
             return self.contracts();
         }
-        // The longest paths (Bellman 1958): they go on growing if and only if there is such a cycle.
+        // The longest paths (Bellman 1958) grow without end if and only if there is such a cycle.
         let mut longest = vec![1.0; self.objects.len()];
         for _ in 0..=longest.len() {
             let mut grows = false;
@@ -314,7 +315,7 @@ impl Graph {
         false
     }
 
-    /// The fixed instances that take an object's place or start what it seeds.
+    /// Iterates over the fixed instances that take an object's place or that it seeds.
     pub(crate) fn children(&self, object: usize) -> impl Iterator<Item = (Placement, &Instance)> {
         let production = match &self.objects[object].replacement {
             Replacement::Fixed(production) => Some(production),
@@ -325,7 +326,7 @@ impl Graph {
             .flat_map(|production| production.placed_instances())
     }
 
-    /// The objects that an object may become or seed.
+    /// Iterates over the objects that may take an object's place or that it may seed.
     fn successors(&self, object: usize) -> impl Iterator<Item = usize> {
         let alternatives = match &self.objects[object].replacement {
             Replacement::Evaluated(alternatives) => Some(alternatives),
@@ -351,9 +352,9 @@ impl Graph {
     }
 }
 
-/// The length of all instances, if they have one.
+/// Returns the common length of all instances, if there is one.
 fn one_length<'g>(mut instances: impl Iterator<Item = &'g Instance>) -> Option<f64> {
-    // Rounding makes equal sides a little unequal.
+    // Rounding makes equal sides slightly unequal.
     const ROUNDING: f64 = 1e-12;
     let length = instances.next()?.length;
     let same = |instance: &Instance| (instance.length - length).abs() <= ROUNDING * length;

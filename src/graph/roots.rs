@@ -1,3 +1,5 @@
+//! Ancestry of a graph that continues a partially grown set instead of starting a new one.
+
 use std::ops::Range;
 
 use crate::instancing::Coat;
@@ -5,45 +7,43 @@ use crate::rule::draw::Path;
 
 use super::Chain;
 
-/// What a graph begins with that is no beginning but a part of something that has been grown for a
-/// while.
+/// Ancestry of the elements and fractals from which a graph starts in the middle of growth.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Roots {
-    /// What the elements of the initiator and of [sown](Self::sown) chains descend from, by position.
+    /// Ancestry of the elements of the initiator and of the [sown](Self::sown) chains, by position.
     pub(crate) elements: Vec<Root>,
-    /// Fractals that have been seeded before, in the order of those that they have been seeded by, each
-    /// after that one; those that are seeded by one fractal in the order of their births, and of the
-    /// elements that seed them.
+    /// Fractals seeded before, in the order of their parent fractals, each after its parent; the seeds of
+    /// one fractal are in the order of their birth steps, then of the elements that seeded them.
     pub(crate) sown: Vec<Sown>,
 }
 
-/// What an element descends from.
+/// Ancestry of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Root {
-    /// The step of its birth.
+    /// Step of its birth.
     pub(crate) level: u32,
     pub(crate) path: Path,
-    /// Its length relative to the initiator element's that it descends from.
+    /// Length relative to that of the initiator element from which it descends.
     pub(crate) length: f64,
-    /// What it and all that it descends from are tinted with.
+    /// Appearance that its ancestors and itself apply.
     pub(crate) coat: Coat,
 }
 
-/// A fractal that has been seeded before.
+/// Fractal that was seeded before.
 #[derive(Clone, Debug)]
 pub(crate) struct Sown {
-    /// The fractal that has seeded it: 0 for the initiator, or else its number in the list, from 1.
+    /// Fractal that seeded it: 0 for the initiator, otherwise its number in the list, from 1.
     pub(crate) by: usize,
-    /// What comes of roots from this position on comes after the element that has seeded it.
+    /// Position of the first root whose descendants come after the element that seeded it.
     pub(crate) before: u32,
-    /// The step of its birth.
+    /// Step of its birth.
     pub(crate) born: u32,
-    /// The roots in it.
+    /// Roots that it consists of.
     pub(crate) chain: Chain,
 }
 
 impl Roots {
-    /// The fractals that one has seeded before.
+    /// Returns the range of fractals that a fractal has seeded before.
     pub(crate) fn sown_by(&self, fractal: usize) -> Range<usize> {
         let from = self.sown.partition_point(|sown| sown.by < fractal);
         let to = self.sown.partition_point(|sown| sown.by <= fractal);

@@ -1,17 +1,18 @@
-//! The state of an element that decides what it becomes, beside its kind.
+//! Class and state of an element, which together determine its subtree, and the dependences of a rule.
 
 use crate::expression::{Dependence, Program};
 use crate::rule::{Generator, ListedElement, Moment, Placement, Rule, Selection};
 
-/// What an element is, apart from where and when: elements of one class behave alike in one state.
+/// Properties of an element that do not depend on place and time: elements of one class in one state have
+/// equal subtrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Class {
     pub(super) base_element: usize,
     pub(super) visible: bool,
     pub(super) fertile: bool,
-    /// The generator that the element names.
+    /// Generator that the element names.
     pub(super) generator: Option<usize>,
-    /// The generator that lists it; `None` for the initiator.
+    /// Generator that lists it; `None` for the initiator.
     pub(super) origin: Option<usize>,
 }
 
@@ -27,34 +28,34 @@ impl Class {
     }
 }
 
-/// The state of an element. Fields that the rule does not look at stay at their default.
+/// State of an element. Fields on which the rule does not depend keep their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct State {
     pub(super) age: u32,
     pub(super) step: u32,
-    /// The bits of the relative length.
+    /// Bits of the relative length.
     pub(super) length: u64,
-    /// Whether it is traversed backwards: matters only where the order does.
+    /// Whether it is traversed backwards; set only if the order matters.
     pub(super) reversed: bool,
-    /// The numbers of elements of each kind before it in its fractal, modulo m.
+    /// Numbers of elements of each kind before it in its fractal, modulo m.
     pub(super) preceding: Vec<u32>,
 }
 
-/// What the growth of a rule depends on.
+/// Properties on which the growth of a rule depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Dependences {
     pub(super) age: bool,
     pub(super) step: bool,
     pub(super) length: bool,
-    /// The index counts modulo this; 1 if it does not matter.
+    /// Modulus of the index; 1 if the index is irrelevant.
     pub(super) modulus: u32,
-    /// Which generator replaces an element is known only where its index is counted.
+    /// Whether the selection of a generator depends on an index that has to be counted.
     pub(super) index_is_free: bool,
-    /// Indices are counted while walking: for the selection, or for points that depend on them.
+    /// Whether a walk counts indices, for the selection or for points that depend on them.
     pub(super) counts_index: bool,
 }
 
-/// Indices are resolved modulo m up to this m.
+/// Largest modulus up to which indices are resolved.
 const LARGEST_MODULUS: u32 = 64;
 
 impl Dependences {
@@ -83,8 +84,8 @@ impl Dependences {
             all.add(program);
             match program.dependence(Moment::INDEX) {
                 Dependence::None => {}
-                // Points that are drawn are worked out where the element stands, and so are those
-                // that would make too many states.
+                // Random points are computed for each element, as are points that would require too many
+                // states.
                 Dependence::Modulo(modulus)
                     if !rule.is_random() && all.common(modulus) <= LARGEST_MODULUS =>
                 {
@@ -94,11 +95,11 @@ impl Dependences {
             }
         }
         if rule.is_random() || all.counts_index {
-            // A length that is not fixed is known only where the element stands.
+            // A length that is not fixed is known only for each element.
             all.length = false;
             all.index_is_free |= selects_by_length && all.modulus > 1;
         }
-        // A seed that stands as the initiator may run backwards or not, depending on its root.
+        // A seed that is placed as the initiator runs backwards or not, depending on its root.
         let resets = rule
             .generators()
             .iter()
@@ -123,7 +124,7 @@ impl Dependences {
         self.length |= depends(Moment::LENGTH);
     }
 
-    /// Whether the number of states may grow with the number of steps.
+    /// Returns whether the number of states may grow with the number of steps.
     pub(super) fn on_time(&self) -> bool {
         self.age || self.step || self.length
     }
@@ -133,7 +134,7 @@ impl Dependences {
         self.index_is_free |= self.modulus > LARGEST_MODULUS;
     }
 
-    /// The least common multiple of what counts so far and another modulus.
+    /// Returns the least common multiple of the current modulus and another.
     fn common(&self, modulus: u32) -> u32 {
         let divisor = greatest_common_divisor(self.modulus, modulus);
         (self.modulus / divisor).saturating_mul(modulus)

@@ -1,12 +1,12 @@
-//! How wide strokes become where objects change widths.
+//! Largest stroke width in graphs whose objects change widths.
 
 use crate::instancing::Thickness;
 
 use super::{Graph, Replacement};
 
 impl Graph {
-    /// Works out the most that strokes are widened, if any object changes widths: without bound where an
-    /// object comes to itself again, and wider.
+    /// Computes the largest factor of stroke widths, if any object changes them; it is infinite if an
+    /// object leads back to itself with a larger width.
     pub(super) fn find_widths(&mut self) {
         if !{ &self.objects }
             .iter()
@@ -14,11 +14,12 @@ impl Graph {
         {
             return;
         }
-        // What an object comes to is at most so many times as wide as what it stands in is, or so wide
-        // whatever it stands in.
+        // Largest width in the subtree of each object, as a factor of the enclosing width, and as a width
+        // set regardless of it.
         let mut most = vec![[1.0f64, 0.0]; self.objects.len()];
-        // Objects of levels lead to those of larger numbers, so that one sweep from the back finds all. Where
-        // there are cycles, they are longer than the graph only if widths grow along them (Bellman 1958).
+        // Objects of time-indexed graphs lead to objects of larger numbers: one backward sweep suffices.
+        // With cycles, more sweeps than objects are needed only if widths grow along a cycle (Bellman
+        // 1958).
         let mut sweeps = 0..=self.objects.len();
         let settled = sweeps.any(|_| !self.widen(&mut most));
         let starts = self.initiators.iter().flat_map(|start| &start.instances);
@@ -27,7 +28,7 @@ impl Graph {
         self.widest = Some(if settled { widest } else { f64::INFINITY });
     }
 
-    /// Takes one sweep from the back; whether anything becomes wider.
+    /// Performs one backward sweep; returns whether any width grows.
     fn widen(&self, most: &mut [[f64; 2]]) -> bool {
         let mut grows = false;
         for (number, object) in self.objects.iter().enumerate().rev() {

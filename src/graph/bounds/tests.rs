@@ -1,4 +1,4 @@
-//! Boxes of limit sets against random iteration and plain polygon iteration.
+//! Compares the boxes of limit sets with random iteration and with iteration of polygons.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -11,14 +11,14 @@ use crate::heading::Heading;
 use crate::ifs::{Definition, Edge, Ifs, Map, System, Verdict};
 use crate::whole::whole;
 
-/// Maps, and for each those that may follow it.
+/// Maps, and for each the maps that may follow it.
 struct Maps {
     all: Vec<DAffine2>,
     followers: Vec<Vec<usize>>,
 }
 
 impl Maps {
-    /// Any map may follow any.
+    /// Creates a system in which any map may follow any.
     fn free(all: Vec<DAffine2>) -> Self {
         let followers = vec![(0..all.len()).collect(); all.len()];
         Self { all, followers }
@@ -55,8 +55,8 @@ impl Maps {
         }
     }
 
-    /// The box of polygons that all maps are applied to again and again, each to those that it may
-    /// follow: they come as near to the limit set's hull as maps contract.
+    /// Returns the box of polygons to which all maps are applied `rounds` times, each to the maps that it
+    /// may follow: they converge to the hull of the limit set as fast as the maps contract.
     fn iterated(&self, rounds: usize) -> Bounds {
         let mut hulls = vec![vec![DVec2::ZERO]; self.all.len()];
         let mut size = 0.0;
@@ -77,8 +77,8 @@ impl Maps {
         boxed(&hulls)
     }
 
-    /// Asserts that points which random iteration comes to are in a box, and that iterated polygons touch
-    /// its sides.
+    /// Asserts that a box contains points of random iteration, and that iterated polygons touch its
+    /// sides.
     fn assert_box(&self, bounds: &Bounds, rounds: usize) {
         let size = bounds.size().max_element();
         let (mut map, mut point, mut state) = (0, DVec2::ZERO, 1u64);
@@ -127,7 +127,7 @@ fn a_system_that_contracts_slowly_has_a_box() {
     ]);
     let bounds = Graph::of_system(&maps.system()).limit_bounds().unwrap();
     maps.assert_box(&bounds, 4500);
-    // The fixed point of the second map is farthest to the left.
+    // The fixed point of the second map is the leftmost point.
     assert!((bounds.min().x + 0.27 / 0.07).abs() < 1e-9);
 }
 
@@ -146,13 +146,13 @@ proptest! {
         });
         let mut maps = Maps::free(maps.collect());
         if let Some(ways) = ways {
-            // The next map may follow always, so that all are used.
+            // The next map may always follow, which makes the digraph strongly connected.
             let next = |from: usize| (from + 1) % matrices.len();
             for (from, followers) in maps.followers.iter_mut().enumerate() {
                 followers.retain(|&to| ways[from][to] || to == next(from));
             }
         }
-        // As slow as that, by what is known of how fast they would.
+        // Scales the maps such that the lower bound of their contraction is `radius`.
         maps.scale(0.1);
         let slow = maps.system().contraction.lower;
         prop_assume!(slow > 1e-3);

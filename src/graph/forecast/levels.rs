@@ -1,4 +1,4 @@
-//! The sizes of the approximants of a levelled graph: what objects come to, from the bottom up.
+//! Forecasts of time-indexed graphs: totals of objects, from the bottom up.
 
 use std::collections::BTreeMap;
 
@@ -6,28 +6,29 @@ use crate::graph::{Chain, Graph, Instance, Replacement};
 
 use super::{Count, Forecast, Sums, Tally};
 
-/// What an element of an object comes to, for a length of 1.
+/// Leaves of the subtree of an object of length 1.
 #[derive(Default)]
 struct Total {
-    /// By object that stands in the end.
+    /// Tallies by object of the leaves.
     tallies: BTreeMap<usize, Tally>,
-    /// The object of the first element.
+    /// Object of the first leaf.
     first: usize,
-    /// Whether that may join what stands before.
+    /// Whether the first leaf may join the element before.
     joins: bool,
 }
 
-/// What objects come to that are reached within some steps.
+/// Totals of the objects that are reached within the steps so far.
 #[derive(Default)]
 pub(super) struct Totals {
-    /// Of the graph's last objects, the last one first.
+    /// Totals of the last objects of the graph, in reverse order.
     last: Vec<Total>,
-    /// How many tallies have been added since this was last taken.
+    /// Number of tallies added since the counter was last reset.
     work: usize,
 }
 
 impl Forecast<'_> {
-    /// Goes on to the next approximant of a levelled graph. `false`, and nothing happens, where it ends.
+    /// Advances to the next approximant of a time-indexed graph. Returns `false`, without effect, if the
+    /// graph is not resolved further.
     pub(super) fn advance_level(&mut self) -> bool {
         let Some(start) = self.graph.initiators.get(self.step as usize + 1) else {
             return false;
@@ -35,7 +36,7 @@ impl Forecast<'_> {
         let totals = &mut self.totals;
         let needed = start.instances.iter().map(|instance| instance.object);
         let needed = needed.min().unwrap_or(self.graph.objects.len());
-        // Objects only lead to those of larger numbers.
+        // Objects lead only to objects of larger numbers.
         while self.graph.objects.len() - totals.last.len() > needed {
             let next = self.graph.objects.len() - totals.last.len() - 1;
             let total = totals.of(self.graph, next);
@@ -54,7 +55,7 @@ impl Forecast<'_> {
 }
 
 impl Totals {
-    /// What an object comes to, if that is known of those of larger numbers.
+    /// Returns the total of an object whose successors, which have larger numbers, are known.
     fn of(&mut self, graph: &Graph, number: usize) -> Total {
         let mut total = Total::default();
         match &graph.objects[number].replacement {
@@ -102,8 +103,8 @@ impl Totals {
         }
     }
 
-    /// Adds what an object comes to whose length and square are known. Tells its first element, and
-    /// whether that may join another.
+    /// Adds the total of an object at a given length and square of the length. Returns the object of its
+    /// first leaf, and whether that may join another.
     fn add(
         &mut self,
         graph: &Graph,
