@@ -1,18 +1,19 @@
 //! Dimensions as means over models, for counts over many decades.
 //!
-//! Counts are a power of the size only in the limit. Beside the straight line, all lines with a second
-//! power are looked at, N = A size^-D (1 + C size^θ), from every size on. Where slopes go on drifting over
-//! many decades, as they do where two exponents lie close together or powers have a logarithm beside
-//! them, so that no second power dies out over the sizes, all lines with a power of the logarithm are,
-//! N = A size^-D ln(1 / size)^c: their local slopes are D + c / ln(1 / size). For each, D is fitted to
-//! the growth of counts from size to size, and the model counts as much as its likelihood, an e-th for
-//! every size that it leaves out, and a part for what it has more (Akaike 1974; averages over models
-//! and ranges: Jay & Neil 2021). D is the mean over all of them, and its error holds how far they
-//! differ: where local slopes drift, the mean lies beyond the last of them, and its error is large.
+//! Counts are a power of the size only in the limit. Besides the straight line, all lines with a second power
+//! are fitted, N = A size^-D (1 + C size^θ), from every size on. Where two exponents are close together, or
+//! powers are multiplied by a logarithm, slopes drift over many decades, and no second power dies out over
+//! the sizes. All lines with a power of the logarithm are therefore fitted as well, N = A size^-D ln(1 /
+//! size)^c, whose local slopes are D + c / ln(1 / size). For each model, D is fitted to the growth of counts
+//! from size to size. The weight of a model is its likelihood, times 1/e for every size that it leaves out,
+//! and times a penalty for additional parameters (Akaike 1974; averages over models and ranges: Jay & Neil
+//! 2021). D is the weighted mean, and its error includes the spread of the models: where local slopes drift,
+//! the mean lies beyond the last of them, and its error is large.
 
 use super::regression::{Estimate, Reading, line};
 
-/// The exponents θ of a second power, and the parts C that it has at the largest size.
+/// Range of the exponents θ of a second power, and of the coefficients C at the largest size: those above
+/// zero, and the magnitudes of those below.
 const EXPONENTS: [f64; 2] = [0.1, 1.6];
 const EXPONENT_STEPS: i32 = 24;
 const MOST_PART: [f64; 2] = [0.1, 50.0];
@@ -20,38 +21,39 @@ const LEAST_PART: [f64; 2] = [0.1, 0.8];
 const PARTS_ABOVE: i32 = 32;
 const PARTS_BELOW: i32 = 8;
 
-/// The exponents c of a logarithm, and the logarithm of the ratio of the extent to the largest size.
+/// Range of the magnitudes of the exponents c of a logarithm, and the logarithm of the ratio of the extent to
+/// the largest size.
 const POWERS: [f64; 2] = [0.2, 1.5];
 const POWER_STEPS: i32 = 16;
 const LARGEST: f64 = 2.0;
 
-/// By how much of an e-th a second power, and a logarithm, make a model count less.
+/// Penalties of a second power, and of a logarithm, to the logarithm of a model's prior.
 const POWER_COSTS: f64 = 4.0;
 const LOGARITHM_COSTS: f64 = 1.5;
 
-/// Growth is not believed to be known better.
+/// Lower bound of the error of a growth.
 const LEAST_ERROR: f64 = 0.001;
 
-/// So many sizes are left in every range, at least.
+/// Minimum number of sizes in every range.
 const LEAST_SIZES: usize = 4;
 
-/// How counts grow from a size to the next smaller one.
+/// Growth of counts from a size to the next smaller one.
 struct Growth {
-    /// The logarithm of the ratio of sizes.
+    /// Logarithm of the ratio of the sizes.
     step: f64,
-    /// That of the counts.
+    /// Logarithm of the ratio of the counts.
     log: f64,
     weight: f64,
 }
 
-/// The correction by a second power or a logarithm: its addition to the growth from each size to the next,
-/// and the logarithm of the model's prior.
+/// Correction by a second power or a logarithm: its addition to the growth from each size to the next, and
+/// the logarithm of the model's prior.
 struct Correction {
     growth: Vec<f64>,
     prior: f64,
 }
 
-/// A line, with a correction or without, fitted from a size on.
+/// A line, with or without a correction, fitted from a size on.
 #[derive(Clone, Copy)]
 struct Fit {
     from: usize,
@@ -61,8 +63,8 @@ struct Fit {
     prior: f64,
 }
 
-/// The slope of readings, from the largest size to the smallest, which is no more than `most`; none if
-/// there are too few.
+/// Estimates the slope of readings, from the largest size to the smallest, as a mean over models whose slopes
+/// are at most `most`. Returns `None` if there are fewer than five readings.
 pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     if readings.len() < LEAST_SIZES + 1 {
         return None;
@@ -75,7 +77,7 @@ pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
         corrections.iter().map(fit).collect::<Vec<_>>()
     });
     let fits: Vec<Fit> = starts.collect();
-    // Where no model fits as well as errors say, these are too small.
+    // Where no model fits as well as the errors imply, errors are too small.
     let reduced = fits.iter().filter(|fit| fit.from < last);
     let reduced = reduced.map(|fit| fit.chi_squared / count(growths.len() - fit.from - 1));
     let excess = reduced.fold(f64::INFINITY, f64::min);
@@ -150,7 +152,8 @@ impl Fit {
     }
 }
 
-/// No correction, second powers of all exponents and parts, and logarithms to all powers.
+/// Returns all corrections: none, second powers of all exponents and coefficients, and logarithms to all
+/// powers.
 fn corrections(readings: &[Reading]) -> Vec<Correction> {
     let parts =
         spread(MOST_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
@@ -183,7 +186,7 @@ fn corrections(readings: &[Reading]) -> Vec<Correction> {
     corrections
 }
 
-/// So many numbers from one to another, each larger by the same factor.
+/// Iterates over `steps` numbers from `least` to `most` in geometric progression.
 fn spread([least, most]: [f64; 2], steps: i32) -> impl Iterator<Item = f64> {
     let all = libm::log(most / least);
     let part = move |step| f64::from(step) / f64::from(steps - 1);
@@ -237,7 +240,7 @@ mod tests {
 
     #[test]
     fn slopes_that_go_on_drifting_are_followed() {
-        // A logarithm beside the power, and two exponents that lie close together (a Lévy curve).
+        // A power multiplied by a logarithm, and two exponents that are close together (a Lévy curve).
         let logarithm = |x: f64| 1.1 * x + 0.5 * libm::log(x + 1.0);
         let close = |x: f64| libm::log(libm::exp(1.95 * x) - 0.7 * libm::exp(1.88 * x));
         let cases: [(f64, &dyn Fn(f64) -> f64); 2] = [(1.1, &logarithm), (1.95, &close)];

@@ -1,3 +1,5 @@
+//! Box-counting dimensions of limit sets, pictures and points, with the counts that are their evidence.
+
 use std::num::NonZero;
 
 use super::averaging::averaged;
@@ -10,65 +12,64 @@ use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
 use super::trend::Trend;
 
-/// No set of the plane has a larger dimension.
+/// Upper bound of the dimension of a set in the plane.
 pub(super) const PLANE: f64 = 2.0;
 
-/// Fewer boxes tell nothing but where they lie.
+/// Minimum number of boxes of a size that is used: fewer depend only on the position of the grid.
 const LEAST_BOXES: u64 = 9;
 
-/// Where boxes fit a picture, its pixels tell the dimension no better.
+/// Minimum standard error where boxes fit a picture, which its pixels do not improve.
 const LEAST_ERROR: f64 = 0.001;
 
-/// A box-counting dimension, and its evidence.
+/// Box-counting dimension of a set, and its evidence.
 #[derive(Clone, Debug, Default)]
 pub struct BoxCounting {
-    /// The dimension; none if there are fewer than three sizes in the range.
+    /// The dimension; `None` if there are fewer than three sizes in the range.
     pub estimate: Option<Estimate>,
-    /// How local slopes drift over the finer half of the sizes that may be used (of pictures: over all that
-    /// are); none if there are too few.
+    /// Drift of local slopes over the finer half of the admissible sizes (of pictures: over all sizes that
+    /// are used); `None` if there are too few.
     pub trend: Option<Trend>,
-    /// By what number boxes get smaller; none if nothing had to be measured.
+    /// Ratio of each size to the next smaller one; `None` if nothing had to be measured.
     pub base: Option<f64>,
-    /// Of pictures: the number that boxes get smaller by where local slopes are all the same; none if there
-    /// is no such number.
+    /// Of pictures: the ratio of sizes for which all local slopes are equal; `None` if there is none.
     pub fitting_base: Option<f64>,
-    /// The boxes of every size, from the largest to the smallest.
+    /// Boxes of every size, from the largest to the smallest.
     pub boxes: Vec<Boxes>,
-    /// Of pictures: the sides of boxes, and the mean number of those that meet the set over all grids,
-    /// from the smallest boxes on. A dimension is told from these where boxes of no base fit a picture.
+    /// Of pictures: sides of boxes, and the mean number of boxes that meet the set over all grids, from the
+    /// smallest boxes on. The dimension is extrapolated from these where boxes of no base fit a picture.
     pub means: Vec<(f64, f64)>,
 }
 
-/// The boxes of one size.
+/// Boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boxes {
-    /// The side of a box, in the units of the set.
+    /// Side of a box, in the units of the set.
     pub size: f64,
-    /// The number of boxes in the least cover that was found, or what a sample tells it to be.
+    /// Number of boxes in the smallest cover that was found, or its estimate from a sample.
     pub count: u64,
-    /// Whether the count comes from a sample of boxes.
+    /// Whether the count is estimated from a sample of boxes.
     pub sampled: bool,
-    /// The standard deviation of the logarithm of the count among grids.
+    /// Standard deviation of the natural logarithm of the count over all grids.
     pub scatter: f64,
-    /// The slope to the next smaller size; none for the smallest.
+    /// Local slope to the next smaller size; `None` for the smallest.
     pub local_slope: Option<f64>,
     /// Whether the regression uses this size.
     pub used: bool,
 }
 
-/// What sizes a regression may use.
+/// Sizes that a regression may use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// The smallest size.
+    /// Smallest size.
     pub finest: f64,
-    /// The largest size.
+    /// Largest size.
     pub coarsest: f64,
-    /// The least count: a few boxes tell nothing but where they lie.
+    /// Minimum count: a few boxes depend only on the position of the grid.
     pub least_boxes: u64,
 }
 
 impl BoxCounting {
-    /// That of a single point: 0, with nothing to be measured.
+    /// Returns the result for a single point: dimension 0, with nothing measured.
     #[must_use]
     pub fn of_point() -> Self {
         Self {
@@ -82,14 +83,14 @@ impl BoxCounting {
         }
     }
 
-    /// Measures a limit set, with boxes that are each `base` times smaller than those before.
+    /// Measures a limit set, with boxes that are each smaller by the factor `base` than those before.
     ///
-    /// Without a base, it is the least whole number up to 8 that is a power of the set's own period,
-    /// so that its counts do not swing with the size, or 2. Boxes that are too many to be counted are
-    /// told by a sample of them, down to 10⁻⁹ of the extent; which sizes tell the dimension, their
-    /// likelihood decides. Where a sample does not come as far as counting (the base is not whole, or
-    /// too many copies lie over each other), the sizes are those up to half the extent at which the
-    /// least cover has 9 boxes or more, down to where it has some 130,000.
+    /// The default base is the smallest integer up to 8 that is a power of the set's own period, for which
+    /// counts do not oscillate with the size, or else 2. Boxes that are too many to be counted are estimated
+    /// from a sample of them, down to 10⁻⁹ of the extent, and the sizes that determine the dimension are
+    /// weighted by their likelihood. Where a sample does not reach 1/16384 of the extent (the base is not an
+    /// integer, or too many copies overlap), the sizes are those up to half the extent for which the smallest
+    /// cover has at least 9 boxes, down to where it has about 130,000.
     #[must_use]
     pub fn of_limit(
         set: &LimitSet,
@@ -120,12 +121,12 @@ impl BoxCounting {
 
     /// Measures the set pixels of a picture, with boxes of `base`, base² … pixels.
     ///
-    /// Without a base, boxes grow by the number whose powers a picture is made of, if there is one (by
-    /// 3 for a carpet of 729² pixels), or by 2. With such a base, all local slopes are the same, and
-    /// they are the dimension. Otherwise it is told from the mean numbers of boxes over all grids, of 3
-    /// pixels (or 1, if the set is filled) up to a quarter of its long side, or to less of it where larger
-    /// boxes do not go on as the smaller ones do: these grow as powers do whose exponents are the dimension
-    /// and those of rims. The width of a pen is allowed for.
+    /// The default base is the number whose powers the picture is made of, if there is one (3 for a carpet of
+    /// 729² pixels), or else 2. With the number whose powers it is made of, all local slopes are equal, and
+    /// are the dimension. Otherwise the dimension is extrapolated from the mean numbers of boxes over all
+    /// grids, of 3 pixels (or 1, if the set is filled) up to a quarter of its long side, or up to less where
+    /// larger boxes do not continue the trend of smaller ones: these grow as powers whose exponents are the
+    /// dimension and those of rims. The width of a pen is taken into account.
     #[must_use]
     pub fn of_pixels(
         pixels: &Bits,
@@ -181,10 +182,10 @@ impl BoxCounting {
         }
     }
 
-    /// Measures points as a sample of a set, with boxes that are at least `finest`.
+    /// Measures points as a sample of a set, with boxes of at least the side `finest`.
     ///
-    /// Used are boxes that are at most half the extent, of which the least cover has 4 or more, as long
-    /// as half of the points would miss no more than one in 12 of them.
+    /// Sizes are used that are at most half the extent and whose smallest cover has at least 4 boxes, as long
+    /// as half of the points would miss no more than 8 % of the boxes.
     #[must_use]
     pub fn of_sample(sample: &Sample, finest: f64) -> Self {
         let sizes = sample.sizes();
@@ -199,8 +200,8 @@ impl BoxCounting {
         })
     }
 
-    /// Measures the slope of ln count on ln (1 / size), weighted by how well grids agree, over all
-    /// sizes in a window.
+    /// Measures the slope of ln count on ln (1 / size) over all sizes in a window, weighted by the agreement
+    /// of the grids.
     #[must_use]
     pub fn of(scales: &[Scale], window: &Window) -> Self {
         Self::by(scales, window, estimate)
@@ -264,7 +265,7 @@ fn of_means(means: &[(f64, f64)]) -> Vec<Reading> {
     means.iter().enumerate().map(reading).collect()
 }
 
-/// The boxes of every size, with local slopes.
+/// Returns the boxes of every size, with local slopes.
 fn evidence(scales: &[Scale], used: impl Fn(&Scale) -> bool) -> Vec<Boxes> {
     let boxes = scales.iter().enumerate().map(|(number, scale)| Boxes {
         size: scale.size,
@@ -284,7 +285,7 @@ fn log(scale: &Scale) -> f64 {
     libm::log(scale.count.max(1) as f64)
 }
 
-/// The least whole number that is a power of a period, if there is one that is not too large, or 2.
+/// Returns the smallest integer up to 8 that is a power of the period, or 2 if there is none.
 fn whole_power(period: Option<f64>) -> f64 {
     const LARGEST: f64 = 8.5;
     const TOLERANCE: f64 = 1e-9;
@@ -296,7 +297,7 @@ fn whole_power(period: Option<f64>) -> f64 {
     whole.next().map_or(2.0, f64::round)
 }
 
-/// A base that is a whole number.
+/// Returns the base if it is an integer larger than 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

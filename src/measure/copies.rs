@@ -1,4 +1,4 @@
-//! Self-similar sets made of copies of each other, and the distribution of mass among the copies.
+//! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
 use crate::digraph::components;
 use crate::geometry::{DAffine2, DMat2};
@@ -16,7 +16,7 @@ pub(super) struct Copy {
     pub(super) map: DAffine2,
 }
 
-/// Sets that are made of copies of each other, and the whole, which is made of copies of them.
+/// Sets that are made of copies of each other, and the whole, which is made of copies of them (`start`).
 #[derive(Clone, Debug)]
 pub(super) struct Copies {
     pub(super) size: usize,
@@ -24,8 +24,8 @@ pub(super) struct Copies {
     pub(super) start: Vec<(usize, DAffine2)>,
 }
 
-/// Copies with the shares that they have of the mass of the set that holds them, and the masses of what
-/// the whole is made of.
+/// Copies with their shares of the mass of the set that holds them, and the masses of the copies of the
+/// whole.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     pub(super) copies: Copies,
@@ -33,26 +33,27 @@ pub(super) struct Shared {
     pub(super) masses: Vec<f64>,
 }
 
-/// Dimensions that differ by less are the same.
+/// Maximum difference of dimensions that count as equal.
 const SAME: f64 = 1e-9;
 
-/// A dimension beyond this means that maps do not contract.
+/// Dimension above which maps are taken not to contract.
 const LARGEST: f64 = 64.0;
 
-/// Rounds in which masses flow along the parts of a graph.
+/// Maximum number of iterations of masses along the edges of a graph.
 const MOST_ROUNDS: usize = 100_000;
 
 /// A strongly connected component.
 #[derive(Clone, Debug, Default)]
 struct Component {
     sets: Vec<usize>,
-    /// The copies inside.
+    /// Indices of the copies between sets of the component.
     inside: Vec<usize>,
     dimension: Option<f64>,
 }
 
 impl Copies {
-    /// What the fertile elements of a graph become; `None` if it is not made of fixed maps.
+    /// Returns the copies that the limit set of a graph's fertile elements is made of; `None` if they are not
+    /// made of fixed maps.
     pub(super) fn of(graph: &Graph) -> Option<Self> {
         let copies = fixed_copies(graph)?;
         let copies = copies
@@ -71,7 +72,7 @@ impl Copies {
         Some(all.lasting())
     }
 
-    /// Without the sets that come to an end.
+    /// Removes the sets that contain no infinite sequence of copies.
     fn lasting(mut self) -> Self {
         loop {
             let mut lasts = vec![false; self.size];
@@ -85,16 +86,16 @@ impl Copies {
         }
     }
 
-    /// The natural measure, under which a copy of the size r has a mass of about r^s, where s is
-    /// the similarity dimension (Hutchinson 1981): shares are r^s h(to) / h(from), where h is what the
-    /// matrix of the sums of r^s leaves as it is (Mauldin & Williams 1988).
+    /// Returns the natural measure, for which a copy of size r has a mass of about r^s, where s is the
+    /// similarity dimension (Hutchinson 1981): shares are r^s h(to) / h(from), where h is the eigenvector, of
+    /// eigenvalue 1, of the matrix of the sums of r^s (Mauldin & Williams 1988).
     ///
-    /// Of maps that are no similarities, the singular value function takes the place of r^s (Falconer
-    /// 1988). What does not come to the sets of the largest dimension has no mass. Where there are
-    /// several of these on one way, the mass stays with the first: the numbers of small copies beyond
-    /// it are as nothing to the numbers in it.
+    /// For maps that are not similarities, the singular value function replaces r^s (Falconer 1988). Sets
+    /// that do not reach a component of the largest dimension have no mass. Where several of these lie on one
+    /// path, the mass stays in the first: the number of small copies in any one set beyond it is negligible
+    /// against the number in it.
     ///
-    /// `None` where maps do not contract, or nothing is a copy again and again.
+    /// Returns `None` where maps do not contract, or where no set holds copies of itself.
     pub(super) fn natural(self) -> Option<Shared> {
         let values: Vec<SingularValues> = self
             .copies
@@ -168,7 +169,7 @@ impl Copies {
         })
     }
 
-    /// The masses of what the whole is made of.
+    /// Returns the masses of the copies that the whole is made of.
     fn masses(&self, dimension: f64, levels: &[usize], heights: &[f64]) -> Option<Vec<f64>> {
         let level = self.start.iter().map(|(set, _)| levels[*set]).max()?;
         let mass = |(set, map): &(usize, DAffine2)| {
@@ -203,9 +204,9 @@ impl Copies {
         components
     }
 
-    /// The entries of a component's matrix, its sets numbered from 0.
+    /// Returns the entries of a component's matrix, its sets numbered from 0.
     fn entries(&self, component: &Component, value: impl Fn(usize) -> f64) -> Vec<Entry> {
-        // Sets of a component come in their order.
+        // The sets of a component are in increasing order.
         let number = |set: usize| component.sets.binary_search(&set).unwrap_or(0);
         let inside = component.inside.iter();
         let entry = |&copy: &usize| {
@@ -215,8 +216,8 @@ impl Copies {
         inside.map(entry).collect()
     }
 
-    /// The dimension of a component: the s for which its matrix has the spectral radius 1; none if
-    /// nothing comes back to it. `None` if there is no such s.
+    /// Returns the dimension of a component: the s for which its matrix has the spectral radius 1, or an
+    /// inner `None` if the component has no cycle. Returns `None` if there is no such s.
     #[expect(clippy::option_option, reason = "no cycle is no failure")]
     fn dimension(&self, component: &Component, values: &[SingularValues]) -> Option<Option<f64>> {
         if component.inside.is_empty() {
@@ -239,7 +240,7 @@ impl Copies {
         Some(Some(crossing(high, 0.0, radius)))
     }
 
-    /// What the matrix of a component leaves as it is.
+    /// Computes the eigenvector of a component's matrix for the eigenvalue 1.
     fn fill(&self, component: &Component, sizes: &[f64], heights: &mut [f64]) {
         let entries = self.entries(component, |copy| sizes[copy]);
         let vector = perron(component.sets.len(), &entries, |_| false).vector;
@@ -248,7 +249,7 @@ impl Copies {
         }
     }
 
-    /// What comes from below, by copies that lead there in the end.
+    /// Propagates masses from components below, along the copies `used`, until they converge.
     fn flow(&self, used: &[usize], sizes: &[f64], heights: &mut [f64]) {
         const TOLERANCE: f64 = 1e-15;
         for _ in 0..MOST_ROUNDS {
@@ -269,7 +270,7 @@ impl Copies {
     }
 }
 
-/// The logarithms of a map's singular values: the larger one first.
+/// Logarithms of the singular values of a map, the larger one first.
 #[derive(Clone, Copy, Debug)]
 struct SingularValues([f64; 2]);
 
@@ -280,10 +281,10 @@ impl SingularValues {
         Self([libm::log(larger), libm::log(area / larger)])
     }
 
-    /// The singular value function φ^s (Falconer 1988): r^s of a similarity.
+    /// Returns the singular value function φ^s (Falconer 1988): r^s for a similarity.
     fn cost(&self, s: f64) -> f64 {
         let [larger, smaller] = self.0;
-        // 0 times the logarithm of 0 is nothing.
+        // 0 times the logarithm of 0 is taken as 0.
         let times = |share: f64, log: f64| if share > 0.0 { share * log } else { 0.0 };
         if s >= 2.0 {
             return libm::exp(s / 2.0 * (larger + smaller));
@@ -293,13 +294,13 @@ impl SingularValues {
 }
 
 impl Shared {
-    /// The measure that the weights of a system give: that of random iteration without condensation
+    /// Returns the measure that the weights of a system define: that of random iteration without condensation
     /// sets (Demko, Hodges & Naylor 1985; of recurrent systems: Barnsley, Elton & Hardin 1989).
     ///
-    /// Of a recurrent system, the set of a map holds the images of those before it under that map: that
-    /// of i in the set of j has the share π_i p_ij / π_j, where p_ij is the probability of going from i
-    /// to j and π is how much of its time the walk spends where. `None` where that depends on where the
-    /// walk starts.
+    /// In a recurrent system, the set of a map holds the images, under that map, of the sets of its
+    /// predecessors. The share of i in the set of j is π_i p_ij / π_j, where p_ij is the probability of a
+    /// step from i to j and π is the stationary distribution. Returns `None` where that depends on the start
+    /// of the walk.
     pub(super) fn of_weights(ifs: &Ifs) -> Option<Self> {
         let maps = ifs.maps();
         let Some(edges) = ifs.edges() else {
@@ -331,7 +332,7 @@ impl Shared {
             .iter()
             .for_each(|&(from, to, _)| targets[from].push(to));
         let component = components(&targets);
-        // Steps lead to components of lower numbers only: the first one is never left.
+        // Steps lead to components of lower numbers only, and component 0 is never left.
         let is_left = |part: usize| {
             edges
                 .iter()
@@ -370,7 +371,7 @@ impl Shared {
         ))
     }
 
-    /// Copies that are the same are one, of their shares together.
+    /// Joins equal copies, whose shares are added.
     fn joined(
         size: usize,
         copies: impl Iterator<Item = (Copy, f64)>,
@@ -399,8 +400,9 @@ impl Shared {
     }
 }
 
-/// The copies that what is fertile in a graph is made of, by the numbers of behaviours: what holds one, what
-/// it is a copy of, and the map. `None` if the graph is not a list of fixed maps, or has resets.
+/// Returns the copies that the fertile elements of a graph are made of, by the numbers of behaviours: the set
+/// that holds a copy, the set that is copied, and the map. Returns `None` if the graph is not a list of fixed
+/// maps, or has resets.
 pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)>> {
     if !graph.is_regular() || !graph.is_plain() || graph.depth().is_some() {
         return None;
@@ -410,7 +412,7 @@ pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)
         !matches!(object.replacement, Replacement::Kept)
     };
     let mut copies = Vec::new();
-    // Objects of one behaviour are replaced by the same.
+    // Objects of one behaviour are replaced alike.
     for object in graph.behaviours() {
         let Replacement::Fixed(production) = &object.replacement else {
             continue;
@@ -429,7 +431,7 @@ pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)
     Some(copies)
 }
 
-/// The most that a linear map lengthens a vector: its largest singular value.
+/// Returns the largest factor by which a linear map lengthens a vector: its larger singular value.
 #[inline]
 pub(super) fn norm(matrix: &DMat2) -> f64 {
     let (a, b) = (matrix.x_axis, matrix.y_axis);

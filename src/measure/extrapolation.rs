@@ -1,85 +1,86 @@
-//! Dimensions of pictures: a power is told from what pens and coarse boxes add to it.
+//! Dimensions of pictures: a power is separated from the contributions of pens and of coarse boxes.
 //!
-//! The mean number of boxes of side s that meet a set is N(s) = A s^-D + B s^-d + 1: the power that
-//! is looked for, those of rims and of what pieces share, and the last box (of a convex shape, after
-//! Steiner, N = a / s² + p / s + 1; of a curve of four similar parts, whose neighbours share a box,
-//! N(s) − 1 = 4 (N(3 s) − 1)). A pen of a width of w more pixels than one makes all of the set larger,
-//! N(s) of the set being the area at s − w; how wide it may be, the picture's thickness bounds.
+//! The mean number of boxes of side s that meet a set is N(s) = A s^-D + B s^-d + 1: the power in question,
+//! one for rims and for boxes that pieces share, and the last box (of a convex shape, after Steiner, N = a /
+//! s² + p / s + 1; of a curve of four similar parts, whose neighbours share a box, N(s) − 1 = 4 (N(3 s) −
+//! 1)). A pen that is w pixels wider than one dilates the set: the area N(s) s² of the picture is that of the
+//! set at s + w. The width of the pen is bounded by the picture's thickness.
 //!
-//! The residuals of such a model, such as the waves of a self-similar set, are correlated between
-//! neighbouring sizes: they are an autoregression of the first order in ln s, of a size that is told
-//! from the data, but no less than some hundredth; it may be larger for coarse boxes, of which a few hold
-//! the whole set. D is the mean over all models by their likelihood, and its error their spread: where
-//! slopes drift, other powers explain them as well, and the error is large.
+//! The residuals of a model, such as the waves of a self-similar set, are correlated between neighbouring
+//! sizes: they are modelled as an autoregression of the first order in ln s, of a magnitude that is estimated
+//! from the data, but at least about a hundredth. The magnitude may be larger for coarse boxes, of which a
+//! few hold the whole set. D is the mean over all models, weighted by likelihood, and its error their spread:
+//! where slopes drift, other powers explain them as well, and the error is large.
 //!
-//! No power stands for a length of the set itself, as the distance between turns of a spiral is: its
-//! counts are those of a curve below, and those of an area above. Models are fitted to several ranges for
-//! that reason, up to a quarter of the long side or to less of it, and D is the mean over these as well. The
-//! counts that a range leaves out are told by no model, but for some hundredths, and are the less likely for
-//! it; neighbouring ones go together, and count in part only (averages over ranges: Jay & Neil 2021).
+//! No power represents a length of the set itself, such as the distance between turns of a spiral: its counts
+//! are those of a curve below that length, and those of an area above. For that reason models are fitted to
+//! several ranges, up to a quarter of the long side or to less of it, and D is the mean over these as well.
+//! The counts that a range leaves out are explained by no model, except to within a few hundredths, which
+//! makes the range less likely. Neighbouring counts are correlated, and count in part only (averages over
+//! ranges: Jay & Neil 2021).
 
 use super::raster::Mean;
 use super::regression::Estimate;
 
-/// Dimensions that are tried: so many steps from 0 to that of the plane.
+/// Number of steps of the dimensions that are tried, from 0 to that of the plane.
 const STEPS: u16 = 400;
 const STEP: f64 = 2.0 / STEPS as f64;
 
-/// Exponents d of what is added.
+/// Exponents d of the added power, in multiples of `ADDED_STEP`.
 const ADDED: std::ops::Range<i32> = 0..14;
 const ADDED_STEP: f64 = 0.15;
 
-/// The least difference D − d.
+/// Minimum difference D − d.
 const APART: f64 = 0.03;
 
-/// The least coefficient of the added power, as a share of the main one at the coarsest size.
+/// Lower bound of the added power, as a share of the main one at the coarsest size.
 const MOST_TAKEN: f64 = -0.9;
-/// The least share of the main power in the count at the finest size.
+/// Minimum share of the main power in the count at the finest size.
 const LEAST_SHARE: f64 = 0.7;
 
-/// The finest boxes in pixels, and the coarsest of every range as a part of the long side.
+/// Finest boxes in pixels, and the coarsest of every range as a fraction of the long side.
 const FINEST: f64 = 3.0;
 const COARSEST: [f64; RANGES] = [0.015625, 0.03125, 0.0625, 0.125, LARGEST];
 const LARGEST: f64 = 0.25;
 const RANGES: usize = 5;
 
-/// The relative error with which counts that a range leaves out are taken to be known.
+/// Relative error of the counts that a range leaves out.
 const LEFT_OUT: f64 = 0.03;
 
-/// The part of the logarithm of a range's likelihood that counts: neighbouring sizes go together.
+/// Factor of the logarithm of a range's likelihood, which accounts for the correlation of neighbouring sizes.
 const COUNTED: f64 = 0.3;
 
-/// Of so many sizes, a dimension can be told.
+/// Minimum number of sizes of a range.
 const LEAST_SIZES: usize = 5;
 
-/// The natural logarithm of sizes over which what is left goes together.
+/// Correlation length of the residuals in ln s.
 const TOGETHER: f64 = 1.0;
 
-/// By how much more coarse boxes are off than those of middle sizes.
+/// Relative magnitudes of the residuals of the coarsest boxes, compared with those of middle sizes.
 const ROUGH: [f64; 2] = [3.0, 9.0];
 
-/// An error that is always left: that of the steps.
+/// Minimum standard error: that of the steps.
 const LEAST_ERROR: f64 = 0.003;
 
-/// Sets of a larger thickness are filled: no pen has drawn their lines.
+/// Thickness from which a set is filled, and not made of lines of a pen.
 const FILLED: f64 = 4.5;
 
-/// The prior distribution.
+/// The prior distribution of models.
 struct Belief {
-    /// Widths of the pen beyond a pixel.
+    /// Widths of the pen beyond one pixel.
     pens: Vec<f64>,
     finest: f64,
-    /// The least part of the counts that a model leaves.
+    /// Minimum relative residual of a model.
     left: f64,
-    /// How much likelier D = 2 is than an interval of D with a length of 1.
+    /// Prior probability of D = 2, relative to that of an interval of D with length 1.
     whole: f64,
 }
 
 impl Belief {
-    /// By the thickness of a picture.
+    /// Returns the prior for the thickness of a picture.
     fn of(thickness: f64) -> Self {
-        /// Of pixels that are half full at least, of lines of one pixel, and of pixels that a point of the
-        /// set lies in.
+        /// Widths for pixels that are at least half full, for lines of one pixel, and for pixels that hold a
+        /// point of the set.
         const NONE: [f64; 3] = [-0.6, -0.3, -0.1];
         if thickness >= FILLED {
             return Self {
@@ -89,8 +90,8 @@ impl Belief {
                 whole: 1.0,
             };
         }
-        // A pen that is w + 1 pixels wide leaves a thickness from w to 1.25 w, and what lies close
-        // together makes it larger.
+        // A pen that is w + 1 pixels wide gives a thickness from w to 1.25 w, which is larger where parts lie
+        // close together.
         let widest = thickness.min(3.2);
         let pens = [0.4, 0.6, 0.8, 1.0].map(|part| part * widest);
         let pens = pens.into_iter().filter(|_| widest > 0.12);
@@ -103,11 +104,11 @@ impl Belief {
     }
 }
 
-/// Columns of a regression, with what goes together taken out of neighbouring entries.
+/// Transformation of the columns of a regression that removes the correlation of neighbouring entries.
 struct Whitened {
-    /// The error of every entry.
+    /// Error of every entry, in relative units.
     scale: Vec<f64>,
-    /// How much of an entry goes on in the next one.
+    /// Correlation of every entry with the next one.
     kept: Vec<f64>,
 }
 
@@ -136,7 +137,8 @@ impl Whitened {
         entries.collect()
     }
 
-    /// The logarithm of the determinant of what is taken out of so many entries, but for a constant.
+    /// Returns the logarithm of the determinant of the transformation of the first `entries` entries, up to a
+    /// constant.
     fn volume(&self, entries: usize) -> f64 {
         self.scale[..entries]
             .iter()
@@ -145,7 +147,8 @@ impl Whitened {
     }
 }
 
-/// The dimension of a picture from mean counts, from the smallest boxes on; none if there are too few.
+/// Estimates the dimension of a picture from mean counts, from the smallest boxes on. Returns `None` if there
+/// are too few.
 pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Option<Estimate> {
     let belief = Belief::of(thickness);
     let used = |mean: &&Mean| mean.size >= belief.finest && mean.size <= longest * LARGEST;
@@ -197,19 +200,20 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
 /// A model of a range: the step of its dimension, and the logarithm of its likelihood.
 type Told = (u16, f64);
 
-/// The estimate of the dimension by a range of sizes.
+/// Estimate of the dimension from one range of sizes.
 struct Range {
     sizes: usize,
-    /// The logarithm of its likelihood.
+    /// Logarithm of the likelihood of the range.
     log: f64,
     mean: f64,
     variance: f64,
 }
 
 impl Range {
-    /// From its models, and how much likelier D = 2 is than an interval; none if there is no model.
+    /// Returns the estimate from the models of the range; `whole` is the relative prior of D = 2. Returns
+    /// `None` if there is no model.
     fn of(sizes: usize, told: &[Told], whole: f64) -> Option<Self> {
-        /// Less likely models do not count.
+        /// Logarithm of the likelihood, relative to the best, below which models are ignored.
         const LEAST_LOG: f64 = -40.0;
         let best = told.iter().map(|it| it.1).max_by(f64::total_cmp)?;
         let mut weights = vec![0.0; usize::from(STEPS) + 1];
@@ -236,12 +240,12 @@ impl Range {
 /// All models with one pen.
 struct Models<'a> {
     whitened: &'a Whitened,
-    /// Of every size: the logarithm of the side that the set has been covered by, as a part of the
-    /// coarsest, and the count without the last box.
+    /// For every size: the logarithm of the side by which the set is covered, relative to the coarsest, and
+    /// the count of the set itself.
     logs: Vec<f64>,
     counts: Vec<f64>,
     wanted: Vec<f64>,
-    /// The number of sizes of every range.
+    /// Number of sizes of every range.
     ends: [usize; RANGES],
     left: f64,
 }
@@ -252,7 +256,7 @@ struct Added {
     column: Vec<f64>,
     norms: [f64; RANGES],
     sums: [f64; RANGES],
-    /// At the coarsest size of every range, and at the finest.
+    /// Values at the coarsest size of every range, and at the finest.
     coarse: [f64; RANGES],
     fine: f64,
 }
@@ -286,7 +290,7 @@ impl<'a> Models<'a> {
         }
     }
 
-    /// A power by size: without the rest, and at the ends.
+    /// Returns the power of the side for every size, relative to the coarsest.
     fn power(&self, exponent: f64) -> Vec<f64> {
         self.logs
             .iter()
@@ -299,13 +303,13 @@ impl<'a> Models<'a> {
             .column(|number| power[number] / self.counts[number])
     }
 
-    /// The last entry of every range that has one.
+    /// Returns the last entry of every range that has one.
     fn last(&self, power: &[f64]) -> [f64; RANGES] {
         self.ends
             .map(|end| end.checked_sub(1).map_or(1.0, |last| power[last]))
     }
 
-    /// The inner products of two columns over every range.
+    /// Returns the inner products of two columns over every range.
     fn products(&self, a: &[f64], b: &[f64]) -> [f64; RANGES] {
         let (mut from, mut sum) = (0, 0.0);
         self.ends.map(|end| {
@@ -329,7 +333,7 @@ impl<'a> Models<'a> {
         }
     }
 
-    /// Adds every model to those of its range.
+    /// Appends every model to those of its range.
     fn tell(&self, told: &mut [Vec<Told>; RANGES]) {
         let ranges: Vec<usize> = (0..RANGES)
             .filter(|&it| self.ends[it] >= LEAST_SIZES)
@@ -344,7 +348,7 @@ impl<'a> Models<'a> {
         let added: Vec<Added> = ADDED
             .map(|number| self.added(f64::from(number) * ADDED_STEP))
             .collect();
-        // A second power costs as much as its number of choices, and a part of its likelihood.
+        // A second power is penalised by the number of its choices, and by a constant.
         let price = 3.0 + libm::log(f64::from(ADDED.end));
         let all = self.products(&self.wanted, &self.wanted);
         for step in 1..=STEPS {

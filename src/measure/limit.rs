@@ -1,4 +1,4 @@
-//! The limit set of a graph as points, as close as one likes, with nothing drawn.
+//! The limit set of a graph as points or as occupied boxes, to arbitrary precision, with nothing drawn.
 
 mod cascade;
 mod descent;
@@ -17,30 +17,30 @@ use super::cover::{Grid, Scale, least};
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
 
-/// Why a graph has no limit set that can be walked over.
+/// Reason why a graph has no limit set that can be walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoLimit {
-    /// Maps are drawn, or depend on an index that has to be counted.
+    /// Maps are drawn by chance, or depend on an index that has to be counted.
     #[error("its maps are not fixed: they depend on draws or on indices")]
     NotFixed,
-    /// Objects come up without end.
+    /// New objects arise at every step, without end.
     #[error("what replaces an element changes from step to step without end")]
     Endless,
     /// Seeds are placed as the initiator.
     #[error("there is no limit set: seeds are placed as the initiator")]
     Resets,
-    /// Something comes back at its own size.
+    /// The maps of a cycle do not contract.
     #[error("there is no limit set: what is replaced does not shrink")]
     DoesNotShrink,
-    /// Nothing is replaced for ever.
+    /// No object is replaced infinitely often.
     #[error("there is no limit set: nothing stays fertile")]
     NothingFertile,
 }
 
-/// The limit set of what stays fertile, as the graph tells it: the attractor.
+/// The limit set of a graph's fertile elements: the attractor.
 ///
-/// What becomes of an element at last is a copy of its object's set, and that is the union of the
-/// copies of its instances' sets. Infertile elements are not replaced and add nothing.
+/// The limit of an element is a copy of its object's set, which is the union of the copies of its instances'
+/// sets. Infertile elements are not replaced and add nothing.
 #[derive(Clone, Debug)]
 pub struct LimitSet {
     objects: Vec<Part>,
@@ -48,24 +48,24 @@ pub struct LimitSet {
     bounds: Bounds,
 }
 
-/// What becomes of an object, in its unit frame.
+/// The limit set of an object, in its unit frame.
 #[derive(Clone, Debug, Default)]
 struct Part {
-    /// A point of its set, and the radius of a disc about it that holds the set.
+    /// A point of the set, and the radius of a disc about it that holds the set.
     point: DVec2,
     radius: f64,
-    /// The middle of a box that holds the set, and the radius of a disc about it that does.
+    /// Centre of a box that holds the set, and the radius of a disc about it that holds the set.
     middle: DVec2,
     reach: f64,
     children: Vec<Placed>,
 }
 
-/// A copy of an object's set: where it stands, and how much it is lengthened at most.
+/// A copy of an object's set: its map, and the largest factor by which the map lengthens a vector.
 #[derive(Clone, Copy, Debug)]
 struct Placed {
     map: DAffine2,
     scale: f64,
-    /// Whether it is lengthened in all directions alike.
+    /// Whether the map is a similarity.
     is_similar: bool,
     object: usize,
 }
@@ -83,18 +83,18 @@ impl Placed {
         }
     }
 
-    /// An object's own set.
+    /// Returns the object's own set.
     fn whole(object: usize) -> Self {
         Self::new(DAffine2::IDENTITY, object)
     }
 
-    /// A copy inside this one.
+    /// Returns a copy inside this one.
     #[inline]
     fn compose(&self, inner: &Self) -> Self {
         let map = self.map * inner.map;
         let is_similar = self.is_similar && inner.is_similar;
-        // Where maps are no similarities, the product of their norms is far above that of a long
-        // product of maps.
+        // Where maps are not similarities, the product of their norms far exceeds the norm of a long product
+        // of maps.
         let scale = if is_similar {
             self.scale * inner.scale
         } else {
@@ -109,30 +109,31 @@ impl Placed {
     }
 }
 
-/// A box that is entered by no more than twice this part of its side may be missed.
+/// Radius, in units of a box's side, of the copies that are not examined further: a box that the set enters
+/// by no more than twice this length may be missed.
 const GRAZED: f64 = 1.0 / 8.0;
 
-/// Copies that a cover may look at.
+/// Maximum number of copies that a cover examines.
 const MOST_LOOKED_AT: usize = 1 << 23;
 
-/// What a cover marks, and how many copies it may still look at.
+/// The boxes of a cover, and the number of copies that it may still examine.
 struct Marking {
     bits: Bits,
     left: usize,
 }
 
-/// A distance that is nothing beside the unit.
+/// Scale below which a copy counts as a point.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// Sweeps and levels after which numbers have settled.
+/// Maximum number of sweeps or levels of an iteration.
 const MOST_SWEEPS: usize = 10_000;
 
 impl LimitSet {
-    /// The limit set of a graph's fertile elements.
+    /// Creates the limit set of a graph's fertile elements.
     ///
     /// # Errors
     ///
-    /// If there is none, or if the graph does not tell it.
+    /// Returns an error if there is no limit set, or if the graph does not determine it.
     pub fn of(graph: &Graph) -> Result<Self, NoLimit> {
         if !graph.is_plain() || !graph.is_regular() {
             return Err(NoLimit::NotFixed);
@@ -159,9 +160,9 @@ impl LimitSet {
         Ok(Self::of_copies(children, start))
     }
 
-    /// From the copies in every object's set, and those that the whole is made of.
+    /// Creates the limit set from the copies in every object's set, and those that the whole is made of.
     ///
-    /// Precondition: what is copied has copies in turn, and they shrink.
+    /// Precondition: objects that are copied contain copies in turn, and cycles contract.
     fn of_copies(children: Vec<Vec<Placed>>, start: Vec<Placed>) -> Self {
         let part = |children| Part {
             children,
@@ -175,7 +176,7 @@ impl LimitSet {
         set.find_points();
         set.find_radii();
         set.bounds = Self::extent(&set.objects, &set.start);
-        // A single point has no extent but by rounding.
+        // A single point has no extent except by rounding.
         const ROUNDING: f64 = 1e-12;
         let scale = set.start.iter().map(|copy| copy.scale).fold(0.0, f64::max);
         if set.bounds.size().max_element() <= ROUNDING * scale {
@@ -184,14 +185,14 @@ impl LimitSet {
         set
     }
 
-    /// Its box, to some 12 digits.
+    /// Returns the bounding box of the set, to about 12 digits.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Visits points of the set such that none of it lies farther than `distance` from one of them,
-    /// until `visit` wants no more.
+    /// Visits points of the set such that every point of it is within `distance` of one of them, until
+    /// `visit` returns `false`.
     pub fn visit(&self, distance: f64, mut visit: impl FnMut(DVec2) -> bool) {
         let mut stack: Vec<_> = self.start.iter().rev().copied().collect();
         while let Some(copy) = stack.pop() {
@@ -207,8 +208,8 @@ impl LimitSet {
         }
     }
 
-    /// The number above 1 of which all ratios are powers, if there is one: what the set looks like
-    /// repeats itself at sizes that differ by it.
+    /// Returns the number above 1 of which all ratios are powers, if there is one: the structure of the set
+    /// repeats at sizes that differ by this factor.
     #[must_use]
     pub fn period(&self) -> Option<f64> {
         const LEAST: f64 = 0.05;
@@ -231,13 +232,13 @@ impl LimitSet {
         (common > LEAST).then(|| libm::exp(common))
     }
 
-    /// How the set is covered by boxes of sides that are parts of its extent, each `base` times
-    /// smaller than the one before, down to some `most` boxes (or 2^14 in a row), or to where too many
-    /// copies would have to be looked at.
+    /// Covers the set by boxes whose sides are fractions of its extent, each smaller than the one before by
+    /// the factor `base`, down to about `most` boxes (or 2^14 in a row), or to where too many copies would
+    /// have to be examined.
     ///
     /// # Panics
     ///
-    /// If the base is not above 1.
+    /// Panics if the base is not above 1.
     #[must_use]
     pub fn scales(
         &self,
@@ -276,7 +277,7 @@ impl LimitSet {
         })
     }
 
-    /// The box of the turned set.
+    /// Returns the bounding box of the set, turned as a grid requires.
     pub(super) fn turned_bounds(&self, grid: &Grid) -> Bounds {
         let turn = DAffine2::from_mat2(grid.turn());
         let turned = |copy: &Placed| Placed {
@@ -287,12 +288,13 @@ impl LimitSet {
         Self::extent(&self.objects, &start)
     }
 
-    /// The boxes that the set meets, on a grid that `map` leads to: its boxes have side 1 and corners
-    /// at whole numbers from (0, 0) to `boxes`. What lies outside is left out. `None` where too many
-    /// copies would have to be looked at: long ones that lie side by side, or over each other.
+    /// Returns the boxes that the set meets, on the grid that `map` leads to: its boxes have side 1 and
+    /// corners at whole numbers from (0, 0) to `boxes`. Parts of the set outside the grid are ignored.
+    /// Returns `None` where too many copies would have to be examined: long ones that lie side by side, or
+    /// copies that overlap.
     ///
-    /// Every box that is marked holds a point of the set. A box that the set enters by no more than a
-    /// quarter of its side may be missed.
+    /// Every box that is marked holds a point of the set. A box that the set enters by no more than a quarter
+    /// of its side may be missed.
     #[must_use]
     pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Option<Bits> {
         let grid = Placed::new(*map, 0);
@@ -301,8 +303,8 @@ impl LimitSet {
             bits: Bits::new(boxes[0], boxes[1]),
             left: MOST_LOOKED_AT,
         };
-        // A box that one copy hardly enters is most often met by another: looked into later, few are
-        // left to be looked into at all.
+        // A box that one copy hardly enters is mostly met by another. When such copies are examined later,
+        // the boxes of most of them are marked already.
         let mut later = Vec::new();
         while !stack.is_empty() {
             self.mark(&mut stack, Some(&mut later), &mut marking)?;
@@ -311,9 +313,8 @@ impl LimitSet {
         Some(marking.bits)
     }
 
-    /// Marks the boxes that copies meet. Copies in no more than two columns and rows of boxes, of which
-    /// some are not marked, are put off until `later`, as long as these are not too many, or else are
-    /// looked into.
+    /// Marks the boxes that copies meet. Copies in no more than two columns and rows of boxes, some of which
+    /// are not marked, are moved to `later` until this is full; without `later`, they are divided further.
     fn mark(
         &self,
         stack: &mut Vec<Placed>,
@@ -332,7 +333,7 @@ impl LimitSet {
             if span <= 1 {
                 marking.bits.mark(boxed(point));
             }
-            // Where copies overlap, all of a large one may be known already.
+            // Where copies overlap, all boxes of a large one may be marked already.
             if span <= WIDEST && marking.bits.are_marked(low, high) {
                 continue;
             }
@@ -353,7 +354,7 @@ impl LimitSet {
         Some(())
     }
 
-    /// A point for every object: the one that a fixed address leads to, which is no corner.
+    /// Finds a point of every object's set: the limit of a fixed aperiodic address, which is not a corner.
     fn find_points(&mut self) {
         for start in 0..self.objects.len() {
             let mut copy = Placed::whole(start);
@@ -362,7 +363,7 @@ impl LimitSet {
                 if children.is_empty() || copy.scale <= NEGLIGIBLE {
                     break;
                 }
-                // The golden section never repeats itself.
+                // Multiples of the golden section do not repeat.
                 let turn = (0x9e37_79b9_7f4a_7c15u64.wrapping_mul(level as u64 + 1) >> 33) as usize;
                 copy = copy.compose(&children[turn % children.len()]);
             }
@@ -370,7 +371,7 @@ impl LimitSet {
         }
     }
 
-    /// The discs about all points and all middles.
+    /// Computes the discs about all points and all centres.
     fn find_radii(&mut self) {
         let points: Vec<DVec2> = self.objects.iter().map(|part| part.point).collect();
         let radii = self.radii_about(&points);
@@ -392,7 +393,7 @@ impl LimitSet {
         }
     }
 
-    /// The smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
+    /// Returns the smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
     /// c, approached from below, for points p.
     fn radii_about(&self, points: &[DVec2]) -> Vec<f64> {
         const TOLERANCE: f64 = 1e-9;
@@ -415,7 +416,7 @@ impl LimitSet {
         radii.iter().map(|radius| radius * (1.0 + 1e-6)).collect()
     }
 
-    /// The box of copies, to some 12 digits.
+    /// Returns the bounding box of copies, to about 12 digits.
     fn extent(objects: &[Part], copies: &[Placed]) -> Bounds {
         let [right, up, left, down] = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
             .map(|direction| reach(objects, copies, direction));
@@ -423,10 +424,10 @@ impl LimitSet {
     }
 }
 
-/// How far copies reach in a direction of length 1.
+/// Returns the extent of copies in a direction of length 1.
 ///
-/// Those that may reach farthest are looked into, again and again; of many that reach as far, any
-/// will do.
+/// The copies whose discs may reach farthest are divided repeatedly; of more than 256 such copies, those
+/// whose discs reach farthest are kept.
 fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
     const MOST_COPIES: usize = 256;
     const TOLERANCE: f64 = 1e-13;
@@ -461,7 +462,7 @@ fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
     certain
 }
 
-/// The fixed instances that take an object's place or start what it seeds.
+/// Iterates over the fixed instances that replace an object or start its seeds.
 fn fertile(graph: &Graph, object: usize) -> impl Iterator<Item = &Instance> {
     let production = match &graph.objects()[object].replacement {
         Replacement::Fixed(production) => Some(production),
@@ -475,7 +476,7 @@ fn fertile(graph: &Graph, object: usize) -> impl Iterator<Item = &Instance> {
         .map(|(_, instance)| instance)
 }
 
-/// Objects from which a fertile path goes on for ever.
+/// Returns whether each object is the start of an infinite fertile path.
 fn lasting(graph: &Graph) -> Vec<bool> {
     let mut lasting = vec![true; graph.objects().len()];
     loop {
@@ -488,7 +489,7 @@ fn lasting(graph: &Graph) -> Vec<bool> {
     }
 }
 
-/// The box that a point lies in.
+/// Returns the box that a point lies in.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

@@ -1,54 +1,52 @@
-//! Dimensions as slopes over few decades, with an error that does not flatter them.
+//! Dimensions as slopes over few decades, with an error that accounts for systematic deviations.
 //!
-//! Counts of boxes are a power of the size only in the limit: rims, gaps and coarse boxes bend the
-//! line, and the residuals of neighbouring sizes go together. So the slope is told in two ways. One
-//! is that of the finer half of the sizes. The other is that of all sizes with a correction to
-//! scaling, y = a + D x + c exp(−θ x) with x = ln (1 / size), where θ is what fits best (as for
-//! critical exponents: Wegner 1972); it is believed if c is more than three standard errors above 0:
-//! there are boxes of a rim, say, beside those of the set. (Where slopes fall as boxes get smaller, small
-//! boxes have more likely lost thin parts of a picture.)
-//! The first lags behind a bend and the second runs ahead of it: the estimate is their mean. Where
-//! there is no such bend, it is the first, and the second is the slope of all sizes. How far the second
-//! lies from the estimate is part of its error.
+//! Counts of boxes are a power of the size only in the limit: rims, gaps and coarse boxes bend the line, and
+//! the residuals of neighbouring sizes are correlated. The slope is therefore estimated in two ways. One is
+//! the slope of the finer half of the sizes. The other is that of all sizes with a correction to scaling, y =
+//! a + D x + c exp(−θ x) with x = ln (1 / size), where θ is the best fit (as for critical exponents: Wegner
+//! 1972). A correction is accepted if c is more than three standard errors above 0, as where boxes of a rim
+//! add to those of the set. (Where slopes fall as boxes get smaller, small boxes have more likely lost thin
+//! parts of a picture.) The first slope lags behind a bend and the second overshoots it: the estimate is
+//! their mean. Without a significant bend, the estimate is the first slope, and the second is that of all
+//! sizes without a correction. The difference between the second slope and the estimate is part of the error.
 
-/// A measurement at one size of boxes.
+/// Measurement at one size of boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reading {
     pub(super) size: f64,
-    /// The logarithm of what is measured.
+    /// Logarithm of the measured quantity.
     pub(super) log: f64,
-    /// The standard deviation of the logarithm among grids.
+    /// Standard deviation of the logarithm over grids.
     pub(super) scatter: f64,
-    /// How much it grows since the size before.
+    /// Growth of the logarithm since the previous size.
     pub(super) growth: f64,
-    /// The standard error of that.
+    /// Standard error of the growth.
     pub(super) growth_error: f64,
 }
 
-/// A dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
+/// Dimension as the slope of a weighted regression of a logarithm on ln (1 / size).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// The dimension: the mean over models and ranges, by their likelihood. Of pictures that the boxes of
-    /// a base fit: the mean of local slopes. Of few sizes: the slope of the finer half of them, or its mean
+    /// The dimension: the mean over models and ranges, weighted by likelihood. For pictures that the boxes of
+    /// a base fit, the mean of local slopes. For few sizes, the slope of the finer half of them, or its mean
     /// with the slope of all of them with a correction to scaling, where that is significant.
     pub value: f64,
-    /// Its standard error: that of the regression, made larger as far as residuals of neighbouring
-    /// sizes go together, and how far other ways to tell the slope lie from it.
+    /// Standard error of the dimension: that of the regression, increased for correlated residuals of
+    /// neighbouring sizes, and the difference to other estimates of the slope.
     pub std_error: f64,
-    /// The smallest and the largest size that were used, in the units of the set; on the mean, where
-    /// there are several ranges.
+    /// Smallest and largest size that were used, in the units of the set; means where there are several
+    /// ranges.
     pub range: [f64; 2],
-    /// The part of the variance that a straight line through all sizes explains, from 0 to 1.
+    /// Fraction of the variance that a straight line through all sizes explains, from 0 to 1.
     pub r_squared: f64,
-    /// The logarithm at size 1, on the line with this slope through the middle of the sizes that tell
-    /// it.
+    /// Logarithm at size 1, on the line with this slope through the mean of the sizes that determine it.
     pub intercept: f64,
-    /// The number of sizes that were used; 0 if nothing had to be measured.
+    /// Number of sizes that were used; 0 if nothing had to be measured.
     pub sizes: usize,
 }
 
 impl Estimate {
-    /// The decades that the range spans.
+    /// Returns the number of decades that the range spans.
     #[must_use]
     pub fn decades(&self) -> f64 {
         libm::log10(self.range[1] / self.range[0])
@@ -56,8 +54,9 @@ impl Estimate {
 }
 
 impl Estimate {
-    /// With an error for local slopes that have drifted so far over the finer half of the decades: how far
-    /// they go on is not known. Those that drift as 1 / ln (1 / size) do have as much before them.
+    /// Returns the estimate with an error increased by half of the drift of local slopes over the finer half
+    /// of the decades. The drift beyond the smallest size is not known: slopes that drift as 1 / ln (1 /
+    /// size) have as much drift left.
     pub(super) fn drifting(self, drift: f64) -> Self {
         Self {
             std_error: libm::hypot(self.std_error, drift / 2.0),
@@ -66,19 +65,21 @@ impl Estimate {
     }
 }
 
-/// A scatter below this is not believed: grids are few, and none is the best one.
+/// Lower bound of the scatter: grids are few, and none of them is optimal.
 const LEAST_SCATTER: f64 = 0.01;
 
-/// Where a line fits better than the scatter tells, errors are made smaller, but no more than so.
+/// Lower bound of the factor by which the variance is reduced where a line fits better than the scatter
+/// implies.
 const LEAST_FACTOR: f64 = 0.05;
 
-/// A correction to scaling takes so many sizes, at least.
+/// Minimum number of sizes for a correction to scaling.
 const LEAST_SIZES: usize = 5;
 
-/// A coefficient that is so many standard errors above 0 is significant.
+/// Number of standard errors above 0 beyond which a coefficient is significant.
 const SIGNIFICANT: f64 = 3.0;
 
-/// The slope of readings, from the largest size to the smallest; none if there are fewer than three.
+/// Estimates the slope of readings, from the largest size to the smallest. Returns `None` if there are fewer
+/// than three.
 pub(super) fn estimate(readings: &[Reading]) -> Option<Estimate> {
     if readings.len() < 3 {
         return None;
@@ -106,8 +107,8 @@ pub(super) fn estimate(readings: &[Reading]) -> Option<Estimate> {
     })
 }
 
-/// What part of the variance a straight line through readings explains, and the logarithm at size 1 on
-/// a line with a slope through their middle.
+/// Returns the fraction of the variance that a straight line through readings explains, and the logarithm at
+/// size 1 on the line with slope `slope` through their mean.
 pub(super) fn line(readings: &[Reading], slope: f64) -> (f64, f64) {
     let points = Points::of(readings);
     let (x, y) = points.middle();
@@ -121,18 +122,18 @@ pub(super) struct Points {
     weights: Vec<f64>,
 }
 
-/// A regression.
+/// Result of a regression.
 pub(super) struct Fit {
     pub(super) slope: f64,
     pub(super) error: f64,
-    /// The weighted sum of the squares of the residuals.
+    /// Weighted sum of the squares of the residuals.
     residual: f64,
-    /// The coefficient of the correction in standard errors.
+    /// Coefficient of the correction in standard errors.
     significance: f64,
 }
 
 impl Points {
-    /// Of abscissas, ordinates and weights.
+    /// Creates columns from rows of an abscissa, an ordinate and a weight.
     pub(super) fn new(rows: impl Iterator<Item = (f64, f64, f64)>) -> Self {
         let rows: Vec<_> = rows.collect();
         Self {
@@ -151,7 +152,7 @@ impl Points {
         }
     }
 
-    /// The best of all lines with a correction, if that is significant.
+    /// Returns the best of all lines with a correction, if its coefficient is significant.
     fn corrected(&self) -> Option<Fit> {
         if self.x.len() < LEAST_SIZES {
             return None;
@@ -162,10 +163,10 @@ impl Points {
         (best.significance > SIGNIFICANT).then_some(best)
     }
 
-    /// A line, or a line with a correction of an exponent, by weighted least squares.
+    /// Fits a line, or a line with a correction of an exponent, by weighted least squares.
     ///
-    /// A coefficient is what a column has to do with y once all other columns are taken out of it
-    /// (Frisch & Waugh 1933).
+    /// A coefficient is the regression of y on the residual of its column, once all other columns are
+    /// projected out (Frisch & Waugh 1933).
     pub(super) fn fit(&self, exponent: Option<f64>) -> Fit {
         let first = self.x[0];
         let ones = vec![1.0; self.x.len()];
@@ -183,7 +184,7 @@ impl Points {
         basis.push(&x);
         let residuals = self.rest(&self.y, &basis);
         let residual = self.dot(&residuals, &residuals);
-        // The exponent is one more that was fitted.
+        // The exponent is fitted as well.
         let fitted = 2 + 2 * usize::from(bend.is_some());
         let freedom = count(self.x.len().saturating_sub(fitted).max(1));
         let factor = (residual / freedom).max(LEAST_FACTOR);
@@ -200,14 +201,13 @@ impl Points {
         }
     }
 
-    /// The weighted inner product.
+    /// Returns the weighted inner product.
     fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
         let products = a.iter().zip(b).zip(&self.weights);
         products.map(|((a, b), weight)| weight * a * b).sum()
     }
 
-    /// What is left of a column when others are taken out of it (Gram–Schmidt, twice over for the
-    /// sake of rounding).
+    /// Returns the residual of a column orthogonal to others (Gram–Schmidt, twice because of rounding).
     fn rest(&self, column: &[f64], others: &[&[f64]]) -> Vec<f64> {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for other in others {
@@ -231,7 +231,7 @@ impl Points {
         }
     }
 
-    /// The weighted means of x and y.
+    /// Returns the weighted means of x and y.
     fn middle(&self) -> (f64, f64) {
         let total: f64 = self.weights.iter().sum();
         let ones = vec![1.0; self.x.len()];
@@ -245,7 +245,7 @@ impl Points {
         let (_, mean) = self.middle();
         let away: Vec<f64> = self.y.iter().map(|y| y - mean).collect();
         let all = self.dot(&away, &away);
-        // A level line through level points explains everything.
+        // A level line through level points explains all of the variance.
         if all > 0.0 {
             (1.0 - line.residual / all).max(0.0)
         } else {
@@ -253,8 +253,8 @@ impl Points {
         }
     }
 
-    /// How much larger the variance of a slope is where residuals follow each other as those of an
-    /// autoregression of the first order (Bartlett 1946).
+    /// Returns the factor by which the variance of a slope is larger where residuals follow an autoregression
+    /// of the first order (Bartlett 1946).
     fn inflation(&self, residuals: &[f64]) -> f64 {
         const MOST: f64 = 0.8;
         let scaled = residuals.iter().zip(&self.weights);
@@ -307,7 +307,7 @@ mod tests {
 
     #[test]
     fn a_bend_is_followed_and_told_as_an_error() {
-        // A disc with a rim: boxes of area and boxes of the rim.
+        // A disc with a rim: boxes of the area and boxes of the rim.
         let bent = readings(8, |x| {
             libm::log(libm::exp(2.0 * x) + 2.0 * libm::exp(1.3 * x))
         });

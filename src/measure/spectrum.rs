@@ -1,4 +1,4 @@
-//! The spectrum of dimensions D_q: how entropies of a set's mass grow as boxes get smaller.
+//! Generalised dimensions D_q: the growth of entropies of a set's mass as boxes get smaller.
 
 use std::num::NonZero;
 
@@ -12,25 +12,26 @@ use super::raster::whole;
 use super::regression::{Estimate, Reading, estimate};
 use super::sample::Sample;
 
-/// A dimension of the spectrum D_q (Hentschel & Procaccia 1983), and its evidence.
+/// Generalised dimension D_q of a set (Hentschel & Procaccia 1983), and its evidence.
 #[derive(Clone, Debug)]
 pub struct Generalised {
-    /// The order: 0 counts boxes, 1 is the information dimension, 2 the correlation dimension.
+    /// Order q: 0 gives the box-counting dimension, 1 the information dimension, 2 the correlation dimension.
     pub order: f64,
-    /// The dimension; none if there are fewer than three sizes.
+    /// The dimension; `None` if there are fewer than three sizes.
     pub estimate: Option<Estimate>,
-    /// By the side of the boxes, from the largest on: ln Σ p^q / (1 − q), or −Σ p ln p for q = 1, where
-    /// p are the parts of the mass in the boxes; the least of all grids, or their mean for points. Of a
-    /// measure on a limit set, balls about its points are in their place: ln (mean of p^(q − 1)) / (1 − q), or the mean
-    /// of −ln p.
+    /// Sides of boxes, from the largest on, and the entropies for these: ln Σ p^q / (1 − q), or −Σ p ln p for
+    /// q = 1, where p are the fractions of the mass in the boxes. For pictures, the smallest entropy of all
+    /// grids; for points, the mean. For a measure on a limit set, balls about its points take the place of
+    /// boxes: ln (mean of p^(q − 1)) / (1 − q), or the mean of −ln p.
     pub entropies: Vec<(f64, f64)>,
 }
 
-/// In boxes that are so many times as large as those whose masses are equal, masses are a set's own.
+/// Side of the smallest boxes, in pixels, whose masses are those of the set; the masses of pixels are all
+/// equal.
 const COARSER: f64 = 8.0;
 
 impl Generalised {
-    /// That of order 0, as boxes have told it.
+    /// Returns the dimension of order 0, from box counts.
     #[must_use]
     pub fn of_boxes(counting: &BoxCounting) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
@@ -42,10 +43,10 @@ impl Generalised {
         }
     }
 
-    /// Those of a picture, all of whose set pixels have the same mass, for some orders.
+    /// Measures the dimensions of a picture for several orders. All set pixels have the same mass.
     ///
-    /// Used are boxes of at least 8 pixels, of which at least 4 make the long side of the picture. No
-    /// width of a pen and no rims are allowed for: how far what their number tells lies off the dimension
+    /// Sizes are used from 8 pixels up to a quarter of the picture's long side. Neither the width of a pen
+    /// nor rims are taken into account: the difference between the dimension of order 0 and the dimension
     /// that was `counted`, where both are known, is part of the errors.
     #[must_use]
     pub fn of_pixels(
@@ -69,12 +70,12 @@ impl Generalised {
         spectrum
     }
 
-    /// Those of a measure on a limit set, for some orders, in balls about its points that are each
-    /// `base` times smaller than those before.
+    /// Measures the dimensions of a measure on a limit set for several orders, in balls about its points that
+    /// are each smaller by the factor `base` than those before.
     ///
-    /// Without a base, it is the least power of the set's own period that is about 2 or more, or 2. Balls
-    /// go from about half the extent down to 10⁻⁸ of it, or to where too many copies lie over each
-    /// other, in so many series of sizes. What is told does not [rise](Self::fall) with the order.
+    /// The default base is the smallest power of the set's own period that is at least 1.8, or else 2. Balls
+    /// go from about half the extent down to 10⁻⁸ of it, or to where too many copies overlap, in `series`
+    /// series of sizes. The results do not [rise](Self::fall) with the order.
     #[must_use]
     pub fn of_measure(
         measure: &Cascade,
@@ -108,9 +109,9 @@ impl Generalised {
         spectrum
     }
 
-    /// Makes dimensions not rise with the order, as those of no measure do (Beck 1990): of neighbours that
-    /// do, all have the mean, weighted by their errors (pool adjacent violators: Ayer et al. 1955).
-    /// How far a dimension is moved is part of its error.
+    /// Makes dimensions not rise with the order, as those of no measure do (Beck 1990): neighbours that do
+    /// are replaced by their mean, weighted by their errors (pool adjacent violators: Ayer et al. 1955). The
+    /// displacement of a dimension is part of its error.
     pub fn fall(spectrum: &mut [Self]) {
         let mut order: Vec<usize> = (0..spectrum.len())
             .filter(|&number| spectrum[number].estimate.is_some())
@@ -143,9 +144,9 @@ impl Generalised {
         }
     }
 
-    /// Those of points as a sample of a set, for some orders.
+    /// Measures the dimensions of points as a sample of a set for several orders.
     ///
-    /// Used are boxes of the sizes that box counting may use, up to a quarter of the extent.
+    /// Sizes are used that box counting may use, up to a quarter of the extent if they are halved.
     #[must_use]
     pub fn of_sample(sample: &Sample, orders: &[f64], finest: f64) -> Vec<Self> {
         let sizes = &sample.sizes()[..sample.enough()];
@@ -163,14 +164,14 @@ impl Generalised {
     }
 }
 
-/// Dimensions of neighbouring orders that are put together.
+/// Dimensions of neighbouring orders that are averaged.
 struct Pool {
     value: f64,
     weight: f64,
     members: Vec<usize>,
 }
 
-/// No error is believed to be smaller where dimensions are put together.
+/// Minimum error where dimensions are averaged.
 const LEAST_ERROR: f64 = 1e-9;
 
 impl Pool {
@@ -183,7 +184,7 @@ impl Pool {
     }
 }
 
-/// The least power of a period that is not far below 2, or 2.
+/// Returns the smallest power of a period that is at least 1.8, or 2 if there is no period.
 fn base_of(period: Option<f64>) -> f64 {
     const LEAST: f64 = 1.8;
     period.map_or(2.0, |period| {
@@ -192,7 +193,7 @@ fn base_of(period: Option<f64>) -> f64 {
     })
 }
 
-/// The mean slope of some readings, and its standard error.
+/// Returns the mean slope of readings, and its standard error.
 fn slope(readings: &[Reading]) -> (f64, f64) {
     let pairs = readings.windows(2);
     let of = |pair: &[Reading]| {
@@ -206,12 +207,12 @@ fn slope(readings: &[Reading]) -> (f64, f64) {
     (mean(&slopes), (mean(&squares) / count).sqrt())
 }
 
-/// An estimate where slopes still drift as balls get smaller: what the mean slopes of the last three
-/// quarters of all sizes tend to, if they halve their distance from one to the next. It lies a third of the
-/// whole drift beyond the last of them, and half of the drift is part of its error.
+/// Extrapolates an estimate where slopes still drift as balls get smaller: to the limit of the mean slopes of
+/// the last three quarters of all sizes, if each halves the distance to the limit. The limit lies a third of
+/// the whole drift beyond the last mean slope, and half of the drift is part of its error.
 ///
-/// Where slopes do not drift by more than the error of the estimate, it stays as it is; where that may be
-/// chance, or they go to and fro, half of the drift is part of its error all the same.
+/// The estimate is unchanged where slopes drift by no more than its error. Where the drift may be chance, or
+/// slopes do not drift in one direction, only half of the drift is added to the error.
 fn with_drift(estimate: Estimate, readings: &[Reading], most: f64) -> Estimate {
     const SIGNIFICANT: f64 = 3.0;
     let quarter = readings.len().saturating_sub(1) / 4;
@@ -241,15 +242,16 @@ fn with_drift(estimate: Estimate, readings: &[Reading], most: f64) -> Estimate {
     }
 }
 
-/// Of negative orders, dimensions may be larger than the plane's.
+/// Returns the upper bound of the dimension of an order; for negative orders, dimensions may exceed that of
+/// the plane.
 fn most(order: f64) -> f64 {
     if order < 0.0 { f64::INFINITY } else { PLANE }
 }
 
-/// Sizes that differ by rounding only are the same.
+/// Relative tolerance within which sizes count as equal.
 const SLACK: f64 = 1.0 + 1e-6;
 
-/// The spectrum of masses on several grids, over boxes of sizes in a range.
+/// Computes the dimensions of masses on several grids, from boxes with sizes in a range.
 fn of_masses(
     orders: &[f64],
     grids: &[Grid],
@@ -257,7 +259,7 @@ fn of_masses(
     [finest, coarsest]: [f64; 2],
     masses: impl Fn(&Grid) -> Option<Masses> + Sync,
 ) -> Option<Vec<Generalised>> {
-    // By grid, size and order.
+    // Entropies by grid, size and order.
     let entropies = on_all(grids, threads, |_, grid| {
         let mut masses = masses(grid)?;
         let mut entropies = Vec::new();
@@ -282,10 +284,10 @@ fn of_masses(
     Some(orders.iter().enumerate().map(of).collect())
 }
 
-/// The slope of entropies by size and grid; of sizes, those are used at which all are finite.
+/// Fits the slope of entropies by size and grid, over the sizes at which all are finite.
 ///
-/// Of a set that is known, the least entropy of all grids is kept, as the least cover is; of a sample,
-/// their mean.
+/// For a set that is known, the smallest entropy of all grids is kept, as the smallest cover is; for a
+/// sample, their mean.
 fn fitted(order: f64, entropies: &[(f64, Vec<f64>)], is_sample: bool) -> Generalised {
     let finite = |by_grid: &Vec<f64>| by_grid.iter().all(|entropy| entropy.is_finite());
     let entropies = entropies.iter().filter(|(_, by_grid)| finite(by_grid));
@@ -350,7 +352,7 @@ mod tests {
         ];
         Generalised::fall(&mut spectrum);
         let told: Vec<Estimate> = spectrum.iter().filter_map(|it| it.estimate).collect();
-        // 1 and 1.3 count four times as much as 1.2.
+        // The errors give 1 and 1.3 four times the weight of 1.2.
         let mean = (4.0 * 1.0 + 1.2 + 4.0 * 1.3) / 9.0;
         for estimate in &told[..3] {
             assert!((estimate.value - mean).abs() < 1e-12, "{estimate:?}");
@@ -362,7 +364,7 @@ mod tests {
 
     #[test]
     fn slopes_that_drift_tell_a_larger_error() {
-        // 2 − ε^0.1 / 4: slowly nearer to 2.
+        // 2 − ε^0.1 / 4 approaches 2 slowly.
         let slope = |level: i32| 2.0 - 0.25 * libm::exp2(-0.1 * f64::from(level));
         let mut log = 0.0;
         let readings = (0..25).map(|level| {

@@ -1,4 +1,4 @@
-//! Measures on a limit set: a multiplicative cascade that hands the mass of a copy on to its parts.
+//! Measures on a limit set: a multiplicative cascade distributes the mass of a copy over its parts.
 
 use crate::geometry::DVec2;
 use crate::graph::Graph;
@@ -8,48 +8,48 @@ use crate::measure::exact::distinct;
 
 use super::{LimitSet, Placed};
 
-/// A measure on a limit set, by the share of its mass that every copy has: that of a copy in a copy
-/// is the product of the shares on the way (Hutchinson 1981; for graphs: Mauldin & Williams 1988).
+/// A measure on a limit set, defined by the share of every copy in the mass of its set: the mass of a nested
+/// copy is the product of the shares along its path (Hutchinson 1981; for graphs: Mauldin & Williams 1988).
 ///
-/// Copies that have no share are left out, so that the set is the measure's support.
+/// Copies without a share are left out, and the set is the measure's support.
 #[derive(Clone, Debug)]
 pub struct Cascade {
     pub(super) set: LimitSet,
-    /// By object, the shares of its copies, which add up to 1.
+    /// Shares of the copies, by object; they add up to 1.
     pub(super) shares: Vec<Vec<f64>>,
-    /// The masses of what the whole is made of, which add up to 1.
+    /// Masses of the copies that the whole is made of; they add up to 1.
     pub(super) start: Vec<f64>,
-    /// The centres of mass of the objects.
+    /// Centres of mass of the objects.
     pub(super) centres: Vec<DVec2>,
 }
 
-/// Sweeps after which centres have settled.
+/// Maximum number of sweeps in the computation of centres.
 const MOST_SWEEPS: usize = 1_000;
 
 impl Cascade {
-    /// The natural measure of the limit set of a graph's fertile elements: a copy of the size r has a
-    /// mass of about r^s, where s is the set's dimension (Hutchinson 1981; for graphs: Mauldin &
-    /// Williams 1988).
+    /// Creates the natural measure of the limit set of a graph's fertile elements: a copy of size r has a
+    /// mass of about r^s, where s is the set's dimension (Hutchinson 1981; for graphs: Mauldin & Williams
+    /// 1988).
     ///
-    /// Pieces that coincide count once, where they are of finitely many types (Ngai & Wang 2001); else
-    /// s is the similarity dimension. Of maps that are no similarities, the singular value function
-    /// takes the place of r^s (Falconer 1988).
+    /// Pieces that coincide count once, where they are of finitely many types (Ngai & Wang 2001); otherwise s
+    /// is the similarity dimension. For maps that are not similarities, the singular value function replaces
+    /// r^s (Falconer 1988).
     ///
-    /// `None` where the graph is not made of fixed maps that contract.
+    /// Returns `None` where the graph is not made of fixed maps that contract.
     #[must_use]
     pub fn natural(graph: &Graph) -> Option<Self> {
         Self::of(&distinct(Copies::of(graph)?).natural()?)
     }
 
-    /// The measure that the weights of a system give, without condensation sets.
+    /// Creates the measure that the weights of a system define, without condensation sets.
     ///
-    /// `None` where [there is no one measure](crate::ifs::Walk::stationary).
+    /// Returns `None` where [the measure is not unique](crate::ifs::Walk::stationary).
     #[must_use]
     pub fn of_weights(ifs: &Ifs) -> Option<Self> {
         Self::of(&Shared::of_weights(ifs)?)
     }
 
-    /// `None` if nothing has a mass.
+    /// Creates the measure of shares; `None` if no copy of the whole has mass.
     pub(in crate::measure) fn of(shared: &Shared) -> Option<Self> {
         let mut children = vec![Vec::new(); shared.copies.size];
         let mut shares = vec![Vec::new(); shared.copies.size];
@@ -77,13 +77,13 @@ impl Cascade {
         Some(cascade)
     }
 
-    /// The support.
+    /// Returns the support of the measure.
     #[must_use]
     pub fn set(&self) -> &LimitSet {
         &self.set
     }
 
-    /// Centres of mass, c(o) = Σ share f(c(p)) over the copies f of p.
+    /// Computes the centres of mass, c(o) = Σ share f(c(p)) over the copies f of p.
     fn find_centres(&mut self) {
         const TOLERANCE: f64 = 1e-6;
         let mut centres: Vec<DVec2> = self.set.objects.iter().map(|part| part.point).collect();
@@ -100,7 +100,7 @@ impl Cascade {
                     centres[object] = centre;
                 }
             }
-            // A set of a single point has no radius.
+            // A set of a single point has radius 0.
             if change <= TOLERANCE || change.is_nan() {
                 break;
             }

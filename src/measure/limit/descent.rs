@@ -1,9 +1,9 @@
-//! Covers by boxes that are too many to be counted, from a sample of them that is followed down.
+//! Covers by boxes that are too many to be counted, estimated from a sample of boxes that is refined.
 //!
-//! Every box is divided into smaller ones, and those of them that copies of the set come near to are
-//! divided again. Where there are too many, some are chosen at random and each stands for as many
-//! more of its size: *splitting* (Kahn & Harris 1951), which tells sums over all boxes without bias.
-//! The boxes that are chosen are spread evenly over the set, one of each run of neighbours.
+//! Every box is divided into smaller ones, and those of them that copies of the set come near to are divided
+//! again. Where there are too many, some are chosen at random and each represents proportionally more of its
+//! size: *splitting* (Kahn & Harris 1951), which estimates sums over all boxes without bias. The chosen boxes
+//! are spread evenly over the set, one of each run of neighbours.
 
 use std::num::NonZero;
 
@@ -16,43 +16,43 @@ use crate::whole::whole;
 
 use super::{GRAZED, LimitSet, Placed};
 
-/// Copies in the boxes of a size that are followed, and the least number of such boxes. As long as
-/// there are fewer, counts are exact.
+/// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes. Counts are
+/// exact as long as there are fewer.
 const FOLLOWED_COPIES: usize = 1 << 14;
 const FOLLOWED: usize = 1 << 11;
 
-/// A copy whose disc has a larger radius than so many boxes is looked at by its parts.
+/// Radius, in sides of a box, above which the disc of a copy is divided.
 const LARGEST: f64 = 2.0;
 
-/// Copies of one size that may be looked at: where too many lie over each other, the descent ends.
+/// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
 const MOST_COPIES: usize = 1 << 22;
 
-/// The smallest boxes, as a part of the extent: there, doubles still tell six digits of a box, and counts
-/// are whole numbers of 64 bits.
+/// Side of the smallest boxes, as a fraction of the extent: there, doubles still resolve six digits of a box,
+/// and counts fit 64 bits.
 const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Of so many copies in a box, some may be the same.
+/// Number of copies in a box from which equal ones are removed.
 const MANY: usize = 8;
 
-/// A box, as the copies near it, on a scale on which it is the unit square.
+/// A box, as the copies near it, on a scale on which the box is the unit square.
 type Cell = Vec<Placed>;
 
-/// A count of boxes, and whether it comes from a sample.
+/// Number of boxes, and whether it is estimated from a sample.
 type Count = (f64, bool);
 
-/// What is followed down.
+/// The boxes of the present size that are refined.
 struct Descent<'s> {
     set: &'s LimitSet,
     cells: Vec<Cell>,
-    /// How many boxes one that is followed stands for.
+    /// Number of boxes that each box represents.
     weight: f64,
     random: Pcg64Mcg,
     looked_at: usize,
 }
 
 impl<'s> Descent<'s> {
-    /// From the boxes of a grid: `start` are copies on a scale on which these have side 1, and corners
-    /// at whole numbers from (0, 0) to `boxes`.
+    /// Starts from the boxes of a grid: `start` holds copies on a scale on which boxes have side 1, and
+    /// corners at whole numbers from (0, 0) to `boxes`.
     fn new(set: &'s LimitSet, start: Vec<Placed>, boxes: [usize; 2], seed: usize) -> Self {
         let mut descent = Self {
             set,
@@ -65,7 +65,7 @@ impl<'s> Descent<'s> {
         descent
     }
 
-    /// How many boxes the set meets; `None` where too many copies lie over each other.
+    /// Returns the number of boxes that the set meets; `None` where too many copies overlap.
     fn count(&self) -> Option<Count> {
         if self.looked_at > MOST_COPIES {
             return None;
@@ -79,7 +79,7 @@ impl<'s> Descent<'s> {
         (met > 0).then_some((met as f64 * self.weight, self.weight > 1.0))
     }
 
-    /// Goes on to boxes `base` times smaller.
+    /// Continues with boxes smaller by the factor `base`.
     fn go_down(&mut self, base: usize) {
         self.choose();
         self.looked_at = 0;
@@ -125,7 +125,7 @@ impl<'s> Descent<'s> {
         self.cells = chosen.collect();
     }
 
-    /// The boxes of a grid that copies come near to, row by row from the lower left.
+    /// Returns the boxes of a grid that copies come near to, row by row from the lower left.
     fn divided(&mut self, mut copies: Vec<Placed>, boxes: [usize; 2]) -> Vec<Cell> {
         let mut cells = vec![Cell::new(); boxes[0] * boxes[1]];
         while let Some(copy) = copies.pop() {
@@ -166,7 +166,7 @@ impl<'s> Descent<'s> {
     }
 }
 
-/// Takes out copies that are the same as others.
+/// Removes copies that are equal to others.
 fn without_doubles(cell: &mut Cell) {
     const SAME: f64 = 1e-5;
     if cell.len() < MANY {
@@ -186,16 +186,16 @@ fn without_doubles(cell: &mut Cell) {
 }
 
 impl LimitSet {
-    /// How the set is covered by boxes of sides that are parts of its extent, each `base` times
-    /// smaller than the one before, down to where numbers end: by a sample of boxes where there are
-    /// too many to be counted.
+    /// Covers the set by boxes whose sides are fractions of its extent, each smaller than the one before by
+    /// the factor `base`, down to the resolution of doubles. Boxes that are too many to be counted are
+    /// estimated from a sample.
     ///
-    /// A sample tells how counts grow. From the last least cover that was counted, the count grows
-    /// by the mean of all grids. Where too many copies lie over each other, sizes end.
+    /// A sample gives the growth of counts: from the last smallest cover that was counted, the count grows by
+    /// the mean over all grids. The sizes end where too many copies overlap.
     ///
     /// # Panics
     ///
-    /// If the base is 1.
+    /// Panics if the base is 1.
     #[must_use]
     pub fn sampled_scales(
         &self,
@@ -234,8 +234,8 @@ impl LimitSet {
         joined(&sizes, &counts)
     }
 
-    /// Whether the unit square holds a point of the set; `copies` are what comes near it. `None` where
-    /// more than what is left would have to be looked at.
+    /// Returns `true` if the unit square holds a point of the set; `copies` are those near it. Returns `None`
+    /// where more than `left` copies would have to be examined.
     fn meets(&self, copies: &[Placed], left: &mut usize) -> Option<bool> {
         let lies_in = |copy: &Placed| {
             let point = copy.map.transform_point2(self.objects[copy.object].point);
@@ -266,7 +266,8 @@ impl LimitSet {
     }
 }
 
-/// Errors that are told from few grids, drawn half of the way to those of all sizes.
+/// Replaces the variances of growths that are estimated from samples, on few grids, by their means with the
+/// average variance of all such sizes.
 fn pooled(scales: &mut [Scale]) {
     let sampled = scales.iter().skip(1).filter(|scale| scale.sampled);
     let squares = sampled.map(|scale| scale.growth_error * scale.growth_error);
@@ -281,7 +282,7 @@ fn pooled(scales: &mut [Scale]) {
     }
 }
 
-/// The least counts of all grids, and how they grow where they come from samples.
+/// Returns the smallest counts of all grids, and their mean growth where they are estimated from samples.
 fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
     let levels = counts.iter().map(Vec::len).min().unwrap_or_default();
     let logs = |level: usize| counts.iter().map(move |counts| libm::log(counts[level].0));

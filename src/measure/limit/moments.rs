@@ -1,15 +1,15 @@
-//! How the mass about a measure's points grows with the size of balls: its moments.
+//! The growth of the mass about a measure's points with the size of balls: its moments.
 //!
-//! With the mass M of the ball of a size ε about a point of the measure, the mean of M^(q − 1) over all
-//! points goes with ε^((q − 1) D_q) (Hentschel & Procaccia 1983; Pawelzik & Schuster 1987). Balls about
-//! points of the measure are never hardly met, as some boxes of a grid always are, whose small masses make
-//! sums of negative orders worthless: they are enlarged boxes in the sense of Riedi (1995).
+//! With the mass M of the ball of radius ε about a point of the measure, the mean of M^(q − 1) over all
+//! points scales as ε^((q − 1) D_q) (Hentschel & Procaccia 1983; Pawelzik & Schuster 1987). Boxes of a grid
+//! that are hardly met have small masses, which make sums of negative orders worthless. Balls about points of
+//! the measure avoid this: they are enlarged boxes in the sense of Riedi (1995).
 //!
-//! Masses come from the graph: the set falls into *pieces*, copies that are small beside a ball, and a
-//! piece has its mass where its centre is. Pieces are divided again and again, and what lies near them
-//! with them. Where there are too many, some stand for the others (*splitting*: Kahn & Harris 1951),
-//! evenly spread over the set, and the more likely the more a piece adds to any of the sums; what their balls hold
-//! is as exact as ever.
+//! Masses follow from the graph: the set is divided into *pieces*, copies that are small compared with a
+//! ball, and the mass of a piece counts at its centre. Pieces are divided repeatedly, together with the
+//! copies near them. Where there are too many, some represent the others (*splitting*: Kahn & Harris 1951).
+//! These are spread evenly over the set, and chosen with a probability that grows with a piece's share of any
+//! of the sums; the masses of their balls remain as exact.
 
 use std::num::NonZero;
 
@@ -19,40 +19,42 @@ use crate::measure::regression::Reading;
 
 use super::{Cascade, Placed};
 
-/// Pieces have no larger radii, as parts of a ball's. What smears balls like this is the same at all sizes.
+/// Maximum radius of a piece, relative to that of a ball. The resulting blur of the balls is the same at all
+/// sizes.
 const SMALL: f64 = 1.0;
 
-/// Copies of one size that are looked at, and the least number of pieces that are divided. As long as
-/// there are fewer, sums are over all.
+/// Number of copies of one size that are examined, and minimum number of pieces that are divided. As long as
+/// there are fewer, sums are over all pieces.
 const FOLLOWED_COPIES: usize = 1 << 17;
 const FOLLOWED: usize = 1 << 6;
 
-/// Copies of one size, and of all, that may be looked at: where too many lie over each other, the descent
-/// ends.
+/// Maximum number of copies of one size, and of all sizes, that are examined: where too many overlap, the
+/// descent ends.
 const MOST_COPIES: usize = 1 << 21;
 const MOST_OF_ALL: usize = 3 << 21;
 
-/// Distances from pieces to others are that much cheaper than a copy.
+/// Number of distances between pieces that cost as much as examining a copy.
 const DISTANCES: usize = 8;
 
-/// Smaller balls are not used: doubles still tell six digits of them.
+/// Size of the smallest balls, as a fraction of the extent: doubles still resolve six digits of them.
 const FINEST: f64 = 1.0 / (1u64 << 28) as f64;
 
-/// Of so many copies near each other, some may be the same.
+/// Number of copies near each other from which equal ones are joined.
 const MANY: usize = 64;
 
-/// The entropies of some orders at some sizes.
+/// Entropies of several orders at several sizes.
 pub(in crate::measure) struct Moments {
-    /// From the largest on.
+    /// Sizes, from the largest on.
     pub(in crate::measure) sizes: Vec<f64>,
-    /// By series, size and order.
+    /// Entropies by series, size and order.
     entropies: Vec<Vec<Vec<f64>>>,
 }
 
 impl Moments {
-    /// Of balls of about half the extent on, each `base` times smaller than those before, as far as
-    /// masses can be told, in several series: between one size and the next, theirs are spread evenly,
-    /// so that what comes back with the size evens out on their mean.
+    /// Computes the entropies in balls from about half the extent on, each smaller than those before by the
+    /// factor `base`, as far as masses can be computed. The sizes of several series are spread evenly between
+    /// one size and the next: oscillations that are periodic in the logarithm of the size cancel in their
+    /// mean.
     pub(in crate::measure) fn of(
         cascade: &Cascade,
         orders: &[f64],
@@ -91,8 +93,8 @@ impl Moments {
         }
     }
 
-    /// What a regression uses, of the order of a number; sizes at which an entropy is not finite are
-    /// left out.
+    /// Returns the readings of a regression for the order with an index; sizes at which an entropy is not
+    /// finite are left out.
     pub(in crate::measure) fn readings(&self, order: usize) -> Vec<Reading> {
         let by_series = |size: usize| -> Vec<f64> {
             let entropies = self.entropies.iter();
@@ -126,15 +128,15 @@ type Massive = (Placed, f64);
 /// A piece, on a scale on which balls have the radius 1.
 struct Piece {
     copy: Placed,
-    /// What a ball about any of its points may hold, the piece itself among it.
+    /// Copies that a ball about any point of the piece may contain, including the piece itself.
     near: Vec<Massive>,
-    /// The logarithms of its mass, and of that of the ball about its centre.
+    /// Logarithms of the mass of the piece, and of the mass of the ball about its centre.
     logs: [f64; 2],
-    /// The logarithm of the number of pieces that it stands for.
+    /// Logarithm of the number of pieces that it represents.
     weight: f64,
 }
 
-/// A copy that is small, with its mass, its centre, and a disc that holds it.
+/// A small copy, with its mass, its centre of mass, and a disc that holds it.
 struct Small {
     copy: Placed,
     mass: f64,
@@ -143,17 +145,18 @@ struct Small {
     radius: f64,
 }
 
-/// The descent: the pieces of the present size, and the work that they took.
+/// The pieces of the present size, and the effort that they took.
 struct Descent<'c> {
     cascade: &'c Cascade,
     orders: &'c [f64],
     pieces: Vec<Piece>,
-    /// Where the first of the pieces that are chosen lies, from 0 to 1.
+    /// Offset of the pieces that are chosen next, from 0 to 1.
     place: f64,
-    /// Copies that were looked at for the pieces of this size, and larger pieces that were divided.
+    /// Number of copies that were examined for the pieces of this size, and of larger pieces that were
+    /// divided.
     looked_at: usize,
     divided: usize,
-    /// Copies that were looked at for all larger sizes.
+    /// Number of copies that were examined for all larger sizes.
     before: usize,
 }
 
@@ -181,8 +184,8 @@ impl<'c> Descent<'c> {
         descent
     }
 
-    /// For every order q, −ln of the mean of M^(q − 1), to the power 1 / (q − 1); of order 1 the mean of
-    /// −ln M. `None` where too many copies lie over each other.
+    /// Returns −ln (mean of M^(q − 1)) / (q − 1) for every order q, and the mean of −ln M for order 1.
+    /// Returns `None` where too many copies overlap.
     fn entropies(&self) -> Option<Vec<f64>> {
         let all = self.before + self.looked_at;
         if self.looked_at > MOST_COPIES || all > MOST_OF_ALL || self.pieces.is_empty() {
@@ -202,7 +205,7 @@ impl<'c> Descent<'c> {
         Some(self.orders.iter().map(of).collect())
     }
 
-    /// Goes on to balls `base` times smaller.
+    /// Continues with balls smaller by the factor `base`.
     fn go_down(&mut self, base: f64) {
         self.choose();
         self.before += self.looked_at;
@@ -227,9 +230,9 @@ impl<'c> Descent<'c> {
         self.pieces = pieces;
     }
 
-    /// Keeps some of the pieces, if there are too many: one that adds so much to a sum that no other can
-    /// stand for it always, others as likely as they add to the sum of an order for which this is the
-    /// most, or their parts will once what lies beside them is farther away than balls reach.
+    /// Keeps some of the pieces, if there are too many. The probability of a piece is proportional to its
+    /// largest share of the sum of any order, at present or as if it were isolated, as its parts will be in
+    /// smaller balls. Pieces whose share is so large that no other can represent them are always kept.
     fn choose(&mut self) {
         let most = self.divided * FOLLOWED_COPIES / self.looked_at.max(1);
         let most = most.max(FOLLOWED);
@@ -259,7 +262,7 @@ impl<'c> Descent<'c> {
         });
     }
 
-    /// A disc that holds a copy.
+    /// Returns a disc that holds a copy.
     fn disc(&self, copy: &Placed) -> (DVec2, f64) {
         let part = &self.cascade.set.objects[copy.object];
         (
@@ -268,7 +271,7 @@ impl<'c> Descent<'c> {
         )
     }
 
-    /// The small copies that copies are made of, without those whose discs are not kept.
+    /// Returns the small copies that copies are made of, without those whose discs `keep` rejects.
     fn small(&mut self, mut stack: Vec<Massive>, keep: impl Fn(DVec2, f64) -> bool) -> Vec<Small> {
         let cascade = self.cascade;
         let mut small = Vec::new();
@@ -301,7 +304,7 @@ impl<'c> Descent<'c> {
         small
     }
 
-    /// Pieces with what lies near them, of small copies among which they are.
+    /// Returns pieces with the copies near them; `all` contains the pieces.
     fn with_near(&mut self, pieces: &[Small], all: &[Small], weight: f64) -> Vec<Piece> {
         self.looked_at += pieces.len() * all.len() / DISTANCES;
         let with_near = |piece: &Small| {
@@ -311,7 +314,7 @@ impl<'c> Descent<'c> {
                 if other.centre.distance_squared(piece.centre) <= 1.0 {
                     mass += other.mass;
                 }
-                // Balls of the next size are no larger.
+                // Balls of the next size are not larger.
                 let reach = other.radius + piece.radius + 1.0;
                 if other.middle.distance_squared(piece.middle) <= reach * reach {
                     near.push((other.copy.moved(-piece.centre), other.mass));
@@ -328,24 +331,24 @@ impl<'c> Descent<'c> {
     }
 }
 
-/// The golden section never repeats itself.
+/// The golden section, whose multiples do not repeat modulo 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Piece {
-    /// The logarithm of what it adds to the sum of an order.
+    /// Returns the logarithm of the piece's term in the sum of an order.
     fn share(&self, order: f64) -> f64 {
         let [mass, ball] = self.logs;
         self.weight + mass + (order - 1.0) * ball
     }
 
-    /// The same, as if nothing lay beside it, which becomes true of its inner parts.
+    /// Returns the logarithm of the piece's term as if it were isolated, which its inner parts become.
     fn own_share(&self, order: f64) -> f64 {
         self.weight + order * self.logs[0]
     }
 }
 
 impl Placed {
-    /// Becomes so many times as large, about 0.
+    /// Enlarges the copy by a factor, about 0.
     fn grow(&mut self, factor: f64) {
         self.map.matrix2 *= factor;
         self.map.translation *= factor;
@@ -358,13 +361,13 @@ impl Placed {
     }
 }
 
-/// The logarithm of a sum of exponentials.
+/// Returns the logarithm of a sum of exponentials.
 fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
     most + libm::log(logs.map(|log| libm::exp(log - most)).sum::<f64>())
 }
 
-/// Puts copies that are the same together.
+/// Joins copies that are equal, and adds their masses.
 fn join(copies: &mut Vec<Small>) {
     const SAME: f64 = 1e-5;
     if copies.len() < MANY {
