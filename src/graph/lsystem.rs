@@ -1,13 +1,14 @@
-//! From an L-system to its graph.
+//! Compilation of an L-system to its graph.
 //!
-//! What a module comes to in some steps does the same to the turtle wherever it stands: it leads it somewhere,
-//! turns, reflects and scales it, changes the look of its lines, and draws. These *effects* follow from the
-//! bottom up: those of a module with n steps left from those of the modules in its word with n - 1. Headings
-//! stay whole parts of a turn, and lengths have exponents of their own.
+//! A module derived for some steps has the same *effect* on the turtle wherever the turtle meets it: it
+//! moves, turns, reflects and scales the turtle, changes the attributes of its lines, and draws. Effects
+//! follow from the bottom up: those of a module with n steps left from those of the modules of its
+//! successor with n - 1. Headings are exact fractions of a turn, and lengths have separate exponents.
 //!
-//! Objects are modules with the number of steps that are left ([levels]); where all levels look alike, one
-//! object stands for them ([similar], edge rewriting). Where productions are drawn, what stands in a word is
-//! found by its path ([words]). Contexts, and systems that would become too large, are left to strings.
+//! Objects are modules with the number of steps that are left ([levels]); where all levels are similar,
+//! one object represents them ([similar], edge rewriting). For random productions, the positions within a
+//! word are computed from its path ([words]). Systems with contexts, and systems whose graphs would be
+//! too large, are derived as strings.
 
 mod effects;
 mod far;
@@ -35,12 +36,12 @@ use self::effects::Effects;
 use super::{Chain, CompileError, Graph, Instance, Object, Replacement};
 
 impl Graph {
-    /// Compiles an L-system for a number of steps: to objects by module and level where that can be told, or
-    /// else to what the turtle draws of its words.
+    /// Compiles an L-system for a number of steps: by edge rewriting, otherwise to objects by module and
+    /// level, otherwise from the elements that the turtle draws of the derived word.
     ///
     /// # Errors
     ///
-    /// As for [`Graph::of_words`], where nothing else is left.
+    /// As for [`Graph::of_words`], if the system cannot be compiled in the other ways.
     pub fn of_lsystem(
         system: &LSystem,
         steps: u32,
@@ -57,12 +58,12 @@ impl Graph {
         }
     }
 
-    /// Compiles an L-system to a graph whose initiator is what the turtle draws after so many steps: the
-    /// coordinates are the turtle's.
+    /// Compiles an L-system to a graph whose initiator consists of the elements that the turtle draws
+    /// after `steps` steps, in the coordinates of the turtle.
     ///
     /// # Errors
     ///
-    /// If there are more elements than are allowed, or if numbers are not finite.
+    /// If there are more than `most_elements` elements, or if numbers are not finite.
     pub fn of_words(
         system: &LSystem,
         steps: u32,
@@ -121,7 +122,7 @@ impl Graph {
 }
 
 impl LSystem {
-    /// The error as a mistake in the file that the system was read from.
+    /// Converts the error to a diagnostic of the file from which the system was read.
     pub(crate) fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         let diagnostic = Diagnostic::error(error.to_string());
         match error {
@@ -133,11 +134,11 @@ impl LSystem {
     }
 }
 
-/// What cannot be compiled, or would be too large, is written as words.
+/// Failure: a system cannot be compiled, or only to a graph that is too large; it is derived as a string.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct NotCompiled;
 
-/// Makes objects of what turtles draw: one for every base element, colour and width.
+/// Creates objects of the elements that turtles draw: one for every base element, colour and width.
 struct Strings<'s> {
     system: &'s LSystem,
     base_elements: Vec<BaseElement>,
@@ -155,9 +156,9 @@ impl<'s> Strings<'s> {
         }
     }
 
-    /// What a turtle drew, as an element that is kept.
+    /// Returns an element that a turtle drew as an instance that is kept.
     fn instance(&mut self, placed: &Placed) -> Instance {
-        // The line comes before all polygons.
+        // Base element 0 is the line; polygons follow.
         let base_element = placed.polygon.map_or(0, |number| number + 1);
         Instance {
             frame: placed.frame,

@@ -1,3 +1,5 @@
+//! Effects of modules on the turtle, computed from the bottom up.
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -11,67 +13,68 @@ use super::long::Ways;
 use super::reader::Reader;
 use super::state::{Look, Pose, State};
 
-/// What a module comes to in some steps, told from where the turtle meets it.
+/// Effect of a module that is derived for some steps, relative to the state of the turtle before it.
 #[derive(Clone, Debug)]
 pub(super) struct Effect {
-    /// How it leaves the turtle.
+    /// State of the turtle after it.
     pub(super) state: State,
-    /// Whether the pen is up afterwards, or was in between if nothing is drawn.
+    /// Whether the pen is up after it, or was lifted at all if nothing is drawn.
     pub(super) lifts: bool,
-    /// What it draws, if it does.
+    /// Extent and appearance of its drawing, if it draws.
     pub(super) drawn: Option<Drawn>,
-    /// Whether it is the same whatever is drawn. Otherwise this stands for all that may come.
+    /// Whether the effect is independent of draws. Otherwise it bounds the effects of all draws.
     pub(super) is_exact: bool,
-    /// Whether it surely draws something, if it may.
+    /// Whether it is certain to draw something, if it can.
     pub(super) is_sure: bool,
-    /// How many modules are read to tell it.
+    /// Number of modules that are read to compute it.
     pub(super) work: u64,
 }
 
-/// What a module draws.
+/// Extent and appearance of a module's drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drawn {
-    /// All of it lies no farther than this.
+    /// Bound on the distance of the drawing from the start.
     pub(super) reach: Far,
-    /// How long it counts: as far as it leads the turtle, unless it reaches much farther.
+    /// Nominal length: the distance by which it moves the turtle, but at least a fixed share of `reach`.
     pub(super) size: Far,
-    /// Where what may be farthest stands.
+    /// Position of the part that may reach farthest.
     pub(super) tip: Far,
-    /// How the first and the last line look.
+    /// Attributes of the first line.
     pub(super) first: Look,
+    /// Attributes of the last line.
     pub(super) last: Look,
 }
 
-/// What leads the turtle no farther than this share of how far it may reach is as long as that.
+/// Least nominal length, as a share of the reach.
 const SHARE: f64 = 0.25;
 
 impl Drawn {
-    /// How long it counts, if it leads the turtle from where it was to a pose.
+    /// Returns the nominal length if the turtle is moved to a pose.
     pub(super) fn size_of(&self, pose: &Pose) -> Far {
         self.reach.times(SHARE).longer(pose.away())
     }
 }
 
-/// No more are worked out.
+/// Limit of the number of effects.
 const MOST_EFFECTS: usize = 1 << 18;
 
-/// The effects of all kinds, from the bottom up.
+/// Effects of all kinds of modules, computed from the bottom up.
 #[derive(Debug)]
 pub(super) struct Effects {
     pub(super) system: Arc<LSystem>,
     pub(super) compass: Compass,
     pub(super) kinds: Kinds,
-    /// By the number of steps that are left, less 1, and by kind.
+    /// Effects by the number of steps that are left, less 1, and by kind.
     levels: Vec<Vec<Option<Effect>>>,
 }
 
 impl Effects {
-    /// Those in all numbers of steps up to one, of all kinds that are met within it.
+    /// Computes the effects for all numbers of steps up to `steps`, of all kinds that occur within them.
     pub(super) fn of_system(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
         Self::of_kinds(system, Kinds::of(system, steps, MOST_KINDS)?, steps)
     }
 
-    /// Those of all kinds that are ever met.
+    /// Computes the effects for all numbers of steps up to `steps`, of all kinds that ever occur.
     pub(super) fn closed(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
         let mut kinds = Kinds::of(system, u32::MAX, MOST_CLOSED)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
@@ -109,7 +112,8 @@ impl Effects {
         }
     }
 
-    /// What a kind comes to in a number of steps, if it is met with so many left.
+    /// Computes the effect of a kind with `left` steps left; `None` if it is not replaced, or does not
+    /// occur with so many left.
     fn of_level(&self, kind: usize, left: u32, steps: u32) -> Result<Option<Effect>, NotCompiled> {
         let of = &self.kinds.all[kind];
         if !of.is_fertile() || of.born > steps - left {
@@ -127,7 +131,7 @@ impl Effects {
         }
     }
 
-    /// What a kind at a path comes to.
+    /// Returns the effect of a kind at a path.
     pub(super) fn of_path(
         &self,
         kind: usize,
@@ -142,7 +146,7 @@ impl Effects {
         let mut reader = Reader::new(self, State::SAME, true);
         reader.read(&of.alternatives[of.drawn(path)].word, left - 1, path)?;
         let mut effect = reader.effect()?;
-        // What it counts as long must be the same wherever it stands.
+        // The nominal length must be independent of the path.
         effect.drawn = effect.drawn.map(|drawn| Drawn {
             reach: known.drawn.map_or(drawn.reach, |drawn| drawn.reach),
             size: known.drawn.map_or(drawn.size, |drawn| drawn.size),
@@ -151,25 +155,25 @@ impl Effects {
         Ok(Cow::Owned(effect))
     }
 
-    /// What a kind comes to in a number of steps.
+    /// Returns the effect of a kind with `left` steps left.
     pub(super) fn of(&self, kind: usize, left: u32) -> Result<&Effect, NotCompiled> {
         self.levels[left as usize - 1][kind]
             .as_ref()
             .ok_or(NotCompiled)
     }
 
-    /// Whether a kind is a closing bracket.
+    /// Returns whether a kind is a closing bracket.
     pub(super) fn pops(&self, kind: usize) -> bool {
         let meaning = &self.system.symbols()[self.kinds.all[kind].symbol].meaning;
         matches!(meaning.first(), Some(Action::Pop))
     }
 
-    /// What a kind draws in a number of steps.
+    /// Returns the drawing of a kind with `left` steps left.
     pub(super) fn drawn_by(&self, kind: usize, left: u32) -> Result<Drawn, NotCompiled> {
         self.of(kind, left)?.drawn.ok_or(NotCompiled)
     }
 
-    /// Where the turtle is after what a kind comes to.
+    /// Returns the position of the turtle after a kind with `left` steps left.
     pub(super) fn place_after(&self, kind: usize, left: u32) -> Far {
         let effect = self.of(kind, left);
         effect.map_or(Far::ZERO, |effect| effect.state.pose.place)
@@ -177,8 +181,8 @@ impl Effects {
 }
 
 impl Effect {
-    /// What stands for one of several: as far as any of them reaches, and nothing that they do not have in
-    /// common.
+    /// Returns an effect that bounds several alternatives: with the largest reach, and only their common
+    /// properties.
     fn of_any(all: &[Self]) -> Result<Self, NotCompiled> {
         let [first, others @ ..] = all else {
             return Err(NotCompiled);
@@ -187,7 +191,7 @@ impl Effect {
         any.is_exact = false;
         for other in others {
             let (a, b) = (&mut any.state, &other.state);
-            // The objects of what comes later must be known.
+            // The objects of later modules must not depend on draws.
             if a.look != b.look || a.pose.scale != b.pose.scale {
                 return Err(NotCompiled);
             }

@@ -1,15 +1,17 @@
+//! Plane vectors with a separate exponent.
+
 use crate::geometry::DVec2;
 
-/// A vector of the plane of any length: 3ⁿ steps are beyond a double from n = 647 on.
+/// Vector of the plane of arbitrary length: 3ⁿ steps exceed the range of a double from n = 647 on.
 ///
-/// Guarantee: the larger coordinate of the mantissa is from 0.5 on and below 1, or all is 0.
+/// Guarantee: the larger absolute coordinate of the mantissa is in [0.5, 1), or the vector is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Far {
     mantissa: DVec2,
     exponent: i32,
 }
 
-/// Smaller by so many powers of two, a vector adds nothing.
+/// Exponent difference, in powers of two, above which the smaller vector adds nothing.
 const NEGLIGIBLE: i32 = 200;
 
 impl Far {
@@ -26,7 +28,7 @@ impl Far {
         .normalised()
     }
 
-    /// A length.
+    /// Returns a horizontal vector that represents a length.
     pub(super) fn of_length(length: f64) -> Self {
         Self::new(DVec2::new(length.abs(), 0.0))
     }
@@ -50,7 +52,7 @@ impl Far {
         self.mantissa.is_finite()
     }
 
-    /// The sum of two.
+    /// Returns the sum of two vectors.
     pub(super) fn plus(self, other: Self) -> Self {
         if other.is_zero() || self.exponent < other.exponent && !self.is_zero() {
             return if other.is_zero() {
@@ -70,9 +72,9 @@ impl Far {
         .normalised()
     }
 
-    /// A multiple.
+    /// Returns a multiple.
     pub(super) fn times(self, factor: f64) -> Self {
-        // Neither may vanish before the exponent is taken out of it.
+        // Normalising the factor first keeps the product of mantissas from underflow.
         let factor = Self::of_length(factor).signed(factor);
         Self {
             mantissa: self.mantissa * factor.mantissa.x,
@@ -88,7 +90,7 @@ impl Far {
         }
     }
 
-    /// The image under a map that keeps lengths.
+    /// Returns the image under an isometry.
     pub(super) fn turned(self, turn: impl FnOnce(DVec2) -> DVec2) -> Self {
         Self {
             mantissa: turn(self.mantissa),
@@ -105,13 +107,13 @@ impl Far {
         .normalised()
     }
 
-    /// The longer one of two lengths.
+    /// Returns the greater of two lengths.
     pub(super) fn longer(self, other: Self) -> Self {
         let key = |far: Self| (!far.is_zero(), far.exponent, far.mantissa.x);
         if key(self) < key(other) { other } else { self }
     }
 
-    /// A multiple by a power of two.
+    /// Returns the multiple by a power of two.
     pub(super) fn shifted(self, by: i32) -> Self {
         Self {
             exponent: self.exponent.saturating_add(by),
@@ -119,7 +121,7 @@ impl Far {
         }
     }
 
-    /// About how many bits longer a length is than another; 0 if it is nothing.
+    /// Returns the approximate number of bits by which a length exceeds another; 0 if either is 0.
     pub(super) fn bits_beyond(self, other: Self) -> i32 {
         let longer = !self.is_zero() && !other.is_zero();
         if longer {
@@ -129,14 +131,14 @@ impl Far {
         }
     }
 
-    /// As a multiple of a length.
+    /// Returns the vector as a multiple of a length.
     pub(super) fn over(self, unit: Self) -> DVec2 {
         let by = self.exponent.saturating_sub(unit.exponent);
         shifted(self.mantissa / unit.mantissa.x, by)
     }
 }
 
-/// A vector times a power of two.
+/// Multiplies a vector by a power of two.
 fn shifted(vector: DVec2, by: i32) -> DVec2 {
     DVec2::new(libm::ldexp(vector.x, by), libm::ldexp(vector.y, by))
 }

@@ -1,3 +1,5 @@
+//! Kinds of modules: the symbols with arguments that occur in the derivation of a context-free L-system.
+
 use std::collections::BTreeMap;
 
 use crate::lsystem::{Action, LSystem};
@@ -5,36 +7,36 @@ use crate::rule::draw::{Path, pick_by_weight};
 
 use super::NotCompiled;
 
-/// No more kinds of modules than this are told apart,
+/// Limit of the number of kinds.
 pub(super) const MOST_KINDS: usize = 1 << 14;
 
-/// nor than this where all that are ever met must come back.
+/// Limit of the number of kinds where all that ever occur are required.
 pub(super) const MOST_CLOSED: usize = 1 << 8;
 
-/// Words are no longer than this, all together.
+/// Limit of the total length of the words.
 const MOST_MODULES: usize = 1 << 18;
 
-/// A module with its arguments.
+/// Module with its arguments.
 #[derive(Debug)]
 pub(super) struct Kind {
     pub(super) symbol: usize,
     pub(super) arguments: Vec<f64>,
-    /// What may replace it; nothing does if there is none.
+    /// Words of which one replaces it; empty if it is not replaced.
     pub(super) alternatives: Vec<Alternative>,
-    /// The first step that makes one.
+    /// First step that yields one.
     pub(super) born: u32,
 }
 
-/// What may replace a module.
+/// Word that may replace a module.
 #[derive(Debug)]
 pub(super) struct Alternative {
     weight: f64,
-    /// The modules, by kind.
+    /// Modules of the word, by kind.
     pub(super) word: Vec<usize>,
 }
 
-/// All kinds of modules that are met within some steps: the predecessors of productions without contexts
-/// need no more than their arguments to be replaced.
+/// All kinds of modules that occur within some steps. Productions without contexts depend only on the
+/// arguments of their predecessors.
 #[derive(Debug)]
 pub(super) struct Kinds {
     pub(super) all: Vec<Kind>,
@@ -65,7 +67,7 @@ impl Kinds {
         let axiom = axiom.map(|module| finder.kind(module.symbol, &module.arguments, 0));
         let axiom = axiom.collect::<Result<_, _>>()?;
         let mut next = 0;
-        // Kinds are found in the order of the steps that make them.
+        // Kinds are found in the order of the steps that yield them.
         while next < finder.all.len() {
             if finder.all[next].born < steps {
                 finder.all[next].alternatives = finder.alternatives(next)?;
@@ -102,8 +104,8 @@ impl Finder<'_> {
         Ok(number)
     }
 
-    /// The productions of which one replaces a kind: the first that fits or, if that has a weight, all
-    /// that have one.
+    /// Returns the successors of a kind: that of the first production that applies or, if it has a
+    /// weight, those of all applicable productions with weights.
     fn alternatives(&mut self, number: usize) -> Result<Vec<Alternative>, NotCompiled> {
         let system = self.system;
         let Kind { symbol, born, .. } = self.all[number];
@@ -116,7 +118,7 @@ impl Finder<'_> {
         let Some(&first) = fitting.next() else {
             return Ok(Vec::new());
         };
-        // Brackets that are replaced end and begin elsewhere.
+        // The brackets of replaced modules would begin and end in different words.
         let encloses = |action: &Action| {
             matches!(
                 action,
@@ -153,12 +155,12 @@ impl Finder<'_> {
 }
 
 impl Kind {
-    /// Whether it is replaced.
+    /// Returns whether the kind is replaced.
     pub(super) fn is_fertile(&self) -> bool {
         !self.alternatives.is_empty()
     }
 
-    /// The number of what replaces it at a path.
+    /// Draws the number of the word that replaces the kind at a path.
     pub(super) fn drawn(&self, path: Path) -> usize {
         match self.alternatives.as_slice() {
             [_] => 0,

@@ -1,4 +1,4 @@
-//! Objects by kind and level: each knows how many steps are still to come.
+//! Time-indexed graphs of L-systems: an object for every kind and number of steps that are left.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,62 +19,65 @@ use crate::graph::{
 };
 use crate::rule::Extent;
 
-/// More objects than this are not made.
+/// Limit of the number of objects.
 const MOST_OBJECTS: usize = 1 << 17;
 
-/// Nor are so many modules read to find where things stand.
+/// Limit of the number of modules that are read to find positions.
 const MOST_WORK: u64 = 1 << 22;
 
-/// Coordinates are the turtle's unless they come to more than this; then what is drawn reaches about 1.
+/// Largest reach for which coordinates are the turtle's; beyond it, they are scaled to a reach of about
+/// 1.
 const FARTHEST: f64 = 1e150;
 
-/// What tells objects apart.
+/// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     of: Master,
     colour: i64,
-    /// What becomes of widths, and whether they are set.
+    /// Bits of the width, and whether it is set rather than multiplied.
     thickness: (u64, bool),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Master {
-    /// A kind, and the number of steps that are left.
+    /// Kind, and the number of steps that are left.
     Subtree(usize, u32),
-    /// A line, and whether it is replaced in the next step.
+    /// Line, and whether its module is replaced in the next step.
     Step(bool),
-    /// A polygon, by base element.
+    /// Polygon, by base element.
     Polygon(usize),
 }
 
-/// Makes the objects of a levelled graph, those of the most steps first.
+/// Builder of the objects of a time-indexed graph, from the largest number of steps left to the smallest.
 struct Leveller<'e> {
     effects: &'e Effects,
     has_colours: bool,
-    /// So many colours there are.
+    /// Number of colours of the palette.
     colours: i64,
     base_elements: Vec<BaseElement>,
     outlines: BTreeMap<Vec<[u64; 2]>, usize>,
-    /// Objects that are replaced, in the order of their numbers, and all others.
+    /// Numbers of the objects that are replaced, and of all others.
     numbers: [BTreeMap<Key, usize>; 2],
+    /// Identities of both, in the order of their numbers.
     keys: [Vec<Key>; 2],
-    /// What replaces kinds of a colour with so many steps left.
+    /// Replacements of kinds, by the number of steps left and by colour.
     productions: BTreeMap<(usize, u32, i64), Made>,
     written: Vec<Written>,
 }
 
-/// What replaces a kind.
+/// Replacement of a kind.
 enum Made {
     Fixed(Production),
-    /// Words of which one is drawn, or in which something is.
+    /// Words of which one is drawn, or whose modules are random.
     Drawn(Vec<Alternative>),
 }
 
-/// Numbers of objects that are not replaced begin here until all others have theirs.
+/// First provisional number of objects that are not replaced; their final numbers follow those of all
+/// others.
 const LEAVES: usize = usize::MAX / 2;
 
 impl Graph {
-    /// The graph whose objects are kinds with a number of steps that are left.
+    /// Builds the graph whose objects are kinds with a number of steps that are left.
     pub(super) fn of_levels(effects: Effects, steps: u32) -> Result<Self, NotCompiled> {
         let palette = &effects.system.heading().style.palette;
         let has_colours = effects.system.has_colours();
@@ -123,7 +126,7 @@ impl Leveller<'_> {
         Ok(self.finish(initiators, steps))
     }
 
-    /// What the axiom comes to in a number of steps.
+    /// Returns the chain of the axiom with `left` steps left.
     fn initiator(&mut self, left: u32) -> Result<Chain, NotCompiled> {
         let effects = self.effects;
         let mut start = State {
@@ -136,7 +139,7 @@ impl Leveller<'_> {
         let mut reader = Reader::new(effects, start, false);
         reader.read(&effects.kinds.axiom, left, Path::of_seed(0))?;
         let effect = reader.effect()?;
-        // The places of what is there from the start must be known.
+        // The positions of the initiator's instances must not depend on draws.
         let is_rough = reader.parts.iter().any(|part| part.pose.is_rough);
         if is_rough || !effect.is_exact && effect.work > MOST_WORK {
             return Err(NotCompiled);
@@ -151,7 +154,7 @@ impl Leveller<'_> {
         })
     }
 
-    /// What replaces a kind that has so many steps left, where the turtle has a colour.
+    /// Returns the replacement of a kind with `left` steps left, where the turtle has a colour.
     fn production(&mut self, kind: usize, left: u32, colour: i64) -> Result<Made, NotCompiled> {
         let effects = self.effects;
         let unit = effects.drawn_by(kind, left)?.size;
@@ -241,7 +244,7 @@ impl Leveller<'_> {
         })
     }
 
-    /// The number of an object, which is made if it is new.
+    /// Returns the number of an object, which is created if it is new.
     fn object(&mut self, key: Key) -> Result<usize, NotCompiled> {
         let (shelf, first) = match key.of {
             Master::Subtree(..) => (0, 0),
@@ -258,7 +261,7 @@ impl Leveller<'_> {
         Ok(first + number)
     }
 
-    /// The base element of a polygon.
+    /// Returns the base element of a polygon, which is created if it is new.
     fn outline(&mut self, vertices: &[DVec2]) -> usize {
         let bits = vertices
             .iter()
@@ -267,7 +270,7 @@ impl Leveller<'_> {
         let number = *self.outlines.entry(bits.collect()).or_insert(next);
         if number == next {
             let pieces = vertices[1..].iter().copied().map(Piece::Line);
-            // What has no extent is drawn as a line.
+            // A polygon without extent is drawn as a line.
             let outline = BaseElement::new(vertices[0], pieces.collect(), true);
             let outline = outline.unwrap_or_else(BaseElement::line);
             self.base_elements.push(outline);
@@ -360,8 +363,8 @@ impl Leveller<'_> {
         (graph, self.written)
     }
 
-    /// What stands for a kind while it is not replaced: the way from where the turtle meets it to where
-    /// it leaves it, or to where what is farthest stands.
+    /// Adds the base element that represents a kind until it is replaced: the line from the position of
+    /// the turtle before it to that after it, or to the position of its farthest part.
     fn way(&mut self, kind: usize, left: u32) -> usize {
         let effects = self.effects;
         let Ok(drawn) = effects.drawn_by(kind, left) else {
@@ -369,7 +372,7 @@ impl Leveller<'_> {
         };
         let place = effects.place_after(kind, left);
         let ends = [place, drawn.tip].map(|place| place.over(drawn.size));
-        // What is no longer than rounding has no direction.
+        // A displacement within the rounding error has no direction.
         const SHORT: f64 = 1e-9;
         let end = ends.into_iter().find(|end| end.length() > SHORT);
         let line = BaseElement::new(

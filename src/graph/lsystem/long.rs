@@ -1,8 +1,9 @@
-//! Where words lead the turtle, in long whole numbers.
+//! Displacements of the turtle in big integers.
 //!
-//! The way that a word leads is the sum of the ways of what is in it, and may be much shorter than those: what
-//! doubles lose then grows with every step. Where it grows too large, ways are summed again in whole
-//! multiples of 2^-bits, and every effect gets the place that is nearest to the exact one.
+//! The displacement of a word is the sum of those of its modules and may be much shorter than they are;
+//! the loss of precision in doubles then grows with every step. If it becomes too large, displacements
+//! are summed again in integer multiples of 2^-bits, and every effect receives the position nearest to
+//! the exact one.
 
 use std::collections::BTreeMap;
 
@@ -17,27 +18,27 @@ use super::effects::{Effect, Effects};
 use super::far::Far;
 use super::state::{Pose, State};
 
-/// So many bits may be lost of a double.
+/// Limit of the number of bits that a double may lose.
 const MOST_LOST: i32 = 20;
 
-/// So many are right of a long number.
+/// Number of bits of a big integer that must be correct.
 const RIGHT: i32 = 64;
 
-/// A vector in whole multiples of a unit.
+/// Vector in integer multiples of a unit.
 pub(super) type Vector = [IBig; 2];
 
-/// Where a kind leads after some steps.
+/// Displacement of a kind after some steps.
 #[derive(Clone)]
 struct Way {
-    /// In multiples of 2^-bits.
+    /// Sum, in multiples of 2^-bits.
     place: Vector,
-    /// The lengths that it is the sum of,
+    /// Sum of the lengths of the displacements that are added.
     sum: Far,
-    /// and about how often it has been rounded, each as a length of 1 when that was done.
+    /// Approximate number of roundings, each as a length of 1 at the scale at which it occurred.
     rounded: Far,
 }
 
-/// A turtle on its way.
+/// Turtle with its displacement.
 struct Turtle {
     pose: Pose,
     way: Way,
@@ -59,19 +60,20 @@ impl Turtle {
     }
 }
 
-/// The ways of all kinds after as many steps as have been gone.
+/// Displacements of all kinds for the number of steps that has been processed.
 pub(super) struct Ways {
     compass: Compass,
-    /// The ways of single steps, in as many bits as are asked for; nothing if doubles will do.
+    /// Precision of the sums; `None` if doubles suffice.
     precision: Option<Precision>,
     directions: BTreeMap<u64, Vector>,
     known: Vec<Option<Way>>,
-    /// How many bits are lost, of doubles and of long numbers.
+    /// Number of bits lost, of doubles and of big integers.
     lost: [i32; 2],
 }
 
 impl Ways {
-    /// No steps have been gone; places are summed in so many bits, if any.
+    /// Creates the displacements for no steps; `bits` is the precision of the sums, if they are not
+    /// doubles.
     pub(super) fn new(compass: Compass, bits: Option<usize>) -> Self {
         Self {
             compass,
@@ -82,7 +84,7 @@ impl Ways {
         }
     }
 
-    /// How many bits it takes instead, if too many have been lost.
+    /// Returns the number of bits that is required instead, if too many have been lost.
     pub(super) fn too_few(&self) -> Option<usize> {
         let [double, long] = self.lost;
         let enough = match &self.precision {
@@ -95,7 +97,7 @@ impl Ways {
         (!enough).then_some(bits)
     }
 
-    /// Goes on to the effects of the next number of steps, and mends their places.
+    /// Advances to the effects of the next number of steps, and corrects their positions.
     pub(super) fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Effect>]) {
         let mut next = Vec::with_capacity(level.len());
         for (kind, effect) in level.iter_mut().enumerate() {
@@ -123,7 +125,8 @@ impl Ways {
         }
     }
 
-    /// Where the word of a kind leads.
+    /// Returns the displacement of the successor of a kind; `None` unless the kind has exactly one
+    /// successor.
     fn follow(&mut self, effects: &Effects, kind: usize, left: u32) -> Option<Way> {
         let [only] = effects.kinds.all[kind].alternatives.as_slice() else {
             return None;
@@ -145,7 +148,8 @@ impl Ways {
         Some(turtle.way)
     }
 
-    /// The ends of the lines of a word that is not replaced, from a pose, and where it leads.
+    /// Returns the ends of the lines that a word draws from a pose without being replaced, and its
+    /// displacement.
     pub(super) fn lines(
         &mut self,
         effects: &Effects,
@@ -167,7 +171,7 @@ impl Ways {
         Some((lines, turtle.way.place))
     }
 
-    /// Does what matters to where the turtle is.
+    /// Applies an action, as far as it affects the position of the turtle.
     fn act(&mut self, turtle: &mut Turtle, action: &Action, arguments: &[f64]) -> Option<()> {
         match action {
             Action::Draw(steps) | Action::Move(steps) | Action::Glide(steps) => {
@@ -187,7 +191,7 @@ impl Ways {
         Some(())
     }
 
-    /// So many steps ahead.
+    /// Returns the displacement of some steps ahead.
     fn step(&self, steps: f64) -> Way {
         let bits = self.precision.as_ref().map_or(0, Precision::bits);
         let length = Far::of_length(steps);
@@ -198,7 +202,7 @@ impl Ways {
         }
     }
 
-    /// Goes on as another way tells, from where it begins.
+    /// Adds a displacement, relative to the current pose.
     fn go(&mut self, Turtle { pose, way, .. }: &mut Turtle, next: &Way) {
         let scaled = |far: Far| far.times(pose.scale).length();
         way.sum = way.sum.plus(scaled(next.sum));
@@ -221,9 +225,9 @@ impl Ways {
     }
 }
 
-/// A whole number times a double.
+/// Multiplies an integer by a double, rounding down.
 fn times(number: &IBig, factor: f64) -> IBig {
-    /// The bits of a double's mantissa.
+    /// Number of bits of a double's mantissa.
     const DIGITS: i32 = 53;
     if factor == 1.0 {
         return number.clone();
@@ -244,9 +248,9 @@ fn times(number: &IBig, factor: f64) -> IBig {
 }
 
 impl Far {
-    /// A vector in multiples of 2^-`bits`.
+    /// Converts a vector in multiples of 2^-`bits`.
     fn of_long(vector: &Vector, bits: usize) -> Self {
-        /// Bits that are looked at for a double.
+        /// Number of leading bits that are converted to doubles.
         const DIGITS: usize = 96;
         let longest = vector
             .iter()

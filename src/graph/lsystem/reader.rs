@@ -1,4 +1,4 @@
-//! The turtle over a word of modules whose effects are known.
+//! Interpretation of a word of modules whose effects are known.
 
 use std::borrow::Cow;
 
@@ -12,41 +12,41 @@ use super::effects::{Drawn, Effect, Effects};
 use super::far::Far;
 use super::state::{Look, Pose, Shade, State};
 
-/// Something that is drawn in a word.
+/// Part of the drawing of a word.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
-    /// The module that draws it, by position.
+    /// Position of the module that draws it.
     pub(super) position: u32,
     pub(super) of: Of,
-    /// Where it stands.
+    /// Pose of the turtle where it starts.
     pub(super) pose: Pose,
     pub(super) look: Look,
-    /// Whether it starts where the part before ends, as far as its word tells.
+    /// Whether it continues the stroke of the part before, as far as the word determines this.
     pub(super) joined: bool,
 }
 
-/// What it is.
+/// Content of a part.
 #[derive(Clone, Debug)]
 pub(super) enum Of {
-    /// A line of one step.
+    /// Line of one step.
     Step {
         /// Whether the module is replaced in the next step.
         fertile: bool,
     },
-    /// A polygon, by its vertices in steps.
+    /// Polygon, by its vertices in steps.
     Polygon(Vec<DVec2>),
-    /// What a kind comes to.
+    /// Subtree of a kind.
     Subtree(usize, Drawn),
 }
 
 impl Part {
-    /// How far it reaches from where it stands.
+    /// Returns a bound on the distance of its points from its start.
     fn reach(&self) -> Far {
         let steps = match &self.of {
             Of::Step { .. } => Far::of_length(1.0),
             Of::Polygon(vertices) => {
                 let farthest = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
-                // One of no extent is drawn as a line.
+                // A polygon without extent is drawn as a line.
                 Far::of_length(if farthest > 0.0 { farthest } else { 1.0 })
             }
             Of::Subtree(_, drawn) => drawn.reach,
@@ -55,42 +55,44 @@ impl Part {
     }
 }
 
-/// A polygon that is open.
+/// Open polygon.
 struct Open {
     state: State,
     vertices: Vec<Far>,
 }
 
-/// Polygons have no more vertices than this that are not written in one word.
+/// Limit of the number of vertices of polygons.
 const MOST_VERTICES: usize = 1 << 16;
 
-/// Nor are words looked into deeper for them.
+/// Limit of the depth to which words inside polygons are expanded.
 const DEEPEST: u32 = 1000;
 
-/// Reads a word.
+/// Interpreter of a word.
 pub(super) struct Reader<'e> {
     effects: &'e Effects,
-    /// Whether paths decide what is drawn, or all that may be stands for it.
+    /// Whether the drawing is that of one path; otherwise it bounds those of all paths.
     draws: bool,
-    /// The state, told from where the word begins.
+    /// State of the turtle relative to the beginning of the word.
     pub(super) state: State,
     saved: Vec<State>,
     open: Vec<Open>,
     vertices: usize,
     pub(super) parts: Vec<Part>,
-    /// How the last part ends, if the pen has not been lifted since; how the turtle drew before,
-    /// if nothing has been drawn.
+    /// Whether the pen has stayed down since the last part or, before the first, since the beginning.
     down: bool,
+    /// Attributes of the first line.
     first: Option<Look>,
+    /// Attributes of the last line; before the first, those at the beginning.
     last: Look,
-    /// Whether the first part may join what comes before.
+    /// Whether the first part may continue the stroke before the word.
     starts: bool,
-    /// Whether something is surely drawn.
+    /// Whether the word is certain to draw something.
     is_sure: bool,
-    /// Whether it matters where what is read leads.
+    /// Whether the state after the next module matters.
     leads: bool,
-    /// Whether nothing depends on draws, and how many modules have been read.
+    /// Whether nothing depends on draws.
     is_exact: bool,
+    /// Number of modules that have been read.
     work: u64,
 }
 
@@ -115,7 +117,7 @@ impl<'e> Reader<'e> {
         }
     }
 
-    /// Reads a word whose modules are still to be replaced so many times.
+    /// Reads a word whose modules are to be replaced for `left` more steps.
     pub(super) fn read(
         &mut self,
         word: &[usize],
@@ -125,7 +127,7 @@ impl<'e> Reader<'e> {
         let mut rest = word.iter();
         let mut position = 0;
         while let Some(&kind) = rest.next() {
-            // Where a bracket ends it does not matter where what stands before it leads.
+            // A closing bracket discards the state after the module before it.
             self.leads = !rest
                 .clone()
                 .next()
@@ -168,7 +170,7 @@ impl<'e> Reader<'e> {
             self.subtree(kind, &effect, position);
             return Ok(());
         }
-        // What is in a polygon is part of it.
+        // Modules inside a polygon contribute vertices: their words are expanded.
         if left > DEEPEST || of.alternatives.len() > 1 {
             return Err(NotCompiled);
         }
@@ -195,7 +197,7 @@ impl<'e> Reader<'e> {
         self.state = state.then(self.effects.compass, &effect.state);
     }
 
-    /// Draws something whose first line has a look, from a state.
+    /// Adds a part from a state; `first` holds the attributes of its first line.
     fn part(&mut self, of: Of, state: State, first: Look, position: u32) {
         let look = state.look.then(first);
         let alike = self.parts.is_empty() || self.last == look;
@@ -260,7 +262,7 @@ impl<'e> Reader<'e> {
                 self.down = false;
             }
             Action::Turn(angle) => pose.turn(compass, compass.of_degrees(angle.eval(arguments))),
-            // Such systems have no kinds.
+            // `Kinds::of` rejects systems with these actions.
             Action::Rotate(_) | Action::Swap => return Err(NotCompiled),
             Action::Push => self.saved.push(self.state),
             Action::Pop => {
@@ -312,7 +314,7 @@ impl<'e> Reader<'e> {
         self.down = false;
     }
 
-    /// What has been read does.
+    /// Returns the effect of the modules that have been read.
     pub(super) fn effect(&self) -> Result<Effect, NotCompiled> {
         let reached = self.parts.iter().map(|part| {
             let reach = part.reach();
@@ -350,7 +352,8 @@ impl<'e> Reader<'e> {
         })
     }
 
-    /// Whether the first part starts where the word does, and the last one ends where it ends.
+    /// Returns whether the first part starts where the word does, and whether the last one ends where it
+    /// ends.
     pub(super) fn meets(&self) -> [bool; 2] {
         [self.starts, self.down]
     }

@@ -1,5 +1,5 @@
-//! Edge rewriting: where what replaces a module is the same at every step but for its size and where it
-//! points, one object stands for a kind, whatever the number of steps, and frames are made by chords.
+//! Edge rewriting: if the successor of a module is similar to itself at every step, one object represents
+//! the kind for any number of steps, and its frames are derived from chords.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,13 +18,13 @@ use super::long::{Vector, Ways};
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, Pose, State};
 
-/// So many steps are looked at, at most, until the state of all kinds comes back.
+/// Limit of the number of steps within which the state of all kinds must recur.
 const MOST_STEPS: u32 = 32;
 
-/// What differs by less is the same but for rounding.
+/// Relative difference that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What a word draws, by the chords of its parts, as multiples of a chord.
+/// Parts of a word's drawing by their chords, relative to the chord of the whole.
 #[derive(Debug)]
 struct Shape {
     links: Vec<Link>,
@@ -34,12 +34,12 @@ struct Shape {
 #[derive(Debug)]
 struct Link {
     kind: usize,
-    /// How it is drawn, from how the whole is.
+    /// Stroke attributes relative to those of the whole.
     look: Look,
     ends: [DVec2; 2],
     mirrored: bool,
     joined: bool,
-    /// Among the lines of the word.
+    /// Position among the lines of the word.
     position: u32,
 }
 
@@ -56,7 +56,7 @@ impl Shape {
             && self.links.iter().zip(&other.links).all(alike)
     }
 
-    /// The instances that it is made of, where the whole has a colour.
+    /// Returns the instances of the shape, where the whole has a colour.
     fn chain(&self, edges: &Edges, objects: &Objects, colour: i64) -> Result<Chain, NotCompiled> {
         let instance = |link: &Link| {
             let direction = if link.mirrored {
@@ -81,7 +81,7 @@ impl Shape {
     }
 }
 
-/// The identity of an object: its kind, its colour, and its change of widths, or a width that is set.
+/// Identity of an object: its kind, its colour, and its change of stroke widths, or a width that is set.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     kind: usize,
@@ -89,22 +89,24 @@ struct Key {
     thickness: (u64, bool),
 }
 
-/// The numbers of objects.
+/// Numbers of objects.
 type Objects = BTreeMap<Key, usize>;
 
-/// More objects than this are not made.
+/// Limit of the number of objects.
 const MOST_OBJECTS: usize = 1 << 12;
 
-/// How all kinds leave the turtle after some steps: where, as multiples of the longest way, and how.
+/// State of the turtle after each replaced kind at one number of steps, with the displacement relative to the
+/// longest.
 #[derive(Debug)]
 struct Stage {
     kinds: Vec<(DVec2, State)>,
-    /// The longest way, where what is kept does not grow with it.
+    /// Longest displacement, if there are modules of constant length.
     size: Option<Far>,
 }
 
 impl Stage {
-    /// Whether it is the same, but for its size if that does not matter.
+    /// Returns whether the stages are equal up to rounding and, unless there are modules of constant
+    /// length, up to size.
     fn is_like(&self, other: &Self) -> bool {
         let sizes = self.size.zip(other.size);
         let grows = |(a, b): (Far, Far)| (a.over(b).x - 1.0).abs() > ROUNDING;
@@ -125,11 +127,11 @@ impl Stage {
 }
 
 impl Graph {
-    /// The graph of a system that rewrites edges. Approximants are aligned: each runs from where approximant
-    /// 0 begins to where it ends.
+    /// Builds the graph of a system that rewrites edges. Approximants are aligned: each runs from the
+    /// start of approximant 0 to its end.
     ///
-    /// That all steps are alike follows from a state of all kinds that comes back, but for its size: what
-    /// comes next depends on nothing else.
+    /// All steps are similar if the state of all kinds recurs up to its size, because the following steps
+    /// depend on nothing else.
     pub(super) fn of_edges(system: &LSystem) -> Result<Self, NotCompiled> {
         let edges = Edges {
             effects: Effects::closed(system, MOST_STEPS)?,
@@ -141,28 +143,28 @@ impl Graph {
         edges.run()
     }
 
-    /// Whether an L-system rewrites edges: its graph is one for all numbers of steps.
+    /// Returns whether an L-system rewrites edges: whether one graph describes it for all numbers of
+    /// steps.
     #[must_use]
     pub fn rewrites_edges(system: &LSystem) -> bool {
         Self::of_edges(system).is_ok()
     }
 }
 
-/// The ends of the lines of a word, by position, in multiples of 2^-bits.
+/// Ends of the lines of a word, by position, in multiples of 2^-bits.
 type Lines = Vec<[Vector; 2]>;
 
-/// The lines that an L-system which rewrites edges is made of, to any number of bits.
+/// Lines of an L-system that rewrites edges, to arbitrary precision.
 #[derive(Debug)]
 pub(crate) struct Chords {
-    /// Those of the axiom.
+    /// Lines of the axiom.
     pub(crate) initiator: Lines,
-    /// Those that replace the objects of the graph, each in multiples of the way from where they begin to where
-    /// they end.
+    /// Lines that replace each object of the graph, relative to the chord of the object.
     pub(crate) objects: Vec<Lines>,
 }
 
 impl Chords {
-    /// Those of a system; nothing if it does not rewrite edges.
+    /// Computes the lines of a system to a number of bits; `None` if it does not rewrite edges.
     pub(crate) fn of(system: &LSystem, bits: usize) -> Option<Self> {
         let effects = Effects::closed(system, 1).ok()?;
         let edges = Edges { effects };
@@ -182,7 +184,7 @@ impl Chords {
     }
 }
 
-/// The quotient of vectors as complex numbers, in multiples of 2^-`bits`; of none, 0.
+/// Returns the quotient of vectors as complex numbers, in multiples of 2^-`bits`; 0 if the divisor is 0.
 fn quotient([a, b]: &Vector, [c, d]: &Vector, bits: usize) -> Vector {
     let below = c * c + d * d;
     if below.is_zero() {
@@ -209,7 +211,7 @@ impl Edges {
         let start = self.shape(&kinds.axiom, 0, None)?;
         let mut stages: Vec<Stage> = Vec::new();
         for left in 0..MOST_STEPS {
-            // What is made of this stage looks as what is made of the first.
+            // The shapes of this stage must equal those of the first.
             for (kind, shape) in shapes.iter().enumerate() {
                 let Some(shape) = shape else { continue };
                 let word = &kinds.all[kind].alternatives[0].word;
@@ -232,8 +234,8 @@ impl Edges {
         Err(NotCompiled)
     }
 
-    /// Which kinds draw: each a line from where it begins to where it ends, and nothing else, before it is
-    /// replaced.
+    /// Returns, for every kind, whether it draws. Fails unless each kind that does draws exactly one
+    /// line, from the position before it to the position after it, until it is replaced.
     fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
         let mut draws = Vec::new();
         for (kind, of) in self.effects.kinds.all.iter().enumerate() {
@@ -260,7 +262,7 @@ impl Edges {
         Ok(draws)
     }
 
-    /// Where a part of a word ends.
+    /// Returns the end point of a part of a word.
     fn end(&self, of: &Of, pose: &Pose, kind: usize, left: u32) -> Result<Far, NotCompiled> {
         let compass = self.effects.compass;
         let mut pose = *pose;
@@ -275,8 +277,8 @@ impl Edges {
         Ok(pose.place)
     }
 
-    /// What a word draws whose modules are still to be replaced so many times, as multiples of the chord
-    /// of a kind, or of its own first one.
+    /// Returns the drawing of a word whose modules are to be replaced for `left` more steps, relative to
+    /// the chord of a kind (`whole`), or to that of its first part.
     fn shape(
         &self,
         word: &[usize],
@@ -317,7 +319,7 @@ impl Edges {
         })
     }
 
-    /// The states of all kinds that are replaced so many times.
+    /// Returns the states after all kinds that are replaced for `left` steps.
     fn stage(&self, left: u32) -> Result<Stage, NotCompiled> {
         let mut states = Vec::new();
         let all = self.effects.kinds.all.iter().enumerate();
@@ -329,7 +331,7 @@ impl Edges {
         let poses = || states.iter().map(|state| &state.pose);
         let longest = poses().map(|pose| pose.place.length());
         let longest = longest.reduce(Far::longer).ok_or(NotCompiled)?;
-        // Without reflections it does not matter where all points together.
+        // Without reflections, a common rotation of all displacements does not matter.
         let turns = !self.reflects();
         let mut first = poses().map(|pose| pose.place.over(longest));
         let first = first.find(|place| place.length() > ROUNDING);
@@ -346,7 +348,7 @@ impl Edges {
         })
     }
 
-    /// How the turtle starts.
+    /// Returns the initial state of the turtle.
     fn start(&self) -> State {
         let Effects {
             system, compass, ..
@@ -357,7 +359,7 @@ impl Edges {
         state
     }
 
-    /// Whether something goes or draws that is not replaced.
+    /// Returns whether a module that is not replaced moves the turtle.
     fn keeps_lengths(&self) -> bool {
         let symbols = self.effects.system.symbols();
         let mut kept = { self.effects.kinds.all.iter() }.filter(|kind| !kind.is_fertile());
@@ -379,7 +381,8 @@ impl Edges {
         actions.any(|action| matches!(action, Action::Reflect))
     }
 
-    /// What tells an object of a kind, whose look is told from that of a whole which has a colour.
+    /// Returns the identity of an object of a kind, whose attributes are relative to a whole with a
+    /// colour.
     fn key(&self, kind: usize, look: Look, colour: i64) -> Key {
         let system = &self.effects.system;
         let colours = system.heading().style.palette.entries();
@@ -399,7 +402,7 @@ impl Edges {
         }
     }
 
-    /// The objects that there are, in order: those that the axiom has, and what comes of them.
+    /// Returns the objects in order: those of the axiom, and their descendants.
     fn objects(&self) -> Result<Objects, NotCompiled> {
         let kinds = &self.effects.kinds;
         let keys = |word: &[usize], colour: i64| -> Result<Vec<Key>, NotCompiled> {
@@ -501,7 +504,7 @@ impl Edges {
             place: Homothety::IDENTITY,
         };
         graph.find_widths();
-        // Pens that become wider without end are those of levels.
+        // Unbounded widths require a time-indexed graph.
         let is_bounded = graph.widest.is_none_or(f64::is_finite);
         is_bounded.then_some(graph).ok_or(NotCompiled)
     }

@@ -1,40 +1,43 @@
+//! States of the turtle relative to an earlier state.
+
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame};
 use crate::instancing::Thickness;
 use crate::lsystem::Compass;
 
 use super::far::Far;
 
-/// Where the turtle stands, from where it was: in steps, with the heading that it had to the right.
+/// Pose of the turtle relative to an earlier one: in its steps, with its former heading along the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub(super) place: Far,
-    /// As its compass has it: exact.
+    /// Heading in units of the compass: exact.
     pub(super) heading: u64,
     pub(super) mirrored: bool,
-    /// The length of its steps, as a multiple of what it was; negative if they go backwards.
+    /// Length of its steps relative to the former length; negative if they go backwards.
     pub(super) scale: f64,
-    /// How far it has gone at most, and whether place and heading are not known any better.
+    /// Bound on the distance that it has covered.
     pub(super) way: Far,
+    /// Whether draws leave position and heading unknown: only the bound holds then.
     pub(super) is_rough: bool,
 }
 
-/// How the turtle draws, from how it drew.
+/// Stroke attributes relative to earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     pub(super) width: Thickness,
     pub(super) colour: Shade,
 }
 
-/// The index of a colour.
+/// Colour index relative to an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shade {
-    /// So many further on.
+    /// Earlier index plus a number.
     Shifted(i64),
-    /// This one, whatever it was.
+    /// Index regardless of the earlier one.
     Set(i64),
 }
 
-/// Where the turtle is and how it draws.
+/// Pose and stroke attributes of the turtle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct State {
     pub(super) pose: Pose,
@@ -51,27 +54,27 @@ impl Pose {
         is_rough: false,
     };
 
-    /// Whether another pose is the same, however the turtle came there.
+    /// Returns whether another pose is known to be equal, regardless of the distance covered.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let [a, b] = [self, other];
         (a.place, a.heading, a.mirrored) == (b.place, b.heading, b.mirrored) && !b.is_rough
     }
 
-    /// A vector that is told by where the turtle looks.
+    /// Converts a vector from the turtle's coordinates to those of the earlier pose, without scaling.
     fn turned(&self, compass: Compass, vector: Far) -> Far {
         let along = compass.direction(self.heading);
         let mirrored = self.mirrored;
         vector.turned(|v| along.rotate(if mirrored { DVec2::new(v.x, -v.y) } else { v }))
     }
 
-    /// Goes so many steps ahead.
+    /// Moves a number of steps ahead.
     pub(super) fn go(&mut self, compass: Compass, steps: f64) {
         let ahead = Far::new(DVec2::X).times(steps).times(self.scale);
         self.place = self.place.plus(self.turned(compass, ahead));
         self.way = self.way.plus(ahead.length());
     }
 
-    /// How far from where it started it is at most.
+    /// Returns a bound on the distance from the start.
     pub(super) fn away(&self) -> Far {
         if self.is_rough {
             self.way
@@ -80,7 +83,7 @@ impl Pose {
         }
     }
 
-    /// Turns by parts of the compass, counter-clockwise where it is not mirrored.
+    /// Turns by units of the compass, counter-clockwise unless mirrored.
     pub(super) fn turn(&mut self, compass: Compass, turn: u64) {
         let turn = if self.mirrored {
             compass.back(turn)
@@ -90,7 +93,7 @@ impl Pose {
         self.heading = compass.sum(self.heading, turn);
     }
 
-    /// Where the turtle is after going on as another pose tells.
+    /// Composes the pose with another relative to it.
     pub(super) fn then(mut self, compass: Compass, next: &Self) -> Self {
         let way = self.turned(compass, next.place.times(self.scale));
         self.place = self.place.plus(way);
@@ -102,7 +105,7 @@ impl Pose {
         self
     }
 
-    /// A place as the turtle sees it from here, in its steps.
+    /// Returns a position in the coordinates of the turtle, in its steps.
     pub(super) fn seen(&self, compass: Compass, place: Far) -> DVec2 {
         let along = compass.direction(self.heading);
         let back = DVec2::new(along.x, -along.y);
@@ -116,7 +119,7 @@ impl Pose {
         }
     }
 
-    /// The frame of what stands here and is so many steps long, where a length is the unit.
+    /// Returns the frame, in multiples of `unit`, of an object at this pose whose length is `steps`.
     pub(super) fn frame(&self, compass: Compass, steps: Far, unit: Far) -> Frame {
         let x_axis = self.turned(compass, steps.times(self.scale)).over(unit);
         let (y_axis, direction) = if self.mirrored {
@@ -133,19 +136,19 @@ impl Pose {
 }
 
 impl Look {
-    /// Nothing changes.
+    /// Identity: attributes are unchanged.
     pub(super) const SAME: Self = Self {
         width: Thickness::Times(1.0),
         colour: Shade::Shifted(0),
     };
 
-    /// What the turtle starts with.
+    /// Initial attributes.
     pub(super) const START: Self = Self {
         width: Thickness::Set(1.0),
         colour: Shade::Set(0),
     };
 
-    /// How the turtle draws after another change.
+    /// Composes the attributes with others relative to them.
     pub(super) fn then(self, next: Self) -> Self {
         let width = match (self.width, next.width) {
             (Thickness::Times(a), Thickness::Times(b)) => Thickness::Times(a * b),
@@ -162,7 +165,7 @@ impl Look {
 }
 
 impl Shade {
-    /// The index, from what it was.
+    /// Returns the index, given the earlier one.
     pub(super) fn from(self, index: i64) -> i64 {
         match self {
             Self::Shifted(by) => index.saturating_add(by),
@@ -172,13 +175,13 @@ impl Shade {
 }
 
 impl State {
-    /// Nothing changes.
+    /// Identity: pose and attributes are unchanged.
     pub(super) const SAME: Self = Self {
         pose: Pose::START,
         look: Look::SAME,
     };
 
-    /// What another state, told from this one, is.
+    /// Composes the state with another relative to it.
     pub(super) fn then(&self, compass: Compass, next: &Self) -> Self {
         Self {
             pose: self.pose.then(compass, &next.pose),

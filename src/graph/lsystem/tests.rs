@@ -1,4 +1,4 @@
-//! The engines agree.
+//! Compares compiled graphs of L-systems with derived words.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use super::effects::Effects;
 
 mod random;
 
-/// What is drawn of an element.
+/// Element as drawn.
 #[derive(Debug)]
 pub(super) struct Drawn {
     pub(super) points: Vec<DVec2>,
@@ -89,20 +89,21 @@ pub(super) fn drawn(graph: &Graph, steps: u32, seed: u64) -> Vec<Drawn> {
     collector.drawn
 }
 
-/// Whether both engines draw the same at a step, element by element.
+/// Asserts that a compiled graph and the derived word draw equal elements at a step, in order.
 pub(super) fn assert_same(name: &str, compiled: &Graph, system: &LSystem, steps: u32, seed: u64) {
     let words = Graph::of_words(system, steps, seed, 1_000_000).unwrap();
     let (ours, theirs) = (drawn(compiled, steps, seed), drawn(&words, steps, seed));
     assert_eq!(ours.len(), theirs.len(), "{name} at step {steps}");
     let size = theirs.iter().flat_map(|element| &element.points);
     let size = size.map(|point| point.length()).fold(1.0, f64::max);
-    // What is farther than 1e150 is drawn about 1 wide, and by words as it is.
+    // The compiled graph scales drawings beyond 1e150 to a reach of about 1; that of the word does not.
     if size > 1e147 {
         return;
     }
     for (number, (a, b)) in ours.iter().zip(&theirs).enumerate() {
         let what = format!("{name}: element {number} of step {steps}: {a:?} {b:?}");
-        // Rounding decides whether a side is added to close an outline, and whether it has an extent.
+        // Rounding decides whether a side is added to close an outline, and whether the outline has an
+        // extent.
         let point = |all: &[DVec2], number: usize| all.get(number).copied().unwrap_or(all[2]);
         let is_speck = |all: &[DVec2]| all[2..].iter().all(|p| p.distance(all[2]) < 1e-9 * size);
         let points = match [a, b].iter().any(|drawn| is_speck(&drawn.points)) {
@@ -116,7 +117,7 @@ pub(super) fn assert_same(name: &str, compiled: &Graph, system: &LSystem, steps:
         assert_eq!(a.joined, b.joined, "{what}");
         assert_eq!(a.direction, b.direction, "{what}");
         assert_eq!(a.colour, b.colour, "{what}");
-        // Below the least normal number single precision tells widths with fewer places.
+        // Below the least normal number, single precision represents widths with fewer digits.
         let width = b.width.max(f32::MIN_POSITIVE.into());
         assert!((a.width - b.width).abs() <= 1e-5 * width, "{what}");
     }
@@ -127,7 +128,7 @@ fn compiled(system: &LSystem, steps: u32) -> Graph {
     Graph::of_levels(effects, steps).unwrap()
 }
 
-/// Systems that rewrite edges draw what words draw, up to a similarity a step.
+/// Systems that rewrite edges draw the elements of their words, up to a similarity for each step.
 #[test]
 fn edges_draw_what_words_draw() {
     for text in [
@@ -148,7 +149,7 @@ fn edges_draw_what_words_draw() {
             let words = Graph::of_words(&system, steps, 0, 1_000_000).unwrap();
             let (ours, theirs) = (drawn(&graph, steps, 0), drawn(&words, steps, 0));
             assert_eq!(ours.len(), theirs.len(), "{text} at {steps}");
-            // The similarity that moves the first line and one that lies apart from it.
+            // Applies the similarity that maps the first line to (0, 0) and (1, 0).
             let ratio = |all: &[Drawn], point: DVec2| {
                 let [from, to] = [all[0].points[0], all[0].points[1]];
                 let along = to - from;
@@ -200,7 +201,7 @@ fn levels_draw_what_words_draw() {
     }
 }
 
-/// What is drawn by paths makes the same individuals.
+/// Random productions yield equal individuals in both ways.
 #[test]
 fn drawn_productions_draw_what_words_draw() {
     for text in [
@@ -220,8 +221,8 @@ fn drawn_productions_draw_what_words_draw() {
     }
 }
 
-/// What graphs tell of their approximants is what walks find, for all L-systems of the library; and those
-/// that can be are compiled.
+/// For all L-systems of the library that can be compiled, forecasts and bounds match the walks, and
+/// drawings match the words.
 #[test]
 fn library() {
     let catalogue = Catalogue::embedded();
@@ -256,12 +257,12 @@ fn library() {
             assert_told(&edges, most);
         }
     }
-    // What depends on contexts is not compiled.
+    // Systems with contexts are not compiled.
     assert_eq!(words, ["signals-a", "signals-e"]);
     assert!(counts[0] >= 7 && counts[1] >= 25, "{counts:?}");
 }
 
-/// Forecast and bounds are those of what a walk comes to.
+/// Asserts that forecast and bounds match the elements of a walk.
 fn assert_told(graph: &Graph, steps: u32) {
     let found = drawn(graph, steps, 1);
     if let Some(mut forecast) = graph.forecast() {
@@ -293,7 +294,8 @@ fn assert_told(graph: &Graph, steps: u32) {
     }
 }
 
-/// Numbers and headings are exact wherever they lead: Koch's curve turns by r -> 4r.
+/// Counts and headings are exact at any step: the heading of Koch's curve is multiplied by 4 at each
+/// step.
 #[test]
 fn a_thousand_steps_are_exact() {
     let dragon = system("axiom: FX\nproductions: {X: X+YF+, Y: -FX-Y}\n");
@@ -306,7 +308,7 @@ fn a_thousand_steps_are_exact() {
         power += &same;
     }
     assert_eq!(forecast.elements(), power);
-    // The picture comes back after eight steps, twice as wide for every two.
+    // The figure recurs after eight steps, with twice the width for every two.
     let [last, before] = [990, 982].map(|steps| graph.bounds(steps).unwrap());
     let ratio = last.size() / before.size();
     assert!((ratio - 16.0).abs().max_element() < 1e-9, "{ratio}");
@@ -322,7 +324,7 @@ fn a_thousand_steps_are_exact() {
     }
 }
 
-/// The ways of Penrose's tiling nearly cancel, and doubles would lose all of them by step 60.
+/// The displacements of the Penrose tiling nearly cancel; doubles would lose all digits by step 60.
 #[test]
 fn deep_steps_look_as_shallow_ones() {
     let productions = "{1: '', 6: '81++91----71[-81----61]++', 7: '+81--91[---61--71]+', \

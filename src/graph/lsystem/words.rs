@@ -1,5 +1,5 @@
-//! L-systems whose productions are drawn: where what comes later stands is found by reading what stands
-//! before it, by the draws of its path.
+//! L-systems with random productions: the position of a module is found by reading the modules before it,
+//! with the draws of its path.
 
 use crate::graph::{Alternative, Instance, Production};
 use crate::rule::Extent;
@@ -10,19 +10,21 @@ use super::far::Far;
 use super::reader::{Of, Reader};
 use super::state::State;
 
-/// A word that may replace a kind with so many steps left.
+/// Word that may replace a kind with `left` steps left.
 #[derive(Debug)]
 pub(super) struct Written {
     pub(super) kind: usize,
     pub(super) left: u32,
-    /// How long the kind counts.
+    /// Nominal length of the kind.
     pub(super) unit: Far,
-    /// The positions of all that may be drawn, and what holds of it wherever it stands.
+    /// Positions of all modules that may draw.
     pub(super) positions: Vec<u32>,
+    /// Bounds on the drawing of each.
     pub(super) extents: Vec<Extent>,
 }
 
-/// The words of an L-system, by kind and level, with all it takes to read them.
+/// Words of an L-system by kind and number of steps left, with the effects that are required to read
+/// them.
 #[derive(Debug)]
 pub(crate) struct Words {
     pub(super) effects: Effects,
@@ -30,12 +32,13 @@ pub(crate) struct Words {
 }
 
 impl Words {
-    /// What holds of what a word may draw.
+    /// Returns bounds on the drawings of a word's modules.
     pub(crate) fn extents(&self, word: usize) -> &[Extent] {
         &self.written[word].extents
     }
 
-    /// Overwrites a production with what the draws of a path make of words, one of which replaces an object.
+    /// Overwrites a production with the word that the draws of a path select among `words`, interpreted
+    /// with the draws of the path.
     pub(crate) fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Production) {
         production.seeds.clear();
         production.body.instances.clear();
@@ -52,7 +55,7 @@ impl Words {
         }
         let mut spots = written.positions.iter().zip(&words[drawn].objects);
         for part in &reader.parts {
-            // What may be drawn and is not is passed over.
+            // Modules that could draw but do not are skipped.
             let Some((_, &object)) = spots.find(|(position, _)| **position == part.position) else {
                 return;
             };

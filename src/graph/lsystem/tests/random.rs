@@ -1,4 +1,4 @@
-//! The engines agree on random systems.
+//! Compares compiled graphs with derived words for random L-systems.
 
 use proptest::prelude::*;
 
@@ -7,7 +7,7 @@ use crate::graph::lsystem::effects::Effects;
 
 use super::{assert_same, assert_told, system};
 
-/// Words of letters and what turns, scales, reflects and looks, with balanced brackets.
+/// Words of letters, turns, scalings, reflections and stroke attributes, with balanced brackets.
 fn word(drawn: bool) -> impl Strategy<Value = String> {
     let letters = "ABFGf+-+-|RSsWC"
         .chars()
@@ -23,7 +23,7 @@ fn word(drawn: bool) -> impl Strategy<Value = String> {
         4 => inner.clone(),
         2 => inner.clone().prop_map(|word| format!("[{word}]")),
         1 => inner.prop_map(move |word| {
-            // What is filled may not hang on draws.
+            // The vertices of a filled polygon may not depend on draws.
             let word = if drawn { word.replace(['A', 'B', 'F', 'P'], "G") } else { word };
             format!("{{.{}+f.}}", word.replace("(1)", "").replace("(2/3)", ""))
         }),
@@ -31,7 +31,7 @@ fn word(drawn: bool) -> impl Strategy<Value = String> {
     prop::collection::vec(bracketed, 1..5).prop_map(|all| all.concat())
 }
 
-/// Systems of two rewritten letters, a drawing one and one with an argument; with draws or without.
+/// Systems with two replaced letters, a drawing one and one with an argument; deterministic or random.
 fn text(drawn: bool) -> impl Strategy<Value = String> {
     let angles = prop::sample::select(vec!["60", "90", "25.7", "360/7", "17.3", "120"]);
     let words = prop::collection::vec(word(drawn), if drawn { 8 } else { 5 });
@@ -46,7 +46,7 @@ fn text(drawn: bool) -> impl Strategy<Value = String> {
         for (number, word) in words[1..].iter().enumerate() {
             let symbol = ["A", "B", "F", "P(n) : n > 1/5", "A", "B", "A"][number];
             let more = if number == 3 { "P(n/2)" } else { "" };
-            // A width or colour that hangs on draws cannot be told.
+            // A random width or colour cannot be compiled.
             let word = if drawn {
                 word.replace(['W', 'C', 'S', 's'], "-")
             } else {
