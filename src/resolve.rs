@@ -1,9 +1,8 @@
-//! From files as written to validated models: names are looked up, expressions compiled,
-//! everything is checked, and all that is wrong is said at once.
+//! Resolution of documents to validated models: names are looked up, expressions are compiled,
+//! everything is checked, and all mistakes are reported together.
 //!
-//! Nothing is said of what depends on a mistake that has been reported: expressions that could not
-//! be read and names that may belong to what was not found are unknown, and so is all that is
-//! computed from them.
+//! Consequences of a reported mistake are not reported: expressions that could not be read, and names
+//! that a missing file may define, are unknown, as are all values computed from them.
 
 mod fractal;
 mod heading;
@@ -29,17 +28,17 @@ use crate::model::Model;
 
 pub(crate) use parameters::order as order_of_parameters;
 
-/// Behind this many mistakes no more are looked for.
+/// Number of mistakes after which expressions and names are not checked further.
 const MOST_MISTAKES: usize = 1000;
 
-/// Numbers of steps beyond this are refused.
+/// Maximum number of steps that a file may propose.
 pub(crate) const MOST_STEPS: u32 = 1_000_000;
 
-/// Validates a file as written, with parameters set from outside.
+/// Validates a document, with parameters set from outside, and returns the model with warnings.
 ///
 /// # Errors
 ///
-/// All that is wrong with it. What is only doubtful comes with the model.
+/// Returns all mistakes and warnings if there is a mistake.
 pub(crate) fn resolve(
     document: &KindDocument,
     settings: &[Setting],
@@ -71,7 +70,7 @@ pub(crate) fn resolve(
     }
 }
 
-/// What a kind of file comes to, with what is doubtful; or else all that is wrong with it.
+/// Resolves the metadata and the model, and adds warnings of unused parameters.
 fn resolved<K: Default>(
     document: &HeadingDocument,
     settings: &[Setting],
@@ -90,19 +89,19 @@ fn resolved<K: Default>(
     Ok((model, doubts))
 }
 
-/// What is known while a file is resolved, with what only its kind has.
+/// State of the resolution of a file, with the state `kind` that is specific to the kind of file.
 #[derive(Default)]
 struct Resolver<K> {
     diagnostics: Diagnostics,
-    /// How many of them are errors.
+    /// Number of errors.
     mistakes: usize,
-    /// The file's parameters.
+    /// Parameters of the file.
     constants: Scope,
-    /// The names that expressions use.
+    /// Names that expressions use.
     used: HashSet<String>,
-    /// Whether a parent or a component is missing, which may have other names.
+    /// Whether a parent or a component is missing. Unknown names may be defined there.
     incomplete: bool,
-    /// The lines, curves and sides of sets that are fractals.
+    /// Number of lines, curves and sides in all sets that are fractals.
     pieces: usize,
     kind: K,
 }
@@ -125,7 +124,7 @@ impl<K> Resolver<K> {
     }
 }
 
-/// A value as a whole number from 0 to `most`.
+/// Returns a value as an integer from 0 to `most`; `None` if it is not one.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Other fractals as sets: approximants of them, grown here and now.
+//! Fractals as sets: approximants of other fractals, which are grown during resolution.
 
 use crate::document::{FractalDocument, Setting};
 use crate::geometry::DAffine2;
@@ -7,11 +7,11 @@ use crate::ifs::Shape;
 
 use super::{Resolver, resolve, whole_number};
 
-/// All sets of a file that are fractals have no more lines, curves and sides than this.
+/// Maximum number of lines, curves and sides in all sets of a file that are fractals.
 const MOST_PIECES: usize = 100_000;
 
 impl<K> Resolver<K> {
-    /// What a fractal draws after its steps; `None` if something is wrong, which is said.
+    /// Grows a fractal and returns the outlines that it draws. Reports a mistake and returns `None`.
     pub(super) fn fractal(&mut self, document: &FractalDocument) -> Option<Shape> {
         let steps = document.steps.as_ref().map(|steps| self.steps(steps));
         let seed = document.seed.as_ref().map(|seed| {
@@ -34,7 +34,7 @@ impl<K> Resolver<K> {
             }
         };
         if !document.is_sound {
-            // What could not be read, which has been said, is missing in the model.
+            // Parts that could not be read, and were reported, are missing in the model.
             return None;
         }
         let place = &document.place;
@@ -82,7 +82,7 @@ impl<K> Resolver<K> {
         None
     }
 
-    /// The parameters that are set; `None` if something is wrong, which is said.
+    /// Returns the parameters that are set. Reports mistakes and returns `None`.
     fn settings(&mut self, document: &FractalDocument) -> Option<Vec<Setting>> {
         let heading = document.file.heading();
         let names = heading.params.iter().map(|param| param.name.value.as_str());

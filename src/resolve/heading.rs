@@ -1,4 +1,4 @@
-//! What files of all kinds say.
+//! Resolution of metadata, which files of all kinds have.
 
 use crate::document::{HeadingDocument, Number, Setting};
 use crate::heading::Heading;
@@ -6,7 +6,7 @@ use crate::heading::Heading;
 use super::{MOST_STEPS, Resolver, numbers, whole_number};
 
 impl<K> Resolver<K> {
-    /// The heading of a file; expressions see its parameters from here on.
+    /// Resolves the metadata of a file and adds its parameters to the scope of expressions.
     pub(super) fn heading(&mut self, document: &HeadingDocument, settings: &[Setting]) -> Heading {
         self.incomplete = !document.complete;
         let parameters = self.parameters(document, settings);

@@ -1,4 +1,4 @@
-//! Iterated function systems.
+//! Resolution of iterated function systems.
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
@@ -10,14 +10,15 @@ use crate::ifs::{
 
 use super::Resolver;
 
-/// A system has no more instances of sets and maps inside maps.
+/// Maximum size of a system, with all instances of sets and of maps in maps.
 const MOST_INSTANCES: usize = 2_000_000;
 
-/// What is known while a system is resolved: nothing but what is known of any file.
+/// State that is specific to systems: none.
 #[derive(Default)]
 pub(super) struct OfIfs;
 
-/// Maps, the initial set that goes with them, and whether they make a line of a line.
+/// Maps of a system, the default initial set, and whether its images, in the order of the maps, form
+/// one line.
 pub(super) struct Maps {
     pub(super) maps: Vec<Map>,
     pub(super) initial: Option<Shape>,
@@ -25,7 +26,7 @@ pub(super) struct Maps {
 }
 
 impl Resolver<OfIfs> {
-    /// The system; `None` if something is wrong, which is said.
+    /// Resolves the system. Reports mistakes and returns `None`.
     pub(super) fn system(&mut self, document: &IfsDocument, heading: Heading) -> Option<System> {
         let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
         let condensation: Vec<_> = document
@@ -58,7 +59,7 @@ impl Resolver<OfIfs> {
         };
         let maps = maps?;
         let condensation = condensation.into_iter().collect::<Option<Vec<_>>>()?;
-        // What goes with the maps is drawn where nothing else is said to be.
+        // The default initial set of the maps applies only without condensation sets.
         let default = maps.initial.filter(|_| condensation.is_empty());
         let initial = match initial {
             None => default,
@@ -151,7 +152,7 @@ impl Resolver<OfIfs> {
         })
     }
 
-    /// The map of a name, or of a number from 1.
+    /// Returns the index of the map of the given name, or of the given number from 1.
     fn map_called(&mut self, called: &Written<String>, names: &[Option<&str>]) -> Option<usize> {
         let name = called.value.as_str();
         let named = names.iter().position(|known| *known == Some(name));
@@ -168,7 +169,7 @@ impl Resolver<OfIfs> {
         found
     }
 
-    /// Says what is wrong with the parts of a system, where it is written.
+    /// Reports a mistake in a part of the system at the place of that part.
     fn refuse(&mut self, document: &IfsDocument, error: &IfsError) {
         let edges = document.edges.as_ref();
         let edge = |number: usize| edges.and_then(|(edges, _)| edges.get(number));
@@ -204,7 +205,7 @@ impl Resolver<OfIfs> {
         self.error(&place, error.to_string());
     }
 
-    /// Refuses a system that does not contract, and says where that is not known.
+    /// Refuses a system that does not contract, and warns if the verdict is undecided.
     fn check_contraction(
         &mut self,
         document: &IfsDocument,
@@ -250,7 +251,7 @@ impl Resolver<OfIfs> {
     }
 }
 
-/// A map where it is listed.
+/// Returns a map of a list of maps.
 fn listed(document: &IfsDocument, map: usize) -> Option<&MapDocument> {
     match &document.maps {
         Some(MapsDocument::Listed(maps)) => maps.get(map),
@@ -258,7 +259,7 @@ fn listed(document: &IfsDocument, map: usize) -> Option<&MapDocument> {
     }
 }
 
-/// The first line of a place.
+/// Returns the first line of a place.
 fn first_line(place: &Place) -> Place {
     let end = place.text().find(['\n', '\r']);
     place.within(0..end.unwrap_or(usize::MAX))

@@ -1,4 +1,5 @@
-//! Structures of objects that instance each other.
+//! Resolution of instancing structures. Objects with levels are expanded to one object for each level
+//! that the scene reaches.
 
 mod loops;
 
@@ -19,34 +20,34 @@ use crate::style::{ColorBy, Colour};
 
 use super::Resolver;
 
-/// More objects than this are not made of those with levels.
+/// Maximum number of objects after the expansion of levels.
 const MOST_OBJECTS: usize = 20_000;
 
-/// All levels together hold no more instances than this, and sides of shapes among them.
+/// Maximum number of instances in all objects, where sides of shapes count as well.
 const MOST_INSTANCES: usize = 250_000;
 
-/// What is known while a structure is resolved.
+/// State that is specific to structures.
 #[derive(Default)]
 pub(super) struct OfInstancing {
-    /// The objects that were written.
+    /// The unions of the objects as written.
     unions: Vec<Union>,
-    /// Those of a name.
+    /// The definitions of each name.
     names: BTreeMap<String, Definitions>,
-    /// The objects that have been reached: the union of each, and its level.
+    /// The objects that have been reached: the index of the union, and the level.
     reached: Vec<(usize, Option<f64>)>,
     numbers: BTreeMap<(usize, u64), usize>,
     is_too_many: bool,
-    /// The number of instances and of the sides of shapes among them.
+    /// Number of instances and of the sides of shapes among them.
     size: usize,
-    /// The file's parameters.
+    /// Parameters of the file.
     constants: Arc<Scope>,
 }
 
-/// The objects that share a name, by the number of their union.
+/// The objects that share a name, as indices of their unions.
 #[derive(Default)]
 struct Definitions {
     plain: Option<usize>,
-    /// Of single levels, by their bits.
+    /// Objects of single levels, by the bits of the level.
     levels: BTreeMap<u64, usize>,
     any: Option<usize>,
 }
@@ -57,7 +58,7 @@ impl Definitions {
     }
 }
 
-/// A union whose expressions are compiled; the first slot is the level.
+/// A union with compiled expressions, whose first slot is the level.
 struct Union {
     name: String,
     instances: Vec<Prepared>,
@@ -103,19 +104,19 @@ impl Transform {
     }
 }
 
-/// What tells levels apart: 0 and -0 are one.
+/// Returns a key that identifies a level. 0 and -0 have the same key.
 fn bits(level: f64) -> u64 {
     (level + 0.0).to_bits()
 }
 
-/// Transforms in their order: what is written first is done first.
+/// Computes the product of transforms, of which the first one is applied first.
 fn product(transforms: &[Transform], slots: &[f64]) -> DAffine2 {
     let maps = transforms.iter().map(|transform| transform.map(slots));
     maps.fold(DAffine2::IDENTITY, |before, map| map * before)
 }
 
 impl Resolver<OfInstancing> {
-    /// The structure; `None` if something is wrong, which is said.
+    /// Resolves the structure. Reports mistakes and returns `None`.
     pub(super) fn structure(
         &mut self,
         document: &InstancingDocument,
@@ -185,7 +186,7 @@ impl Resolver<OfInstancing> {
         Some(structure)
     }
 
-    /// What stands for objects that have not been replaced: a single outline.
+    /// Resolves the initial set, which must be a single outline or shape.
     fn initial(&mut self, document: &ShapeDocument) -> Option<Shape> {
         match self.set(document)? {
             Shape::Union(outlines) if outlines.len() > 1 => {
@@ -202,7 +203,7 @@ impl Resolver<OfInstancing> {
         }
     }
 
-    /// Takes in an object as written.
+    /// Adds an object to the definitions of its name.
     fn define(&mut self, document: &ObjectDocument) {
         let name = &document.name.value;
         let number = self.kind.unions.len();
@@ -298,7 +299,8 @@ impl Resolver<OfInstancing> {
         transforms
     }
 
-    /// Says which names of objects are not known, whether or not they are reached.
+    /// Reports unknown names of objects and missing or superfluous levels, also in objects that are not
+    /// reached.
     fn check_names(&mut self, document: &InstancingDocument, scene: &Union) {
         if self.incomplete {
             return;
@@ -338,7 +340,7 @@ impl Resolver<OfInstancing> {
         self.kind.unions = unions;
     }
 
-    /// The instances of a union at a level; objects that are new are reached.
+    /// Returns the instances of a union at a level. New objects among them are marked as reached.
     fn instances(&mut self, union: &Union, level: Option<f64>) -> Vec<Instance> {
         let slots: Vec<f64> = level.into_iter().collect();
         let whole = product(&union.transforms, &slots);
@@ -387,7 +389,7 @@ impl Resolver<OfInstancing> {
         instances
     }
 
-    /// The number of an object at a level, which is reached with this.
+    /// Returns the index of an object at a level, and marks the object as reached.
     fn object(&mut self, name: &str, level: Option<f64>, place: &Place) -> Option<usize> {
         let known = self.kind.names.get(name)?;
         let union = match level {
@@ -427,7 +429,7 @@ impl Resolver<OfInstancing> {
         Some(number)
     }
 
-    /// Warns of objects that the scene does not lead to.
+    /// Warns of objects that are not reached from the scene.
     fn check_all_are_reached(&mut self, document: &InstancingDocument) {
         let reached: BTreeSet<usize> = self.kind.reached.iter().map(|(union, _)| *union).collect();
         for (number, object) in document.objects.iter().enumerate() {

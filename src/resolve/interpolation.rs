@@ -1,4 +1,4 @@
-//! Fractal interpolation.
+//! Resolution of fractal interpolation.
 
 use crate::document::{InterpolationDocument, Scales};
 use crate::ifs::{InterpolationError, Shape, interpolate, scale_of_dimension};
@@ -7,7 +7,8 @@ use super::Resolver;
 use super::ifs::{Maps, OfIfs};
 
 impl Resolver<OfIfs> {
-    /// The maps of the curve through points, which start from the line between its ends.
+    /// Computes the maps of fractal interpolation. The initial set is the line between the ends of the
+    /// curve.
     pub(super) fn interpolation(&mut self, document: &InterpolationDocument) -> Option<Maps> {
         let points = self.points(&document.points);
         let scales = match &document.scale {

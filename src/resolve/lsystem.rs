@@ -1,4 +1,4 @@
-//! L-systems.
+//! Resolution of L-systems.
 
 mod alphabet;
 mod check;
@@ -15,26 +15,26 @@ use crate::style::ColorBy;
 
 use super::Resolver;
 
-/// Branches of branches of a context: each is looked for by a call of itself.
+/// Maximum nesting depth of branches in a right context, which are matched by recursion.
 const MOST_BRANCHES: i32 = 64;
 
-/// What is known while an L-system is resolved.
+/// State that is specific to L-systems.
 #[derive(Default)]
 pub(super) struct OfLSystem {
     symbols: Vec<Symbol>,
     numbers: BTreeMap<(char, usize), usize>,
-    /// The meanings of the file's own.
+    /// The file's own interpretations of symbols.
     own: BTreeMap<(char, usize), Vec<Action>>,
-    /// The angle of `+`, in degrees.
+    /// Angle increment of `+` and `-`, in degrees.
     angle: f64,
-    /// What `!` multiplies widths by.
+    /// Factor by which `!` multiplies the width.
     thinning: f64,
-    /// The file's parameters.
+    /// Parameters of the file.
     constants: Arc<Scope>,
 }
 
 impl Resolver<OfLSystem> {
-    /// The system; `None` if something is wrong, which is said.
+    /// Resolves the system. Reports mistakes and returns `None`.
     pub(super) fn lsystem(
         &mut self,
         document: &LSystemDocument,
@@ -115,7 +115,7 @@ impl Resolver<OfLSystem> {
         modules.collect()
     }
 
-    /// The modules of a word, in which brackets are balanced.
+    /// Resolves a word and checks that its brackets are balanced.
     fn word(&mut self, word: &WordDocument, scope: &Scope) -> Vec<Template> {
         let templates: Vec<_> = { word.modules.iter() }
             .map(|module| Template {
@@ -203,7 +203,7 @@ impl Resolver<OfLSystem> {
         })
     }
 
-    /// Puts the names of a module's arguments into a scope, from a slot on.
+    /// Adds the names of a module's arguments to a scope, as variables from slot `slots` on.
     fn names(&mut self, module: &ModuleDocument, scope: &mut Scope, slots: &mut usize) {
         for number in &module.arguments {
             let slot = *slots;
@@ -232,7 +232,7 @@ impl Resolver<OfLSystem> {
         }
     }
 
-    /// What none of the diagnostics of a production may be: all of its weights 0.
+    /// Refuses a symbol whose productions with weights all have the constant weight 0.
     fn check_weights(&mut self, document: &LSystemDocument, system: &LSystem) {
         for symbol in &system.symbols {
             let weights = { symbol.productions.iter() }.filter_map(|&number| {
@@ -259,7 +259,7 @@ impl Resolver<OfLSystem> {
     }
 }
 
-/// The program of an expression of a module's only argument, x.
+/// Compiles an expression of the only argument, x, of a module.
 fn of_argument(text: &str) -> Program {
     let mut scope = Scope::new();
     scope.variable("x", 0);

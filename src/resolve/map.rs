@@ -1,4 +1,4 @@
-//! Affine maps.
+//! Resolution of affine maps.
 
 use crate::document::{LinearDocument, MapDocument};
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -7,7 +7,7 @@ use crate::ifs::{about, axes, complex, complex_conjugate};
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// What a map does; `None` if something is wrong, which is said.
+    /// Resolves an affine map. Reports mistakes and returns `None`.
     pub(super) fn affine(&mut self, document: &MapDocument) -> Option<DAffine2> {
         let linear = document.linear.as_ref().and_then(|it| self.linear(it));
         let shift = document.shift.as_ref().map(|it| self.constant_point(it));
@@ -24,7 +24,7 @@ impl<K> Resolver<K> {
         match document {
             LinearDocument::Matrix([first, second]) => {
                 let (first, second) = (self.constant_point(first), self.constant_point(second));
-                // Rows are written, columns are kept.
+                // The document has rows, the matrix has columns.
                 Some(DMat2::from_cols(first?, second?).transpose())
             }
             LinearDocument::Axes { scale, rotate } => {

@@ -1,4 +1,4 @@
-//! Numbers: expressions in a scope.
+//! Compilation of expressions in a scope.
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::document::{Number, Point};
@@ -9,17 +9,17 @@ use crate::rule::Moment;
 use super::{MOST_MISTAKES, Resolver};
 
 impl<K> Resolver<K> {
-    /// The program of a number in a scope; unknown where it is wrong, which is said.
+    /// Compiles a number in a scope. Reports a mistake and returns an unknown program.
     pub(super) fn program(&mut self, number: &Number, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Number, scope)
     }
 
-    /// The program of a condition in a scope.
+    /// Compiles a condition in a scope. Reports a mistake and returns an unknown program.
     pub(super) fn condition(&mut self, number: &Number, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Condition, scope)
     }
 
-    /// The program of a part of an expression.
+    /// Compiles a part of an expression. Reports a mistake and returns an unknown program.
     pub(super) fn part(
         &mut self,
         whole: &Number,
@@ -57,7 +57,7 @@ impl<K> Resolver<K> {
             .push(hint.into_iter().fold(diagnostic, Diagnostic::hint));
     }
 
-    /// The value of a number that sees parameters only, if it can be told.
+    /// Evaluates a number in the scope of parameters. Returns `None` if its value is unknown.
     pub(super) fn constant(&mut self, number: &Number) -> Option<f64> {
         let scope = std::mem::take(&mut self.constants);
         let program = self.program(number, &scope);
@@ -87,8 +87,8 @@ impl<K> Resolver<K> {
     }
 }
 
-/// The place of a part of a number; of all of it where its text is written otherwise than it reads,
-/// with escapes or on several lines.
+/// Returns the place of a part of a number, or of the whole number if its notation differs from its
+/// text, as with escapes or several lines.
 pub(super) fn within(number: &Number, range: std::ops::Range<usize>) -> Place {
     let same = |read: Expression| read == number.value && read.range() == number.value.range();
     if Expression::parse(number.place.text()).is_ok_and(same) {
@@ -98,7 +98,7 @@ pub(super) fn within(number: &Number, range: std::ops::Range<usize>) -> Place {
     }
 }
 
-/// `, not 7` for a number that is written as a formula.
+/// Returns `, this is 7` for a number that is written as a formula, and nothing for a plain number.
 pub(super) fn but(number: &Number, value: f64) -> String {
     if number.place.text().parse() == Ok(value) {
         String::new()

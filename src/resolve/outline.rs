@@ -1,4 +1,4 @@
-//! Outlines: a point, then straight and round pieces.
+//! Resolution of outlines: a point followed by straight and curved pieces.
 
 use crate::document::{BaseElementDocument, PieceDocument};
 use crate::geometry::DVec2;
@@ -7,7 +7,8 @@ use crate::rule::{Piece, arc};
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// The start and the pieces of an outline in its own coordinates.
+    /// Resolves the start and the pieces of an outline in its own coordinates. Reports mistakes;
+    /// returns `None` if a coordinate is unknown.
     pub(super) fn outline(
         &mut self,
         document: &BaseElementDocument,
@@ -23,7 +24,7 @@ impl<K> Resolver<K> {
                 );
                 return None;
             }
-            // The reader has said that there is no point.
+            // The missing points have been reported.
             None => return None,
         };
         let mut from = start;
@@ -51,7 +52,7 @@ impl<K> Resolver<K> {
                         .collect();
                     outline.push(match control?.as_slice() {
                         [a, b] => Piece::Cubic(*a, *b, end),
-                        // A quadratic curve as the cubic that it is.
+                        // Degree elevation of the quadratic curve.
                         [a] => Piece::Cubic(from.lerp(*a, 2.0 / 3.0), end.lerp(*a, 2.0 / 3.0), end),
                         _ => Piece::Line(end),
                     });
@@ -59,7 +60,7 @@ impl<K> Resolver<K> {
             }
             from = outline.last().map_or(from, Piece::end);
         }
-        // A straight last side is drawn by `closed: true`, a round one is written.
+        // `closed: true` implies a straight last side; only a curved one is written.
         let round = !matches!(document.pieces.last(), Some(PieceDocument::Line(_)));
         if from == start
             && !(document.closed && round)

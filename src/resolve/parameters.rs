@@ -1,4 +1,4 @@
-//! Parameters.
+//! Resolution of parameters.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::rule::Moment;
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// The parameters, which expressions see from here on.
+    /// Resolves the parameters and adds them to the scope of expressions.
     pub(super) fn parameters(
         &mut self,
         document: &HeadingDocument,
@@ -50,7 +50,7 @@ impl<K> Resolver<K> {
     }
 
     fn check_name(&mut self, written: &ParameterDocument) {
-        // What is said of the name of a complex parameter is said with its real part.
+        // The name of a complex parameter is checked with its real part.
         if written.whole.is_some() && written.name.value.ends_with(PARTS[1]) {
             return;
         }
@@ -71,7 +71,7 @@ impl<K> Resolver<K> {
         let mut limit = |number: &Option<_>| number.as_ref().and_then(|n| self.constant(n));
         let (min, max) = (limit(&written.min), limit(&written.max));
         let mut value = set.map(|setting| setting.value).or(default);
-        // What is computed from a value that is refused is not told.
+        // A refused value is unknown, so that values computed from it are not reported.
         if let (Some(low), Some(high), Some(number)) = (min, max, &written.min)
             && low > high
         {
@@ -103,8 +103,8 @@ impl<K> Resolver<K> {
     }
 }
 
-/// The numbers of the parameters in an order in which each comes after those that its value and
-/// limits are computed from, and those that are computed from themselves.
+/// Returns the indices of the parameters in an order in which each follows those that its value and
+/// limits depend on, and the indices of those that depend on themselves.
 pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let names = params.iter().enumerate();
     let numbers: BTreeMap<&str, usize> = names
@@ -142,7 +142,7 @@ pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     }
     let waiting = |index: usize| waits_for[index] > 0;
     let mut left: BTreeSet<usize> = (0..params.len()).filter(|&index| waiting(index)).collect();
-    // Those that only wait for a circle are no part of it: nothing in it needs them.
+    // Parameters that only depend on a cycle do not lie on it: nothing on it depends on them.
     let mut needed: Vec<usize> = needed_by
         .iter()
         .map(|others| others.iter().filter(|&&other| waiting(other)).count())
@@ -163,12 +163,12 @@ pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
             }
         }
     }
-    // Each was peeled off after those that need it.
+    // A parameter was removed after those that depend on it.
     order.extend(peeled.into_iter().rev());
     (order, left.into_iter().collect())
 }
 
-/// What can be told of a parameter.
+/// Values of a parameter, as far as they are known.
 struct Values {
     value: Option<f64>,
     min: Option<f64>,

@@ -1,4 +1,4 @@
-//! Production rules.
+//! Resolution of production rules.
 
 mod base_element;
 mod elements;
@@ -18,16 +18,16 @@ use generator::loops_shrink;
 
 use super::Resolver;
 
-/// What is known while a rule is resolved.
+/// State that is specific to rules.
 #[derive(Default)]
 pub(super) struct OfRule {
     base_elements: Vec<BaseElement>,
-    /// Where base elements were written, and their numbers.
+    /// Places of base elements, with their indices.
     base_element_places: Vec<(Place, usize)>,
     generator_names: Vec<String>,
     generator_numbers: HashMap<String, usize>,
-    /// What is said of elements that are not shorter than what they replace, unless they become so
-    /// before they are replaced the same way again.
+    /// Warnings of elements that are not shorter than those they replace. They are dropped if every
+    /// cycle of generators shrinks nonetheless.
     growing: Vec<Diagnostic>,
 }
 

@@ -1,4 +1,4 @@
-//! Sets of the plane.
+//! Resolution of plane sets.
 
 use crate::document::{EllipseDocument, FormDocument, Number, Point, ShapeDocument};
 use crate::geometry::DVec2;
@@ -7,7 +7,7 @@ use crate::ifs::Shape;
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// A set; `None` if something is wrong, which is said.
+    /// Resolves a set. Reports mistakes and returns `None`.
     pub(super) fn set(&mut self, document: &ShapeDocument) -> Option<Shape> {
         let before = self.mistakes;
         let shape = match document.form.as_ref()? {
@@ -52,7 +52,7 @@ impl<K> Resolver<K> {
             }
             FormDocument::Fractal(fractal) => Some(self.fractal(fractal)?),
         };
-        // A closed shape without an area is told by its moments.
+        // The moments of a closed shape without area are not defined.
         let shape = shape.filter(|shape| shape.moments().is_some());
         if shape.is_none() && self.mistakes == before {
             let hint = "its points must not all be the same, or on one line for a polygon";
@@ -61,7 +61,7 @@ impl<K> Resolver<K> {
         shape
     }
 
-    /// Points, if all of them are known.
+    /// Evaluates points. Returns `None` if a coordinate is unknown.
     pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
         let points: Vec<_> = points
             .iter()

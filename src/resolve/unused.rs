@@ -1,4 +1,4 @@
-//! Parameters that nothing uses: most are misspelt.
+//! Warnings of unused parameters, most of which are misspelt.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -7,11 +7,11 @@ use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{HeadingDocument, ParameterDocument};
 use crate::expression::PARTS;
 
-/// More parameters than this are not compared with others.
+/// Maximum number of parameters for which a similar name is searched.
 const MOST_COMPARED: usize = 100;
 
-/// Warns of the parameters in a file that none of its expressions uses; not of those of its
-/// parents and components, which other files may use.
+/// Returns warnings of the parameters in a file that none of its expressions uses. Parameters of its
+/// parents and components are excluded, because other files may use them.
 pub(super) fn parameters(
     heading: &HeadingDocument,
     used: &HashSet<String>,
@@ -24,7 +24,7 @@ pub(super) fn parameters(
     };
     let (used, unused): (Vec<_>, Vec<_>) = heading.params.iter().partition(is_used);
     let source = heading.place.source();
-    // One part of a complex parameter stands for both.
+    // A complex parameter is reported once, by its real part.
     let is_second =
         |it: &&ParameterDocument| it.whole.is_some() && it.name.value.ends_with(PARTS[1]);
     let unused = unused

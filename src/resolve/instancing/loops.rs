@@ -1,4 +1,4 @@
-//! Whether instances that lead back to their object shrink.
+//! Check that the loops of an instancing graph contract.
 
 use crate::diagnostic::Diagnostic;
 use crate::digraph::components;
@@ -10,10 +10,10 @@ use crate::resolve::Resolver;
 
 use super::OfInstancing;
 
-/// Where more instances than these follow each other, it is not told whether they contract.
+/// Maximum number of pairs of successive instances for which contraction is decided.
 const MOST_WAYS: usize = 1_000_000;
 
-/// So often is an instance looked at to tell whether loops shrink.
+/// Maximum number of relaxations of instances in the test by stretches.
 const MOST_LOOKS: usize = 10_000_000;
 
 const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
@@ -26,7 +26,7 @@ struct Edge {
 }
 
 impl Edge {
-    /// The most that the instance stretches anything.
+    /// Returns the largest factor by which the instance stretches a vector.
     fn stretch(&self) -> f64 {
         let frame = Frame {
             map: DAffine2::from_mat2(self.linear),
@@ -37,7 +37,7 @@ impl Edge {
 }
 
 impl Resolver<OfInstancing> {
-    /// Refuses a loop of instances that does not contract, and says where that is not known.
+    /// Refuses a structure with a loop that does not contract, and warns if the verdict is undecided.
     pub(super) fn check_loops(
         &mut self,
         document: &InstancingDocument,
@@ -48,7 +48,7 @@ impl Resolver<OfInstancing> {
             return Some(());
         }
         let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
-        // What is applied after a map is what its object is instanced by.
+        // The map that is applied after an instance's map is that of an instance of its object.
         let mut outer = vec![Vec::new(); structure.objects.len()];
         for (number, edge) in edges.iter().enumerate() {
             outer[edge.to].push(number);
@@ -93,10 +93,11 @@ impl Resolver<OfInstancing> {
     }
 }
 
-/// Whether every loop shrinks by what its instances stretch at most: the largest products of stretches
-/// on all ways settle, as they do not where one grows on a way back to where it begins (Bellman 1958).
+/// Returns whether every loop contracts by the largest stretches of its instances, a sufficient
+/// condition: the longest paths under the logarithms of the stretches converge (Bellman 1958) if and
+/// only if the product along every loop of n instances is at most the n-th power of `LEAST`.
 fn shrink_by_stretch(edges: &[Edge], objects: usize) -> bool {
-    /// A loop of so many instances shrinks by this to their number, or more.
+    /// A loop of n instances must contract by the n-th power of this factor.
     const LEAST: f64 = 1.0 - 1e-9;
     let stretches = edges.iter().map(|edge| libm::log(edge.stretch() / LEAST));
     let stretches: Vec<f64> = stretches.collect();
@@ -115,7 +116,7 @@ fn shrink_by_stretch(edges: &[Edge], objects: usize) -> bool {
     })
 }
 
-/// The instances of objects in objects that lead back.
+/// Returns the instances of objects in objects that lie on loops.
 fn edges(structure: &Instancing) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (from, object) in structure.objects.iter().enumerate() {

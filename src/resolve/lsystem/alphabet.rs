@@ -1,4 +1,4 @@
-//! What symbols mean to the turtle.
+//! The turtle's interpretation of symbols.
 
 use crate::document::{ActionDocument, ModuleDocument, Number, SymbolDocument};
 use crate::expression::{Program, Scope};
@@ -7,11 +7,11 @@ use crate::resolve::Resolver;
 
 use super::{OfLSystem, of_argument};
 
-/// The symbols that turn out of the plane.
+/// Symbols of turns in space (Prusinkiewicz and Lindenmayer 1990), which the plane turtle refuses.
 const SPACE: [char; 4] = ['&', '^', '\\', '/'];
 
 impl Resolver<OfLSystem> {
-    /// The number of a module's symbol, which is taken in where it is new.
+    /// Returns the index of a module's symbol, which is added to the alphabet if it is new.
     pub(super) fn symbol(&mut self, module: &ModuleDocument) -> usize {
         let (character, arity) = (module.character, module.arguments.len());
         if let Some(&number) = self.kind.numbers.get(&(character, arity)) {
@@ -41,7 +41,7 @@ impl Resolver<OfLSystem> {
         number
     }
 
-    /// What a symbol means unless the file says otherwise (Prusinkiewicz & Lindenmayer 1990).
+    /// Returns the default interpretation of a symbol (Prusinkiewicz and Lindenmayer 1990).
     fn usual(&self, character: char, arity: usize) -> Vec<Action> {
         let constant = Program::constant;
         let has_argument = arity > 0;
@@ -69,7 +69,7 @@ impl Resolver<OfLSystem> {
         }]
     }
 
-    /// Takes in a meaning of the file's own.
+    /// Adds the file's own interpretation of a symbol.
     pub(super) fn define(&mut self, document: &SymbolDocument) {
         let module = &document.symbol;
         let mut scope = Scope::inside(&self.kind.constants);

@@ -1,4 +1,4 @@
-//! What must hold of words, and what is doubtful.
+//! Checks of words, and warnings of productions and symbols without effect.
 
 use crate::document::{LSystemDocument, ModuleDocument};
 use crate::lsystem::{Action, LSystem};
@@ -6,11 +6,11 @@ use crate::resolve::Resolver;
 
 use super::OfLSystem;
 
-/// So many brackets that are not closed are named in a word.
+/// Maximum number of unbalanced brackets that are reported in a word.
 const MOST_NAMED: usize = 20;
 
 impl Resolver<OfLSystem> {
-    /// Brackets, and the beginnings and ends of polygons, are balanced.
+    /// Reports unbalanced brackets and polygons in a word.
     pub(super) fn check_balance(&mut self, modules: &[ModuleDocument], symbols: &[usize]) {
         let bracket = |action: &Action| match action {
             Action::Push => 1,
@@ -26,7 +26,8 @@ impl Resolver<OfLSystem> {
         self.check_pairs(modules, symbols, polygon, ["polygon", "}"]);
     }
 
-    /// What one action opens, a later one closes: by what they change the number of those that are open.
+    /// Reports unbalanced pairs of actions. `change` is the change of the number of open pairs by an
+    /// action.
     fn check_pairs(
         &mut self,
         modules: &[ModuleDocument],
@@ -57,7 +58,8 @@ impl Resolver<OfLSystem> {
         }
     }
 
-    /// Warns of what never happens.
+    /// Warns of symbols that never occur, of productions that never apply, and of systems that draw
+    /// nothing.
     pub(super) fn warn(&mut self, document: &LSystemDocument, system: &LSystem) {
         if self.incomplete {
             return;
@@ -104,7 +106,7 @@ impl Resolver<OfLSystem> {
         }
     }
 
-    /// Says that a symbol never occurs, with a number of arguments that does.
+    /// Warns that a symbol never occurs, or occurs only with another number of arguments.
     fn never(&mut self, module: &ModuleDocument, system: &LSystem, reached: &[bool], what: &str) {
         let character = module.character;
         let with = |arity: usize| match arity {
@@ -131,10 +133,10 @@ impl Resolver<OfLSystem> {
         self.warning(module, message, &hint);
     }
 
-    /// Warns of productions that another one always comes before.
+    /// Warns of productions that are hidden by an earlier one that always applies.
     fn warn_of_hidden(&mut self, document: &LSystemDocument, system: &LSystem) {
         for symbol in &system.symbols {
-            // The first that always fits, and whether it has a weight.
+            // Whether the first production that always applies has a weight.
             let mut always: Option<bool> = None;
             for &number in &symbol.productions {
                 let production = &system.productions[number];
@@ -158,7 +160,8 @@ impl Resolver<OfLSystem> {
     }
 }
 
-/// For every symbol, whether it can ever occur.
+/// Determines for every symbol whether it can occur in a derivation, regardless of conditions and
+/// contexts.
 fn reached(system: &LSystem) -> Vec<bool> {
     let mut reached = vec![false; system.symbols.len()];
     let mut next: Vec<usize> = system.axiom.iter().map(|module| module.symbol).collect();

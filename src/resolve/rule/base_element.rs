@@ -1,4 +1,4 @@
-//! Base elements.
+//! Resolution of base elements.
 
 use crate::document::{BaseElementDocument, Point};
 use crate::geometry::{DVec2, Direction, Frame};
@@ -8,7 +8,7 @@ use super::OfRule;
 use crate::rule::BaseElement;
 
 impl Resolver<OfRule> {
-    /// The number of a base element, which is made if its place is new.
+    /// Returns the index of a base element, which is resolved if its place is new.
     pub(super) fn base_element(&mut self, document: &BaseElementDocument) -> usize {
         let known = self
             .kind
@@ -37,7 +37,7 @@ impl Resolver<OfRule> {
             }
             _ => None,
         };
-        // Something harmless in the place of a wrong one, so that it is not reported again.
+        // A valid placeholder prevents further reports at other uses.
         let number = self.known_or_new(made.unwrap_or_else(BaseElement::line));
         self.kind
             .base_element_places
@@ -45,7 +45,7 @@ impl Resolver<OfRule> {
         number
     }
 
-    /// One number for all that look alike, whether named twice or written twice.
+    /// Returns the index of a base element. Equal base elements share one index.
     fn known_or_new(&mut self, made: BaseElement) -> usize {
         let known = self
             .kind
@@ -58,7 +58,7 @@ impl Resolver<OfRule> {
         })
     }
 
-    /// The frame that a base element's own coordinates have in the unit frame.
+    /// Returns the frame that `from` and `to` define in the outline's own coordinates.
     fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame> {
         let mut end = |point: &Option<Point>, default: DVec2| match point {
             Some(point) => self.constant_point(point),

@@ -1,4 +1,4 @@
-//! Lists of elements, and the initiator.
+//! Resolution of lists of elements and of the initiator.
 
 use crate::document::{Entry, Listed, Point, RuleDocument};
 use crate::geometry::{DVec2, Direction};
@@ -7,14 +7,16 @@ use super::OfRule;
 use crate::resolve::{Resolver, whole_number};
 use crate::rule::{ListedElement, Origin, Part, Placement};
 
-/// A point of a list, and its number.
+/// A point of a list, with its number.
 struct ListedPoint {
     point: Point,
     number: usize,
 }
 
 impl Resolver<OfRule> {
-    /// The elements of a list; `points` are numbered on from those that are there.
+    /// Resolves a list of elements. Its points are appended to `points` and numbered accordingly. With
+    /// `initiator`, which is set for initiators and for seed parts, a chain may return to its first
+    /// point.
     pub(super) fn elements(
         &mut self,
         entries: &[Entry],
@@ -55,7 +57,7 @@ impl Resolver<OfRule> {
                     add(points, from)
                 }
                 (None, Some(last)) => last,
-                // The reader has said that the list does not say where it starts.
+                // The missing start has been reported.
                 (None, None) => add(points, &Point::unknown(&to.place)),
             };
             if first.is_none() {
@@ -64,7 +66,7 @@ impl Resolver<OfRule> {
                     number: start.number,
                 });
             }
-            // A chain that comes back to its first point, as written, ends on that very point.
+            // A chain whose end is written like its first point ends on that point.
             let end = match &first {
                 Some(first) if initiator && to.is_written_like(&first.point) => ListedPoint {
                     point: to.clone(),

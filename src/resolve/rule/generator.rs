@@ -1,4 +1,4 @@
-//! Generators.
+//! Resolution of generators.
 
 use std::sync::Arc;
 
@@ -60,7 +60,8 @@ impl Resolver<OfRule> {
                 meets_frame,
             });
         }
-        // The two ends of what takes the element's place: its first and its last point.
+        // The two ends of the replacement: the first and the last point of the parts that are not
+        // seeds.
         let first = ends
             .iter()
             .find(|(_, last)| !last)
@@ -82,7 +83,7 @@ impl Resolver<OfRule> {
             })
             .collect();
         self.doubt_growth(&parts, &points, &written);
-        // Where points are moved, what is written on one place need not stay there.
+        // Moves may separate points that coincide as written.
         if document.moves.is_empty() {
             self.doubt_length(&parts, &points, &written);
         }
@@ -99,7 +100,7 @@ impl Resolver<OfRule> {
         }
     }
 
-    /// Warns of elements that end where they start.
+    /// Warns of elements without length.
     fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
         for element in parts.iter().flat_map(|part| &part.elements) {
             let from = constant_point(&points[element.from]);
@@ -112,7 +113,7 @@ impl Resolver<OfRule> {
         }
     }
 
-    /// Keeps in mind fertile elements that are not shorter than what they replace.
+    /// Collects warnings of fertile elements that are not shorter than those they replace.
     fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
         let value = |number: usize| constant_point(&points[number]);
         let relative = parts
@@ -145,10 +146,10 @@ impl Resolver<OfRule> {
     }
 }
 
-/// Whether what leads back to a generator becomes shorter on the way, whatever elements may be replaced
-/// by: the largest products of lengths on all ways settle (Bellman 1958).
+/// Returns whether the lengths along every cycle of generators have a product below 1, for every choice
+/// that the selection admits: the largest products of lengths over all paths converge (Bellman 1958).
 pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> bool {
-    /// Lengths are rounded; what comes back as long as it was must not seem to shrink.
+    /// Tolerance for rounded lengths: a cycle with product 1 must not count as shrinking.
     const SLACK: f64 = 1.0 + 1e-9;
     let candidates = selection.candidates();
     let mut ways = Vec::new();
@@ -186,7 +187,7 @@ fn constant_point([x, y]: &[Program; 2]) -> Option<DVec2> {
     Some(DVec2::new(x.as_constant()?, y.as_constant()?))
 }
 
-/// Whether a point is written as these very numbers.
+/// Returns whether the coordinates of a point are written as exactly these constants.
 fn is_written(point: &Point, x: f64, y: f64) -> bool {
     let is = |number: &Number, value: f64| {
         number

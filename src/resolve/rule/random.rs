@@ -1,4 +1,4 @@
-//! Random functions: drawn variables and what they move.
+//! Resolution of random variables and of moves.
 
 use std::sync::Arc;
 
@@ -10,10 +10,10 @@ use crate::resolve::{Resolver, whole_number};
 use crate::rule::draw::{Distribution, Variable};
 use crate::rule::{Moment, Move};
 
-/// More moves than this are refused: each costs time in every replacement.
+/// Maximum number of moves of a generator: each takes time in every replacement.
 const MOST_MOVES: usize = 1000;
 
-/// The points that most moves move.
+/// Lists of points that several moves share.
 struct Shared {
     all: Arc<[usize]>,
     inner: Arc<[usize]>,
@@ -75,7 +75,8 @@ impl Resolver<OfRule> {
         }
     }
 
-    /// The moves of a generator with `count` points; `inner` are those that are no ends of it.
+    /// Resolves the moves of a generator with `count` points; `inner` are the numbers of the points
+    /// that are not ends of it.
     pub(super) fn moves(
         &mut self,
         document: &GeneratorDocument,

@@ -1,4 +1,4 @@
-//! The selection.
+//! Resolution of the selection of generators.
 
 use crate::diagnostic::{did_you_mean, listed};
 use crate::document::{Entry, Number, RuleDocument, SelectDocument, Written};
@@ -9,7 +9,7 @@ use crate::diagnostic::Place;
 use crate::resolve::{MOST_MISTAKES, Resolver};
 use crate::rule::Selection;
 
-/// A condition, if there is one, and a generator, if it could be read.
+/// A condition, if there is one, and the name of a generator, if it could be read.
 type Case = (Option<Number>, Option<Written<String>>);
 
 impl Resolver<OfRule> {
@@ -104,7 +104,7 @@ impl Resolver<OfRule> {
         })
     }
 
-    /// Every fertile element needs a generator: one that it names, the selection's, or the only one.
+    /// Reports fertile elements without a generator if there are several generators and no selection.
     pub(super) fn check_generators_are_selected(&mut self, document: &RuleDocument) {
         let [_, (second, _), ..] = document.generators.as_slice() else {
             return;
