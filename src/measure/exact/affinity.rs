@@ -1,8 +1,8 @@
 //! The affinity dimension (Falconer 1988) of maps that are not similarities.
 //!
-//! A map's copy of a ball is an ellipsoid; the singular value function φ^s says what covering it by
-//! balls costs. The s at which the sum of φ^s over all products of n maps is 1 never lies below the
-//! box and Hausdorff dimension, for any n, since φ^s(AB) ≤ φ^s(A) φ^s(B).
+//! The image of a ball under a map is an ellipsoid; the singular value function φ^s is the cost of covering
+//! it by balls. The s at which the sum of φ^s over all products of n maps is 1 is never below the box and
+//! Hausdorff dimensions, for any n, since φ^s(AB) ≤ φ^s(A) φ^s(B).
 
 use glam::DMat3;
 
@@ -10,25 +10,25 @@ use super::Effort;
 use super::spectral::dense_radius;
 use super::system::System;
 
-/// An affinity dimension, which bounds the dimension of the set from above.
+/// Affinity dimension, which bounds the dimension of the set from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affinity {
-    /// A bound from products of the length below, or one less.
+    /// Upper bound from products of the length below, or shorter by one.
     pub upper_bound: f64,
-    /// What the bounds tend to: the s at which sums over products of two successive lengths are
-    /// equal. Sharper, but no bound.
+    /// Estimate of the limit of the bounds: the s at which sums over products of two successive lengths are
+    /// equal. Sharper, but not a bound.
     pub estimate: f64,
-    /// The length of the longest products.
+    /// Length of the longest products.
     pub length: usize,
 }
 
-/// Products of one length, at most.
+/// Maximum number of products of one length.
 const MOST_PRODUCTS: usize = 10_000;
 
-/// Longer products are not needed.
+/// Maximum length of products.
 const MOST_LENGTH: usize = 40;
 
-/// A root beyond this means that the maps do not contract.
+/// Root above which maps are taken not to contract.
 const LARGEST: f64 = 16.0;
 
 /// A product of maps along a path, by the logarithms of its singular values in falling order.
@@ -38,8 +38,8 @@ struct Product {
     logarithms: [f64; 3],
 }
 
-/// The affinity dimension of a strongly connected part; `None` unless all products of some length
-/// contract, as far as they are followed.
+/// Computes the affinity dimension of a strongly connected part. Returns `None` unless all products of some
+/// length contract, up to the length that is reached.
 pub(super) fn affinity(part: &System, effort: Effort) -> Option<Affinity> {
     let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
         .map(|set| (set, set, DMat3::IDENTITY))
@@ -87,8 +87,8 @@ pub(super) fn affinity(part: &System, effort: Effort) -> Option<Affinity> {
     })
 }
 
-/// Where a falling function comes to zero, by the false position that Illinois improved (Dowell &
-/// Jarratt 1971): logarithms of sums of powers are nearly straight.
+/// Finds the root of a falling function by false position with the Illinois modification (Dowell & Jarratt
+/// 1971): logarithms of sums of powers are nearly straight. Returns `None` if the root is above [`LARGEST`].
 fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, LARGEST);
     let (mut above, mut below) = (excess(low), excess(high));
@@ -111,7 +111,7 @@ fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
             break;
         }
         let value = excess(place);
-        // The end that stays counts half, so that it moves next time.
+        // The value at the retained end is halved, which moves the end in the next step.
         if value > 0.0 {
             (low, above, below) = (place, value, below / 2.0);
         } else {
@@ -124,7 +124,7 @@ fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
     Some(high)
 }
 
-/// The spectral radius of the matrix of sums of φ^s between sets.
+/// Returns the spectral radius of the matrix of sums of φ^s between sets.
 fn sum(products: &[Product], part: &System, s: f64) -> f64 {
     let space = part.space;
     let mut matrix = vec![0.0; part.size * part.size];
@@ -137,8 +137,9 @@ fn sum(products: &[Product], part: &System, s: f64) -> f64 {
     dense_radius(matrix, part.size)
 }
 
-/// φ^s, from logarithms of singular values: the product of the largest, the last by its share of s;
-/// beyond all of them the determinant to the power s/d.
+/// Returns φ^s from logarithms of singular values: the product of the largest ones, the last with the
+/// fractional part of s as its exponent; beyond the dimension d of the space, the determinant to the power
+/// s/d.
 fn cost(logarithms: &[f64], s: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
     let space = logarithms.len() as f64;
@@ -157,8 +158,8 @@ fn cost(logarithms: &[f64], s: f64) -> f64 {
     libm::exp(sum)
 }
 
-/// Singular values in falling order: columns are turned in pairs until they are at right angles
-/// (Hestenes 1958). In the plane the third column already is, and is left out.
+/// Returns singular values in falling order, by one-sided Jacobi rotations: columns are rotated in pairs
+/// until they are orthogonal (Hestenes 1958). In the plane the third column already is, and is left out.
 fn singular_values(matrix: DMat3, space: usize) -> [f64; 3] {
     let mut columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     for _ in 0..12 {

@@ -1,3 +1,5 @@
+//! Bounding balls of the sets of a system.
+
 use glam::{DAffine3, DVec3};
 
 use super::system::ratio;
@@ -9,11 +11,12 @@ pub(super) struct Balls {
     pub(super) radii: Vec<f64>,
 }
 
-/// Rounds of improvement.
+/// Number of iterations for centres and for radii.
 const ROUNDS: usize = 100;
 
 impl Balls {
-    /// From the copies that each set is made of: similarities with ratios below 1. No set is empty.
+    /// Computes balls from the copies that each set is made of: similarities with ratios below 1. No set is
+    /// empty.
     pub(super) fn of(copies: Vec<Vec<(usize, DAffine3)>>) -> Self {
         // The mean of the copies' centres lies well inside.
         let mut centres = vec![DVec3::ZERO; copies.len()];
@@ -45,7 +48,8 @@ impl Balls {
             farthest = f64::max(farthest, *away);
             largest = f64::max(largest, *ratio);
         }
-        // From the sum of a geometric series downwards: every round's balls hold the sets.
+        // The iteration descends from the sum of a geometric series: the balls of every iteration hold the
+        // sets.
         let mut radii = vec![farthest / (1.0 - largest); copies.len()];
         for _ in 0..ROUNDS {
             let radius = |reaches: &Vec<(usize, f64, f64)>| {

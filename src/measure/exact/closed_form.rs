@@ -1,22 +1,23 @@
 //! Closed forms: D = log λ / log 1/ρ where both are recognised.
 //!
-//! The growth λ is the spectral radius of a matrix of whole numbers, so it is an algebraic integer:
-//! whole, or a quadratic one (t + √(t² − 4n))/2, up to a root. The ratio is looked for among roots,
-//! quadratic numbers and cosines of parts of the circle. Candidates are so few, and agreement is
-//! asked for to so many digits, that none is found by chance: one in some million systems.
+//! The growth λ is the spectral radius of a matrix of integers, and therefore an algebraic integer.
+//! Recognised are integers and quadratic integers (t + √(t² − 4n))/2, and their roots. The ratio is searched
+//! among roots, quadratic numbers and cosines of rational parts of the circle. There are few candidates, and
+//! agreement is required to many digits: a coincidence occurs in about one of some million systems.
 
 use std::fmt::Write;
 
-/// Growths and ratios that agree to this, relatively, are the same.
+/// Relative difference up to which growths and ratios count as equal.
 const SAME: f64 = 2e-13;
 
-/// Dimensions that do: the logarithms have some more rounding in them, candidates are very few.
+/// Relative difference up to which dimensions count as equal: logarithms have more rounding errors, but
+/// candidates are few.
 const SAME_DIMENSION: f64 = 1e-12;
 
-/// Powers of λ and of 1/ρ that are tried.
+/// Maximum power of λ and of 1/ρ that is tried.
 const MOST_POWER: u32 = 4;
 
-/// log λ / log 1/ρ as an expression of rule files; `None` where none is found.
+/// Returns log λ / log 1/ρ as an expression of rule files; `None` where none is found.
 ///
 /// `depth` is log 1/ρ.
 pub(super) fn closed_form(growth: f64, depth: f64) -> Option<String> {
@@ -30,14 +31,14 @@ pub(super) fn closed_form(growth: f64, depth: f64) -> Option<String> {
     let base = libm::exp(depth);
     let integer = |value| whole(value, SAME).map(|number| number.to_string());
     let rational = |value| fraction(value, 1_000, SAME).map(Fraction::text);
-    // The logarithm of √3 is better known as half of log 3.
+    // The logarithm of √3 is better written as half of log 3.
     let surd = |value| quadratic(value, 1);
     let (a, mut over) = recognised(growth, integer).or_else(|| recognised(growth, surd))?;
     let (b, under) = recognised(base, rational).or_else(|| recognised(base, number))?;
     // D = log(over)/a · b/log(under).
     let mut factor = Fraction::new(i64::from(b), i64::from(a));
     if let (Ok(number), 1) = (over.parse::<i64>(), factor.under) {
-        // 2 log 3/log 7 is log 9/log 7, as long as that is short.
+        // 2 log 3/log 7 is log 9/log 7, which is used while it is short.
         if let Some(power) = number.checked_pow(b / a).filter(|power| *power < 10_000) {
             over = power.to_string();
             factor.over = 1;
@@ -59,12 +60,12 @@ pub(super) fn closed_form(growth: f64, depth: f64) -> Option<String> {
     })
 }
 
-/// A dimension without more than its value: whole, or a fraction of a small denominator.
+/// Returns a closed form from the value alone: an integer, or a fraction with a denominator of at most 4.
 pub(super) fn plain(value: f64) -> Option<String> {
     fraction(value, 4, SAME_DIMENSION).map(Fraction::text)
 }
 
-/// Two whole numbers without a power that both are: log 16/log 9 is log 4/log 3.
+/// Removes a power that two integers have in common: log 16/log 9 is log 4/log 3.
 fn without_powers(over: String, under: String) -> (String, String) {
     let (Some(a), Some(b)) = (over.parse().ok(), under.parse().ok()) else {
         return (over, under);
@@ -78,13 +79,13 @@ fn without_powers(over: String, under: String) -> (String, String) {
     common.map_or((over, under), |(a, b)| (a.to_string(), b.to_string()))
 }
 
-/// A value without rounding errors, where it is whole or a fraction of a small denominator.
+/// Rounds a value that is an integer, or a fraction with a denominator of at most 4, up to rounding errors.
 #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
 pub(super) fn settled(value: f64) -> f64 {
     fraction(value, 4, SAME_DIMENSION).map_or(value, |found| found.over as f64 / found.under as f64)
 }
 
-/// The least power of a number that is recognised, and its form.
+/// Returns the smallest power of a number that is recognised, and its form.
 fn recognised(value: f64, form: impl Fn(f64) -> Option<String>) -> Option<(u32, String)> {
     let mut power = 1.0;
     (1..=MOST_POWER).find_map(|exponent| {
@@ -93,7 +94,7 @@ fn recognised(value: f64, form: impl Fn(f64) -> Option<String>) -> Option<(u32, 
     })
 }
 
-/// A number that ratios are made of.
+/// Recognises a number of the kinds that ratios are made of.
 fn number(value: f64) -> Option<String> {
     quadratic(value, 12).or_else(|| cosine(value))
 }
@@ -103,7 +104,7 @@ fn same(a: f64, b: f64) -> bool {
 }
 
 fn whole(value: f64, tolerance: f64) -> Option<i64> {
-    // Of larger numbers too many come near to a whole one.
+    // Among larger numbers, too many are close to an integer.
     const MOST: f64 = 1e5;
     let rounded = value.round();
     #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
@@ -111,8 +112,8 @@ fn whole(value: f64, tolerance: f64) -> Option<i64> {
         .then_some(rounded as i64)
 }
 
-/// A quadratic number (t ± √s)/2d with whole t, s and d, where d goes up to a limit; algebraic
-/// integers only if that is 1.
+/// Recognises a quadratic number (t ± √s)/2d with integers t, s and d, where d is at most `most`; for `most`
+/// = 1, algebraic integers only.
 fn quadratic(value: f64, most: i64) -> Option<String> {
     const MOST_TRACE: i64 = 60;
     for under in 1..=most {
@@ -132,7 +133,7 @@ fn quadratic(value: f64, most: i64) -> Option<String> {
                 let square = square as i64;
                 #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
                 let found = (trace as f64 + (square as f64).sqrt()) / (2 * under) as f64;
-                // Of algebraic integers only those with a whole product of conjugates.
+                // The product of the conjugates of an algebraic integer is an integer.
                 let integral = most > 1 || (trace * trace - square) % 4 == 0;
                 if root > 0.0 && integral && same(found, value) {
                     return Some(surd(trace, square, 2 * under));
@@ -143,7 +144,7 @@ fn quadratic(value: f64, most: i64) -> Option<String> {
     None
 }
 
-/// (a + √s)/d in lowest terms.
+/// Formats (a + √s)/d in lowest terms.
 fn surd(trace: i64, square: i64, under: i64) -> String {
     let (mut outside, mut inside) = (1, square);
     for factor in (2..=64).rev() {
@@ -168,7 +169,7 @@ fn surd(trace: i64, square: i64, under: i64) -> String {
     }
 }
 
-/// 2 cos a or 2 (1 + cos a), where a is a whole number of degrees or of parts of 180 of them.
+/// Recognises 2 cos a or 2 (1 + cos a), where a is an integer number of degrees, or 180° times a fraction.
 fn cosine(value: f64) -> Option<String> {
     const MOST_PARTS: i32 = 60;
     let of = |angle: f64, name: &dyn Fn() -> String| {
@@ -218,7 +219,8 @@ impl Fraction {
     }
 }
 
-/// The fraction with the least denominator up to a limit that a number is.
+/// Returns the fraction with the smallest denominator, up to a maximum, that equals a number within a
+/// relative tolerance.
 fn fraction(value: f64, most: i64, tolerance: f64) -> Option<Fraction> {
     (1..=most).find_map(|under| {
         #[expect(clippy::cast_precision_loss, reason = "a small whole number")]
@@ -262,7 +264,7 @@ mod tests {
 
     #[test]
     fn what_is_not_recognised() {
-        // λ³ = λ² + 2, and a number of no kind.
+        // λ³ = λ² + 2, and a transcendental number.
         assert_eq!(of(1.695_620_769_559_862, 2f64.sqrt()), "");
         assert_eq!(of(2.0, std::f64::consts::PI), "");
     }

@@ -1,4 +1,4 @@
-//! An upper bound where types do not end: distinct pieces counted one by one.
+//! An upper bound of the dimension by counting distinct pieces, for sets without finitely many types.
 
 use glam::DAffine3;
 
@@ -6,13 +6,13 @@ use super::Effort;
 use super::neighbours::{Pair, Register};
 use super::sizes::{Generations, Piece};
 
-/// Pieces of all generations of a set, at most.
+/// Maximum number of pieces, over all generations and sets.
 const MOST_PIECES: usize = 60_000;
 
-/// An upper bound of the dimension: log N / (n log 1/ρ) with the most distinct pieces N that a set
-/// has in generation n, for the n that gives the least.
+/// Returns an upper bound of the dimension: log N / (n log 1/ρ) with the maximum N of distinct pieces that a
+/// set has in generation n, for the n that gives the least.
 ///
-/// The most of all sets cannot more than multiply: N(m + n) ≤ N(m) N(n).
+/// The maximum over all sets is submultiplicative: N(m + n) ≤ N(m) N(n).
 pub(super) fn upper_bound(generations: &Generations, effort: Effort) -> Option<f64> {
     let most = effort.of(MOST_PIECES);
     let counts: Vec<Vec<usize>> = (0..generations.size())
@@ -30,7 +30,7 @@ pub(super) fn upper_bound(generations: &Generations, effort: Effort) -> Option<f
     bounds.min_by(f64::total_cmp)
 }
 
-/// The number of distinct pieces of a set by generation, as far as the limit allows.
+/// Counts the distinct pieces of a set by generation, as far as the limit permits.
 fn counts(generations: &Generations, set: usize, limit: usize) -> Vec<usize> {
     let grow = libm::exp(generations.depth);
     let mut pieces = vec![(Piece { set, wait: 0 }, DAffine3::IDENTITY)];

@@ -1,17 +1,17 @@
-//! Limits of the work on exact dimensions.
+//! Limits of the computing effort for exact dimensions.
 
-/// The work that is spent on deciding a dimension before it is given up.
+/// Effort that is spent on deciding a dimension before the search is given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
     /// Some tens of milliseconds where nothing is decided.
     #[default]
     Full,
-    /// A sixteenth of that: enough for systems with some hundred neighbour maps.
+    /// A sixteenth of the full effort: enough for systems with some hundred neighbour maps.
     Quick,
 }
 
 impl Effort {
-    /// What is left of a limit.
+    /// Returns a limit for this effort, given that for the full one.
     pub(super) fn of(self, most: usize) -> usize {
         match self {
             Self::Full => most,

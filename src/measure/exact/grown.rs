@@ -1,4 +1,4 @@
-//! The dimensions of what a graph grows.
+//! Exact dimensions of the limit of a graph.
 
 use crate::graph::{Graph, Replacement};
 use crate::measure::similarity_dimension;
@@ -7,26 +7,26 @@ use super::closed_form::{plain, settled};
 use super::random::expected_dimension;
 use super::{Dimensions, Effort, Equation, Hausdorff, Overlap, Similar, System, dimensions_within};
 
-/// What is known exactly of the dimensions of a graph's limit.
+/// Exact dimensions of the limit of a graph, as far as they are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
-    /// The dimensions of what fertile elements become; `None` where there is no limit, or it is not
-    /// made of copies of itself.
+    /// Dimensions of the limit set of the fertile elements; `None` where there is no limit, or it is not made
+    /// of copies of itself.
     pub dimensions: Option<Dimensions>,
-    /// The Hausdorff dimension of all that is drawn in the limit, with the elements that stay
-    /// infertile and are visible; `None` where it is not known.
+    /// Hausdorff dimension of the visible limit, including infertile elements that are visible; `None` where
+    /// it is not known.
     pub drawn: Option<f64>,
-    /// What is to be said about it.
+    /// Remarks on the dimensions.
     pub notes: Vec<String>,
 }
 
-/// The dimensions of a graph's limit, as far as they are known exactly.
+/// Computes the exact dimensions of a graph's limit, as far as they are known.
 #[must_use]
 pub fn dimensions_of_graph(graph: &Graph) -> Grown {
     dimensions_of_graph_within(graph, Effort::Full)
 }
 
-/// Returns the dimensions of a graph's limit, as [`dimensions_of_graph`] does, within an effort.
+/// Computes the dimensions of a graph's limit, as [`dimensions_of_graph`] does, within an effort.
 #[must_use]
 pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> Grown {
     if graph.draws() {
@@ -109,8 +109,8 @@ fn at_random(graph: &Graph) -> Grown {
     }
 }
 
-/// The dimension of the infertile elements that are drawn, if there are any: 2 of polygons and the
-/// like, which are filled, 1 of lines.
+/// Returns the dimension of the visible infertile elements, if there are any: 2 for closed outlines, which
+/// are filled, 1 for lines.
 fn infertile(graph: &Graph) -> Option<f64> {
     let objects = graph.objects().iter();
     let drawn =

@@ -1,31 +1,33 @@
-//! The smallest space that a set lies in, and its maps there.
+//! The affine hulls of sets, and the maps of a system in coordinates of these.
 //!
-//! Two maps that differ only off that space put a copy in the same place: whether copies coincide
-//! is asked inside it. A Cantor set in the plane is a set of the line.
+//! Two maps that differ only outside the hull put a copy in the same place: whether copies coincide is
+//! decided inside the hull. A Cantor set in the plane is a set of the line.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::system::{Copy, System, ratio};
 
-/// A strongly connected system of similarities in coordinates of its own.
+/// A strongly connected system of similarities in coordinates of the affine hulls of its sets.
 #[derive(Clone, Debug)]
 pub(super) struct Flat {
-    /// The dimension of the space that the sets are given in.
+    /// Dimension of the space that contains the sets.
     pub(super) space: usize,
-    /// The dimension of the affine hull of each set.
+    /// Dimension of the affine hull of each set.
     pub(super) dimension: usize,
     pub(super) size: usize,
-    /// Maps in the coordinates of the hulls: 0 is a point of the set, the first `dimension` axes
-    /// span its hull, and the others are scaled by the ratio. Sets are about 1 large.
+    /// Maps in the coordinates of the hulls: 0 is a point of the set, the first `dimension` axes span its
+    /// hull, and the others are scaled by the ratio. The size of sets is about 1.
     pub(super) copies: Vec<Copy>,
-    /// From the coordinates of every set's hull to those that the sets are given in.
+    /// Maps from the coordinates of every set's hull to those of the original sets.
     pub(super) frames: Vec<DAffine3>,
 }
 
-/// What is smaller, in a system of size 1, is taken for zero.
+/// Length, in a system of size 1, below which a component counts as zero.
 const FLAT: f64 = 1e-8;
 
 impl Flat {
+    /// Computes the hulls of a system and the maps in their coordinates.
+    ///
     /// Precondition: all ratios are below 1, and every set holds a copy.
     pub(super) fn of(system: &System) -> Self {
         let points = points(system);
@@ -36,7 +38,7 @@ impl Flat {
         }
         let unit = if extent > 0.0 { extent } else { 1.0 };
         let mut hulls: Vec<Vec<DVec3>> = vec![Vec::new(); system.size];
-        // A hull grows in at least one set a round, three times at most in each.
+        // At least one hull grows in each round, and each grows at most three times.
         for _ in 0..=3 * system.size {
             let mut grows = false;
             for copy in &system.copies {
@@ -79,14 +81,14 @@ impl Flat {
     }
 }
 
-/// A point of every set: the limit along the first copies.
+/// Returns a point of every set: the limit along the first copies.
 fn points(system: &System) -> Vec<DVec3> {
     let mut first = vec![None; system.size];
     for copy in &system.copies {
         first[copy.from].get_or_insert(copy);
     }
     let mut points = vec![DVec3::ZERO; system.size];
-    // As many rounds as a ratio of 0.99 takes to reach the last digit.
+    // A ratio of 0.99 takes this many iterations to reach the last digit.
     for _ in 0..4_000 {
         let next: Vec<DVec3> = first
             .iter()
@@ -105,13 +107,14 @@ fn points(system: &System) -> Vec<DVec3> {
     points
 }
 
-/// Adds the part of a vector that is new to an orthonormal list.
+/// Adds the normalised remainder of a vector to an orthonormal list, and returns `true`, if it is not in the
+/// span of the list.
 fn extend(axes: &mut Vec<DVec3>, vector: DVec3) -> bool {
     let remainder = |vector: DVec3| {
         axes.iter()
             .fold(vector, |left, axis| left - left.dot(*axis) * *axis)
     };
-    // Twice is enough (Kahan).
+    // Two passes are sufficient (Kahan).
     let left = remainder(remainder(vector));
     let new = axes.len() < 3 && left.length() > FLAT;
     if new {
@@ -120,9 +123,9 @@ fn extend(axes: &mut Vec<DVec3>, vector: DVec3) -> bool {
     new
 }
 
-/// An orthonormal list with the axes that it lacks.
+/// Completes an orthonormal list to a basis.
 fn completed(mut axes: Vec<DVec3>) -> DMat3 {
-    // The largest remainder is taken, so that nothing is lost to rounding.
+    // The largest remainder loses the fewest digits to rounding.
     while axes.len() < 3 {
         let remainder = |vector: DVec3| {
             axes.iter()
@@ -139,7 +142,7 @@ fn completed(mut axes: Vec<DVec3>) -> DMat3 {
     DMat3::from_cols(axes[0], axes[1], axes[2])
 }
 
-/// A map without what it does off the first axes, but for the scale.
+/// Restricts a map to the first axes; the others are scaled by its ratio.
 fn within(map: DAffine3, dimension: usize) -> DAffine3 {
     let ratio = ratio(map.matrix3);
     let keep = |axis: usize, vector: DVec3| {

@@ -1,22 +1,21 @@
-//! Exact dimensions, by what the pieces of a set do to each other.
+//! Exact dimensions, from the neighbour maps of a self-similar set's pieces.
 //!
-//! Do the pieces of a self-similar set overlap, what is then its dimension, and what is its
-//! boundary's? One graph answers all three: that of the maps between neighbouring pieces.
+//! The graph of the maps between neighbouring pieces determines whether the pieces of a set overlap, the
+//! dimension of the set, and the dimension of its boundary.
 //!
-//! - Copies that are apart or only touch fulfil the *open set condition*, and the set has its
-//!   similarity dimension (Moran 1946, Hutchinson 1981; Mauldin & Williams 1988 for graphs). Pieces
-//!   that coincide break it, and nothing else does where neighbour maps are finitely many (Bandt &
-//!   Graf 1992, Schief 1994, Zerner 1996).
-//!   In a system of several sets two of them may be equal, or parts of each other; that does no
-//!   harm: if no piece is there twice, finitely many neighbour maps mean that a ball of a piece's
-//!   size meets a bounded number of pieces, so the set has positive measure in its similarity
-//!   dimension, and overlaps have none.
+//! - Copies that are disjoint or only touch satisfy the *open set condition*, and the set has its similarity
+//!   dimension (Moran 1946, Hutchinson 1981; Mauldin & Williams 1988 for graphs). Where there are finitely
+//!   many neighbour maps, the condition fails only if pieces coincide (Bandt & Graf 1992, Schief 1994, Zerner
+//!   1996). In a system of several sets two of them may be equal, or parts of each other, without effect: if
+//!   no piece occurs twice, finitely many neighbour maps imply that a ball of a piece's size meets a bounded
+//!   number of pieces. The set therefore has positive measure in its similarity dimension, and overlaps have
+//!   measure zero.
 //! - Pieces that coincide are counted once (Ngai & Wang 2001).
-//! - The boundary of a set with inside is where neighbours touch (Strichartz & Wang 1999, Duvall &
-//!   Keesling 1999, Scheicher & Thuswaldner 2002).
+//! - The boundary of a set with interior is where neighbours touch (Strichartz & Wang 1999, Duvall & Keesling
+//!   1999, Scheicher & Thuswaldner 2002).
 //!
-//! Maps are evaluated in double precision. Equal ones agree to some 10⁻¹³ and different ones are far
-//! apart; where some are neither, nothing is decided. All searches end after a fixed amount of work.
+//! Maps are evaluated in double precision. Equal maps agree to about 10⁻¹³ and different ones are far apart;
+//! where some are neither, nothing is decided. All searches end after a fixed amount of work.
 
 mod affinity;
 mod balls;
@@ -49,16 +48,16 @@ pub(super) use pieces::distinct;
 use affinity::affinity;
 use part::{PartDimension, part_dimension};
 
-/// How the copies lie that a set is made of.
+/// Overlap of the copies that a set is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlap {
     /// No two copies have a point in common.
     None,
-    /// The open set condition holds, and copies touch, or come too near to tell.
+    /// The open set condition holds, and copies touch, or come too near to be distinguished.
     Touching,
     /// Pieces coincide.
     Exact,
-    /// Not decided.
+    /// The overlap is not decided.
     Unknown,
 }
 
@@ -94,68 +93,68 @@ impl fmt::Display for Equation {
     }
 }
 
-/// A similarity dimension.
+/// Similarity dimension of a set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Similar {
-    /// The dimension, exact to some 12 digits.
+    /// The dimension, exact to about 12 digits.
     pub value: f64,
-    /// The equation that gives it.
+    /// Equation that defines the dimension.
     pub equation: Equation,
-    /// An expression that is equal, as rule files write it, where one was found.
+    /// Equal expression in the syntax of rule files, where one was found.
     pub closed_form: Option<String>,
 }
 
-/// The dimension of the set itself, or what bounds it.
+/// Hausdorff dimension of a set, or an upper bound of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hausdorff {
-    /// The Hausdorff dimension, which is the box dimension too; `None` where it is not decided.
+    /// The Hausdorff dimension, which is equal to the box dimension; `None` where it is not decided.
     pub value: Option<f64>,
-    /// An expression that is equal, as rule files write it, where one was found.
+    /// Equal expression in the syntax of rule files, where one was found.
     pub closed_form: Option<String>,
-    /// The dimension is not larger; equal to the value where there is one.
+    /// Upper bound of the dimension; equal to the value where there is one.
     pub upper_bound: Option<f64>,
-    /// How copies lie in the part of the system that has the largest dimension.
+    /// Overlap of the copies in the part of the system that has the largest dimension.
     pub overlap: Overlap,
-    /// How it was found, or what was tried.
+    /// Method by which the dimension was found, or attempts that failed.
     pub method: String,
 }
 
-/// The dimension of the boundary of a set with inside.
+/// Dimension of the boundary of a set with interior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
     /// The dimension; `None` where it is not decided.
     pub value: Option<f64>,
-    /// An expression that is equal, where one was found.
+    /// Equal expression in the syntax of rule files, where one was found.
     pub closed_form: Option<String>,
-    /// How it was found, or why it was not.
+    /// Method by which the dimension was found, or reason why it was not.
     pub method: String,
 }
 
-/// What is known of the dimensions of a limit set.
+/// Dimensions of a limit set, as far as they are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimensions {
     /// The similarity dimension; `None` where maps are not similarities.
     pub similarity: Option<Similar>,
     /// The affinity dimension, where maps are not similarities.
     pub affinity: Option<Affinity>,
-    /// The dimension of the set itself; that of a single copy, where several stand together.
+    /// The dimension of the set itself; that of a single copy, where there are several.
     pub hausdorff: Hausdorff,
-    /// The dimension of its boundary, where it is known to have inside.
+    /// The dimension of the boundary, where the set is known to have interior.
     pub boundary: Option<Boundary>,
-    /// Whether the natural measure is known to be regular: a ball of radius r about a point of it has a
-    /// mass of about r to the power of the dimension.
+    /// Whether the natural measure is known to be regular: a ball of radius r about a point of the set has a
+    /// mass of about r^D, where D is the dimension.
     pub regular: bool,
 }
 
-/// The dimensions of the sets of a system: the largest of theirs.
+/// Computes the dimensions of the sets of a system: the largest over all sets.
 ///
-/// `None` if a map does not shrink, or if nothing is a copy again and again.
+/// Returns `None` if a map does not contract, or if no set holds copies of itself.
 #[must_use]
 pub fn dimensions(system: &System) -> Option<Dimensions> {
     dimensions_within(system, Effort::Full)
 }
 
-/// Returns the dimensions of the sets of a system, as [`dimensions`] does, within an effort.
+/// Computes the dimensions of the sets of a system, as [`dimensions`] does, within an effort.
 #[must_use]
 pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> {
     let system = &system.in_own_units();
@@ -188,13 +187,13 @@ pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> 
     })
 }
 
-/// Whether the natural measure is known to be regular.
+/// Returns `true` if the natural measure is known to be regular.
 ///
-/// In a set whose pieces do not overlap, or are of finitely many types, it is: a ball meets a bounded number of
-/// distinct pieces of its size, each of which has a mass of about that to the power of the dimension. So
-/// it is in finitely many copies of such sets, wherever they lie. Of smaller dimensions there may be
-/// more sets, as long as they do not hold such copies: these are infinitely many. Pieces that coincide
-/// are told apart only [in sets that hold no others](distinct).
+/// The measure of a set is regular if its pieces do not overlap, or are of finitely many types: a ball meets
+/// a bounded number of distinct pieces of its size r, each of which has a mass of about r^D. The same holds
+/// for finitely many copies of sets of this kind, wherever they lie. Sets of smaller dimensions may be
+/// present as well, unless they hold copies of the former: these would be infinitely many. Pieces that
+/// coincide are distinguished only [in sets that hold no others](distinct).
 fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimension>]) -> bool {
     const SAME: f64 = 1e-9;
     let decided = || parts.iter().flatten().map(|part| part.hausdorff.value);
@@ -202,7 +201,8 @@ fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimensio
     if decided().any(|value| value.is_none()) {
         return false;
     }
-    // Whether a component leads to one of the largest dimension; those of lower numbers come first.
+    // Whether a component leads to one of the largest dimension; successors have lower numbers and come
+    // first.
     let mut leads = vec![false; parts.len()];
     for (number, part) in parts.iter().enumerate() {
         let own_copies = system.copies.iter();
@@ -225,12 +225,13 @@ fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimensio
     true
 }
 
-/// The part that has the largest rank has the largest dimension, or keeps it from being known.
+/// Returns the rank of a part: the part of the largest rank has the largest dimension, or prevents it from
+/// being known.
 fn rank(part: &PartDimension) -> f64 {
     part.hausdorff.upper_bound.unwrap_or(f64::INFINITY)
 }
 
-/// What is known where maps are not similarities.
+/// Returns the dimensions of a system whose maps are not similarities, as far as they are known.
 fn of_affine(parts: &[&System], space: usize, effort: Effort) -> Option<Dimensions> {
     let all: Option<Vec<Affinity>> = parts.iter().map(|part| affinity(part, effort)).collect();
     let all = all?.into_iter();

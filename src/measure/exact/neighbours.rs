@@ -1,9 +1,10 @@
-//! Neighbour maps: where a piece's neighbours lie, as the piece sees them.
+//! Neighbour maps: the relative positions of neighbouring pieces.
 //!
-//! For two pieces f_u(K_a) and f_v(K_b) of one generation the map h = f_u⁻¹ f_v says where the
-//! second lies. Pieces of the next generation have f_i⁻¹ h f_j; where the balls around two pieces do
-//! not meet, nothing that comes of them will. In a system of finite type finitely many maps remain,
-//! and what touches or coincides is read off their graph (Bandt & Graf 1992, Bandt & Mesing 2009).
+//! For two pieces f_u(K_a) and f_v(K_b) of one generation the map h = f_u⁻¹ f_v is the position of the second
+//! relative to the first. Their pieces in the next generation have the maps f_i⁻¹ h f_j; where the balls
+//! around two pieces do not meet, neither do those of their descendants. In a system of finite type finitely
+//! many maps remain, and their graph determines the pieces that touch or coincide (Bandt & Graf 1992, Bandt &
+//! Mesing 2009).
 
 use std::collections::HashMap;
 
@@ -13,7 +14,7 @@ use super::Effort;
 use super::balls::Balls;
 use super::sizes::{Generations, Piece, Step};
 
-/// Two pieces: the second as the first sees it.
+/// Two pieces, with the map of the second relative to the first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) first: Piece,
@@ -21,32 +22,32 @@ pub(super) struct Pair {
     pub(super) map: DAffine3,
 }
 
-/// What becomes of a pair: the pair of the first's step i and the second's step j.
+/// Successor of a pair: the pair of the first piece's step i and the second piece's step j.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Successor {
     pub(super) steps: [u32; 2],
     pub(super) pair: u32,
 }
 
-/// All pairs of pieces whose balls meet, until the search was complete or given up.
+/// All pairs of pieces whose balls meet, up to the end of the search.
 #[derive(Debug)]
 pub(super) struct Neighbours {
     pub(super) pairs: Vec<Pair>,
-    /// What becomes of each pair; nothing for one whose pieces coincide.
+    /// Successors of each pair; empty for pieces that coincide.
     pub(super) next: Vec<Vec<Successor>>,
-    /// The pairs of steps i ≠ j of one piece, by set.
+    /// Pairs of steps i ≠ j of one piece, by set.
     pub(super) siblings: Vec<Vec<Successor>>,
-    /// Whether the two pieces are the same.
+    /// Whether the two pieces of each pair are equal.
     pub(super) coincide: Vec<bool>,
     pub(super) end: End,
 }
 
-/// How a search ended.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// No pair is missing.
+    /// All pairs were found.
     Complete,
-    /// There were more pairs, or more work, than allowed.
+    /// The search reached the limit of pairs, or of work.
     Capped,
     /// Two maps were neither equal nor apart.
     TooClose,
@@ -55,13 +56,14 @@ pub(super) enum End {
 const MOST_PAIRS: usize = 20_000;
 const MOST_WORK: usize = 6_000_000;
 
-/// Maps whose entries differ by less are equal: rounding makes some 1e-13.
+/// Difference of entries below which maps are equal: rounding causes about 1e-13.
 const EQUAL: f64 = 1e-7;
 
-/// Maps that differ by less, and are not equal, are too close to tell. Sets are about 1 large.
+/// Difference of entries below which maps that are not equal cannot be distinguished. The size of sets is
+/// about 1.
 const APART: f64 = 1e-4;
 
-/// Pairs by number, found again by their map.
+/// Pairs by number, with an index by their maps.
 #[derive(Default)]
 pub(super) struct Register {
     pairs: Vec<Pair>,
@@ -71,9 +73,9 @@ pub(super) struct Register {
 }
 
 impl Register {
-    /// The number of a pair, and whether it is new.
+    /// Returns the number of a pair, and whether it is new.
     pub(super) fn number(&mut self, pair: Pair) -> (u32, bool) {
-        // Maps that are less than APART apart lie in neighbouring cells of this coordinate.
+        // Maps with a distance below `APART` lie in neighbouring cells of this coordinate.
         const CELL: f64 = 16.0 * APART;
         let position = coordinate(&pair.map) / CELL;
         let cell = floor(position);
@@ -100,7 +102,8 @@ impl Register {
     }
 }
 
-/// A coordinate that differs, by chance, for all different maps; its steepness is below 4.
+/// Returns a linear function of a map's entries, with coefficients for which it differs between different
+/// maps in general; its Lipschitz constant is below 5.
 fn coordinate(map: &DAffine3) -> f64 {
     let weights = DVec3::new(0.577_215_664_9, 0.261_497_212_8, 0.915_965_594_2);
     let linear = map.matrix3;
@@ -127,7 +130,7 @@ fn floor(value: f64) -> i64 {
 }
 
 impl Neighbours {
-    /// Follows all pairs of pieces, from the steps of every set on.
+    /// Finds all pairs of pieces, starting from the steps of every set.
     pub(super) fn of(generations: &Generations, effort: Effort) -> Self {
         let balls = Balls::of(generations.first_steps());
         let mut search = Search {
@@ -177,7 +180,8 @@ impl Neighbours {
         }
     }
 
-    /// For every pair, whether an endless path leads on from it: its pieces have a point in common.
+    /// Returns, for every pair, whether it is the start of an infinite path: whether its pieces have a point
+    /// in common.
     ///
     /// Precondition: the search is complete.
     pub(super) fn touching(&self) -> Vec<bool> {
@@ -198,7 +202,7 @@ impl Neighbours {
         touching
     }
 
-    /// For every pair, whether pieces of its two pieces coincide.
+    /// Returns, for every pair, whether any descendants of its two pieces coincide.
     pub(super) fn sharing(&self) -> Vec<bool> {
         let before = self.predecessors();
         let mut sharing = self.coincide.clone();
@@ -234,9 +238,9 @@ struct Search<'g> {
 }
 
 impl Search<'_> {
-    /// The pairs that come of a pair, by those steps that a filter lets through.
+    /// Returns the successors of a pair, by the steps that `keep` accepts.
     fn successors(&mut self, pair: Pair, keep: impl Fn(usize, usize) -> bool) -> Vec<Successor> {
-        /// Balls that miss each other by rounding only are taken to meet.
+        /// Tolerance within which balls are taken to meet, because of rounding.
         const SLACK: f64 = 1e-9;
         let generations = self.generations;
         let size = super::system::ratio(pair.map.matrix3);

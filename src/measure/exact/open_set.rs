@@ -1,8 +1,8 @@
-//! Systems that are not of finite type: the inside of the convex hulls as an open set, and copies
-//! that lie apart.
+//! The open set condition for systems that are not of finite type: the interior of the convex hulls as an
+//! open set, and copies that are disjoint.
 //!
-//! If the hulls of copies overlap nowhere but at their edges, the open set condition holds whatever
-//! the ratios and turns are (Moran 1946, Hutchinson 1981).
+//! If the hulls of copies overlap in their boundaries only, the open set condition holds for arbitrary ratios
+//! and rotations (Moran 1946, Hutchinson 1981).
 
 use glam::{DAffine3, DVec2, DVec3};
 
@@ -12,18 +12,18 @@ use super::hull::Flat;
 use super::system::ratio;
 use crate::geometry::convex_hull;
 
-/// Rounds in which a hull grows, and corners that it may get.
+/// Maximum number of rounds in which hulls grow, and of corners of a hull.
 const MOST_ROUNDS: usize = 600;
 const MOST_CORNERS: usize = 500;
 
-/// What is nearer to a side of the hull, in a system of size 1, lies on it.
+/// Distance, in a system of size 1, up to which a point counts as on a side of the hull.
 const STILL: f64 = 1e-13;
 
-/// Hulls that overlap by less, in a system of size 1, have sides in common.
+/// Overlap, in a system of size 1, up to which hulls count as touching.
 const SLACK: f64 = 1e-10;
 
-/// Whether the inside of the convex hulls is a feasible open set: the hulls of the copies in each
-/// set overlap in sides only. `false` where that is not so, or hulls have too many corners.
+/// Returns `true` if the interior of the convex hulls is a feasible open set: the hulls of the copies in each
+/// set overlap in sides only. Returns `false` otherwise, or if hulls have too many corners.
 pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
     if flat.dimension == 0 || flat.dimension > 2 {
         return false;
@@ -47,7 +47,7 @@ fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
     points.iter().map(image).collect()
 }
 
-/// The corners of every set's convex hull, counter-clockwise.
+/// Computes the corners of every set's convex hull, counter-clockwise.
 fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     let mut hulls = vec![vec![DVec2::ZERO]; flat.size];
     for _ in 0..MOST_ROUNDS {
@@ -77,7 +77,7 @@ fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     None
 }
 
-/// Whether a line separates two convex polygons, along a side of one of them.
+/// Returns `true` if a line along a side of one of two convex polygons separates them.
 fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
     let sides = |corners: &[DVec2]| -> Vec<DVec2> {
         let next = corners.iter().cycle().skip(1);
@@ -100,22 +100,22 @@ fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
     let flat = sides
         .iter()
         .all(|side| side.perp_dot(sides[0]).abs() < SLACK);
-    // Intervals of a line are apart along it, or touch.
+    // Intervals of a line are separated along it, or touch.
     if flat {
         return apart(sides[0]);
     }
     sides.into_iter().any(|side| apart(side.perp()))
 }
 
-/// Pairs that are looked at, at most.
+/// Maximum number of pairs that are examined.
 const MOST_PAIRS: usize = 30_000;
 
-/// Pieces of this size, in a system of size 1, that are not apart are taken to touch.
+/// Size, in a system of size 1, from which pieces that are not separated are taken to touch.
 const TOUCH: f64 = 1e-7;
 
-/// Whether no two copies in a set have a point in common: the larger piece of a pair is split until
-/// the balls around pieces are apart. `false` where some come as near as numbers tell, or the search
-/// is given up.
+/// Returns `true` if no two copies in a set have a point in common: the larger piece of a pair is divided
+/// until the balls around pieces are disjoint. Returns `false` where pieces are closer than numbers resolve,
+/// or where the search is given up.
 pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
     let mut copies = vec![Vec::new(); flat.size];
     for copy in &flat.copies {
@@ -126,7 +126,7 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
         let centre = map.transform_point3(balls.centres[*set]);
         (centre, ratio(map.matrix3) * balls.radii[*set])
     };
-    // How far the balls of two pieces are apart; negative where they meet.
+    // The distance of the balls of two pieces; negative where they meet.
     let gap = |a: &(usize, DAffine3), b: &(usize, DAffine3)| {
         let ((a, r), (b, s)) = (ball(a), ball(b));
         a.distance(b) - (r + s) * (1.0 + 1e-9)
@@ -158,7 +158,7 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
         let mut pairs: Vec<_> = inner
             .map(|(to, map)| ((*to, larger.1 * *map), smaller))
             .collect();
-        // The nearest is looked at first.
+        // The nearest pair is examined first.
         pairs.sort_by(|x, y| gap(&y.0, &y.1).total_cmp(&gap(&x.0, &x.1)));
         open.extend(pairs);
     }

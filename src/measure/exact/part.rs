@@ -13,7 +13,7 @@ use super::system::System;
 use super::types::Types;
 use super::{Boundary, Effort, Equation, Hausdorff, Overlap, Similar};
 
-/// What is known of a part.
+/// Dimensions of a part, as far as they are known.
 #[derive(Clone, Debug)]
 pub(super) struct PartDimension {
     pub(super) similarity: Similar,
@@ -21,10 +21,10 @@ pub(super) struct PartDimension {
     pub(super) boundary: Option<Boundary>,
 }
 
-/// Dimensions that agree to this are the same.
+/// Difference up to which dimensions count as equal.
 const SAME: f64 = 1e-10;
 
-/// The dimension of a part: similarities with ratios below 1.
+/// Computes the dimensions of a part, whose maps are similarities with ratios below 1.
 pub(super) fn part_dimension(system: &System, effort: Effort) -> PartDimension {
     let (value, moran) = dimension_of_part(system.size, system.ratios());
     let value = settled(value);
@@ -76,7 +76,7 @@ fn count(dimensions: usize) -> f64 {
 }
 
 impl PartDimension {
-    /// The set has its similarity dimension.
+    /// Records that the set has its similarity dimension.
     fn decide(&mut self, overlap: Overlap, method: String) {
         let Similar {
             value, closed_form, ..
@@ -90,7 +90,7 @@ impl PartDimension {
         };
     }
 
-    /// Whether the set has the dimension of the space that it lies in.
+    /// Returns `true` if the set has the dimension of the space that contains it.
     fn has_inside(&self, flat: &Flat) -> bool {
         let own = self.hausdorff.value;
         own.is_some_and(|own| {
@@ -168,7 +168,8 @@ impl PartDimension {
         }
     }
 
-    /// Pieces coincide.
+    /// Computes the dimension of a set whose pieces coincide, from the types of distinct pieces, or an upper
+    /// bound.
     fn by_types(&mut self, generations: &Generations, neighbours: &Neighbours, effort: Effort) {
         self.hausdorff.overlap = Overlap::Exact;
         let types = (neighbours.end == End::Complete)
@@ -203,7 +204,7 @@ impl PartDimension {
         }
     }
 
-    /// Not of finite type, as far as is known.
+    /// Decides the dimension by the open set condition, where the system is not known to be of finite type.
     fn by_open_set(&mut self, flat: &Flat, effort: Effort, tried: &str) {
         if copies_are_apart(flat, effort) {
             self.decide(
@@ -213,7 +214,7 @@ impl PartDimension {
         } else if hulls_are_open_sets(flat, effort) {
             let method = "open set condition: the convex hulls of copies overlap in sides only";
             self.decide(Overlap::Touching, method.into());
-            // The hulls of copies leave no gap: they are as large as the hull that they lie in.
+            // The hulls of copies leave no gap: their total area is that of the hull that contains them.
             if self.has_inside(flat) {
                 let value = count(flat.space - 1);
                 self.boundary = Some(Boundary {
@@ -234,7 +235,7 @@ impl PartDimension {
     }
 }
 
-/// How pieces multiply from generation to generation.
+/// Returns the growth of the number of pieces from generation to generation.
 fn growth(generations: &Generations) -> Option<f64> {
     let start = |set| Piece { set, wait: 0 };
     let mut pieces: Vec<Piece> = (0..generations.size()).map(start).collect();

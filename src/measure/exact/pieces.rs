@@ -1,4 +1,4 @@
-//! Sets that are made of distinct pieces: what pieces that coincide are a measure of.
+//! Sets whose pieces coincide, rewritten as sets of distinct pieces for their natural measure.
 
 use glam::DAffine3;
 
@@ -13,11 +13,11 @@ use super::sizes::Generations;
 use super::system::System;
 use super::types::Types;
 
-/// Rewrites sets whose pieces coincide as sets of pieces without repetition, where pieces are of
-/// finitely many types: there is a set for every type (Ngai & Wang 2001). The sets keep their numbers.
+/// Rewrites sets whose pieces coincide as sets of distinct pieces, where pieces are of finitely many types:
+/// there is a set for every type (Ngai & Wang 2001). The sets keep their numbers.
 ///
-/// Where pieces are of too many types, or a set holds copies of others that do not hold copies of it,
-/// all stays as it is.
+/// Sets are unchanged where pieces are of too many types, or where a set holds copies of others that do not
+/// hold copies of it.
 pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
     let mut targets = vec![Vec::new(); copies.size];
     for copy in &copies.copies {
@@ -52,10 +52,10 @@ pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
     distinct
 }
 
-/// The copies of types that sets are made of, and the number of sets with those that are new;
-/// `None` where no pieces coincide, or they are of too many types.
+/// Returns the number of sets including the new ones, and the copies of types that the sets are made of;
+/// `None` where no pieces coincide, or where they are of too many types.
 fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Copy>)> {
-    // Sets come in their order.
+    // The sets are in increasing order.
     let number = |set: usize| sets.binary_search(&set).unwrap_or(0);
     let inside = copies.iter();
     let inside = inside.map(|copy| (number(copy.from), number(copy.to), copy.map));

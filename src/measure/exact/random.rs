@@ -1,5 +1,5 @@
-//! Rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams 1986), or spectral
-//! radius 1 of the matrix of these expectations.
+//! The expected dimension of rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams
+//! 1986), or spectral radius 1 of the matrix of these expectations.
 
 use crate::expression::{Dependence, Program};
 use crate::graph::{Alternative, Evaluated, Graph, Replacement};
@@ -8,7 +8,7 @@ use crate::rule::{Generator, Moment, Placement, Rule, Selection};
 
 use super::spectral::dense_radius;
 
-/// Draws of one generator that are looked at, at most.
+/// Maximum number of quadrature nodes of one generator.
 const MOST_DRAWS: usize = 40_000;
 
 /// A ratio between objects, with its probability.
@@ -19,8 +19,8 @@ struct Ratio {
     weight: f64,
 }
 
-/// The dimension of a random rule, for almost all seeds if copies do not overlap; or why it is not
-/// known.
+/// Returns the dimension of a random rule, for almost all seeds if copies do not overlap, or the reason why
+/// it is not known.
 pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
     let mut ratios = Vec::new();
     for object in graph.behaviours() {
@@ -77,7 +77,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
     Ok(high)
 }
 
-/// Adds the ratio of a fertile element: from a behaviour to an object.
+/// Adds the ratio of a fertile element, from a behaviour to an object.
 fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, weight: f64) {
     let [from, object] = place;
     let object = &graph.objects()[object];
@@ -91,7 +91,7 @@ fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, w
     }
 }
 
-/// Generators with their probabilities.
+/// Returns generators with their probabilities.
 fn weighted<'a>(
     rule: &Rule,
     alternatives: &'a [Alternative],
@@ -112,7 +112,7 @@ fn weighted<'a>(
     Ok(alternatives.iter().map(|all| (all, weight(all))).collect())
 }
 
-/// Adds the ratios of a generator for draws that stand for all.
+/// Adds the ratios of a generator for the nodes of a quadrature over its draws.
 fn push_draws(
     ratios: &mut Vec<Ratio>,
     graph: &Graph,
@@ -152,7 +152,7 @@ fn push_draws(
     Ok(())
 }
 
-/// Draws of all variables by slot, with weights: a product of quadratures.
+/// Returns the nodes of all variables by slot, with weights: a product of quadratures.
 fn draws(generator: &Generator, moment: &Moment) -> Result<Vec<(Vec<f64>, f64)>, &'static str> {
     let mut draws = vec![(moment.slots().to_vec(), 1.0)];
     for variable in generator.variables() {
@@ -172,7 +172,7 @@ fn draws(generator: &Generator, moment: &Moment) -> Result<Vec<(Vec<f64>, f64)>,
     Ok(draws)
 }
 
-/// Values that stand for a distribution, with weights.
+/// Returns the nodes and weights of a quadrature over a distribution.
 fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
     match distribution {
         Distribution::Uniform(low, high) => {
@@ -182,7 +182,7 @@ fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
         }
         Distribution::Normal(mean, deviation) => {
             let (mean, deviation) = (mean.eval(slots), deviation.eval(slots));
-            // The trapezium rule is exponentially accurate here.
+            // The trapezoidal rule is exponentially accurate for the normal density.
             const STEP: f64 = 0.25;
             let height = STEP / std::f64::consts::TAU.sqrt();
             let node = |k: i32| {
@@ -202,7 +202,7 @@ fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
     }
 }
 
-/// Gauss & Legendre's nodes and weights for the interval from 0 to 1.
+/// Returns the nodes and weights of Gauss–Legendre quadrature for the interval from 0 to 1.
 fn legendre() -> Vec<(f64, f64)> {
     const COUNT: u32 = 20;
     let count = f64::from(COUNT);

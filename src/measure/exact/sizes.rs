@@ -1,21 +1,21 @@
 //! Pieces of comparable size: the ratios as powers of one number.
 //!
-//! With ratios ρ^k a piece waits k − 1 generations before it is replaced, so that all pieces of
-//! generation n have sizes between ρ^n and a constant multiple of it.
+//! A piece with the ratio ρ^k waits k − 1 generations before it is replaced. All pieces of generation n
+//! therefore have sizes between ρ^n and a constant multiple of it.
 
 use glam::DAffine3;
 
 use super::hull::Flat;
 use super::system::ratio;
 
-/// A piece: the set that it is a copy of, and the generations that it still waits.
+/// A piece: the set that it is a copy of, and the number of generations that it still waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Piece {
     pub(super) set: usize,
     pub(super) wait: u32,
 }
 
-/// A piece that takes another's place in the next generation.
+/// A piece that replaces another one, or a part of it, in the next generation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     pub(super) piece: Piece,
@@ -40,25 +40,26 @@ impl Step {
 pub(super) struct Generations {
     /// log 1/ρ.
     pub(super) depth: f64,
-    /// The unit of every set, as a multiple of that of the system.
+    /// Unit of every set, as a multiple of that of the system.
     pub(super) scale: Vec<f64>,
-    /// What takes the place of a piece that does not wait, by set.
+    /// Steps of a piece that does not wait, by set.
     steps: Vec<Vec<Step>>,
-    /// What takes the place of a piece that does, by piece.
+    /// Step of a piece that waits, by piece.
     waits: Vec<Vec<Step>>,
 }
 
-/// A larger k is no evidence of commensurable ratios.
+/// Maximum k; a larger one is not evidence of commensurable ratios.
 const MOST_POWER: f64 = 64.0;
 
-/// Logarithms that differ by less are taken for equal.
+/// Difference up to which logarithms count as equal.
 const EQUAL: f64 = 1e-10;
 
-/// More steps than this, after sets of size ρ⁰ are put in, are given up.
+/// Maximum number of steps of a set, after sets of size ρ⁰ are expanded.
 const MOST_STEPS: usize = 4_096;
 
 impl Generations {
-    /// `None` where ratios are not powers of one number along all cycles.
+    /// Divides a system into generations. Returns `None` where ratios are not powers of one number along all
+    /// cycles, or where there are too many steps.
     ///
     /// Precondition: the system is strongly connected.
     pub(super) fn of(flat: &Flat) -> Option<Self> {
@@ -98,12 +99,12 @@ impl Generations {
         })
     }
 
-    /// The number of sets.
+    /// Returns the number of sets.
     pub(super) fn size(&self) -> usize {
         self.steps.len()
     }
 
-    /// The copies that each set is made of: set and map.
+    /// Returns the copies that each set is made of: set and map.
     pub(super) fn first_steps(&self) -> Vec<Vec<(usize, DAffine3)>> {
         let copies = |steps: &Vec<Step>| {
             let steps = steps.iter();
@@ -112,7 +113,7 @@ impl Generations {
         self.steps.iter().map(copies).collect()
     }
 
-    /// What takes a piece's place in the next generation.
+    /// Returns the pieces that replace a piece in the next generation.
     pub(super) fn steps(&self, piece: Piece) -> &[Step] {
         let Some(wait) = piece.wait.checked_sub(1) else {
             return &self.steps[piece.set];
@@ -122,11 +123,11 @@ impl Generations {
     }
 }
 
-/// A unit for every set, as a logarithm, in which the ratios are powers ρ⁰, ρ¹, …, and log 1/ρ.
+/// Returns a unit for every set, as a logarithm, in which the ratios are powers ρ⁰, ρ¹, …, and log 1/ρ.
 ///
 /// `logs` are those of 1/ratio, by copy.
 fn units(flat: &Flat, logs: &[f64]) -> Option<(Vec<f64>, f64)> {
-    // Along a tree all ratios may be 1: what is left of the others is that of cycles.
+    // Along a tree all ratios may be 1: the remaining ones are those of cycles.
     let mut units = vec![None; flat.size];
     units[0] = Some(0.0);
     for _ in 0..flat.size {
@@ -141,7 +142,7 @@ fn units(flat: &Flat, logs: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut units: Vec<f64> = units.into_iter().map(|unit| unit.unwrap_or(0.0)).collect();
     let logs = over(flat, logs, &units);
     let depth = common_measure(&logs)?;
-    // Powers that are not negative: the shortest ways from the first set (Bellman 1958).
+    // The shortest paths from the first set (Bellman 1958) make all powers non-negative.
     let mut shortest = vec![f64::INFINITY; flat.size];
     shortest[0] = 0.0;
     for _ in 0..flat.size {
@@ -156,7 +157,7 @@ fn units(flat: &Flat, logs: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((units, depth))
 }
 
-/// The logarithms of the ratios between sets in their units.
+/// Returns the logarithms of the ratios between sets in their units.
 fn over(flat: &Flat, logs: &[f64], units: &[f64]) -> Vec<f64> {
     let copies = flat.copies.iter().zip(logs);
     copies
@@ -164,7 +165,8 @@ fn over(flat: &Flat, logs: &[f64], units: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The steps of a set, with those of sets that are of its own size in their place.
+/// Returns the steps of a set, in which sets of its own size are replaced by their steps; `None` if there are
+/// too many.
 fn expanded(direct: &[Vec<(usize, u32, DAffine3)>], set: usize) -> Option<Vec<Step>> {
     let mut steps = Vec::new();
     let mut open: Vec<_> = direct[set].iter().rev().copied().collect();
@@ -185,7 +187,7 @@ fn expanded(direct: &[Vec<(usize, u32, DAffine3)>], set: usize) -> Option<Vec<St
     Some(steps)
 }
 
-/// The largest number of which all values are whole multiples, some 12 digits sharp.
+/// Returns the largest number of which all values are integer multiples, to about 12 digits.
 fn common_measure(values: &[f64]) -> Option<f64> {
     let sizes = || {
         values

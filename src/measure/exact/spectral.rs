@@ -1,22 +1,22 @@
-//! How fast paths of a graph multiply: the spectral radius of its matrix.
+//! The growth of the number of paths of a graph: the spectral radius of its matrix.
 
 use crate::digraph::components;
 
-/// The enclosure must be this narrow, relatively, to be taken for a value.
+/// Relative width at which an enclosure counts as a value, once it no longer narrows.
 const NARROW: f64 = 1e-13;
 
-/// It is not narrowed further than this, nor where rounding keeps it from becoming narrower.
+/// Relative width at which an enclosure is narrowed no further.
 const NARROWEST: f64 = 4e-16;
 
-/// Products of the matrix with a vector, at most, and the entries that all of them may touch.
+/// Maximum number of products of the matrix with a vector, and of the entries that all of them may touch.
 const MOST_ROUNDS: usize = 200_000;
 const MOST_WORK: usize = 200_000_000;
 
-/// The spectral radius of a matrix of whole numbers: `targets[i]` lists j as often as the entry
-/// (i, j) says. `None` if it is not found to 13 digits.
+/// Computes the spectral radius of a matrix of non-negative integers: `targets[i]` lists j as often as the
+/// entry (i, j) counts. Returns `None` if it is not found to 13 digits.
 ///
-/// The largest of those of the strongly connected parts, each by power iteration on the part plus
-/// the identity; quotients of successive vectors enclose it (Collatz 1942, Wielandt 1950).
+/// The radius is the largest of those of the strongly connected parts, each computed by power iteration on
+/// the part plus the identity; quotients of successive vectors enclose it (Collatz 1942, Wielandt 1950).
 pub(super) fn spectral_radius(targets: &[Vec<usize>]) -> Option<f64> {
     let component = components(targets);
     let count = component.iter().max().map_or(0, |most| most + 1);
@@ -43,7 +43,7 @@ pub(super) fn spectral_radius(targets: &[Vec<usize>]) -> Option<f64> {
 
 fn radius_of_part(edges: &[Vec<usize>]) -> Option<f64> {
     let count: usize = edges.iter().map(Vec::len).sum();
-    // A single node or a plain cycle.
+    // A single node or a simple cycle.
     if count <= edges.len() {
         return Some(if count == 0 { 0.0 } else { 1.0 });
     }
@@ -72,9 +72,9 @@ fn radius_of_part(edges: &[Vec<usize>]) -> Option<f64> {
     None
 }
 
-/// The spectral radius of a small matrix without negative entries, row by row.
+/// Computes the spectral radius of a small matrix without negative entries, row by row.
 ///
-/// By repeated squaring: the k-th root of the largest entry of the k-th power tends to it.
+/// By repeated squaring: the k-th root of the largest entry of the k-th power converges to it.
 pub(super) fn dense_radius(mut matrix: Vec<f64>, size: usize) -> f64 {
     let mut exponent = 1.0;
     let mut logarithm = 0.0;
@@ -110,7 +110,7 @@ mod tests {
         let golden = f64::midpoint(1.0, 5f64.sqrt());
         let radius = spectral_radius(&[vec![0, 1], vec![0]]).unwrap();
         assert!((radius - golden).abs() < 1e-13);
-        // Bipartite, twice each way, and something that leads to it.
+        // A bipartite graph, with two edges each way, and a node that leads to it.
         let radius = spectral_radius(&[vec![1, 1], vec![0, 0], vec![0, 1, 2]]).unwrap();
         assert!((radius - 2.0).abs() < 1e-13);
         assert_eq!(spectral_radius(&[vec![1], vec![2], vec![0]]), Some(1.0));

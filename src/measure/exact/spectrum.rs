@@ -1,4 +1,4 @@
-//! The spectrum of dimensions D_q of a measure, where it is known exactly.
+//! The generalised dimensions D_q of a measure, where they are known exactly.
 
 use crate::ifs::Ifs;
 use crate::measure::copies::Shared;
@@ -6,17 +6,17 @@ use crate::measure::perron::{Entry, beside_one, crossing, perron};
 
 use super::{Dimensions, Overlap, System, dimensions};
 
-/// The spectrum of dimensions D_q of a measure (Hentschel & Procaccia 1983), for all real orders q.
+/// Generalised dimensions D_q of a measure (Hentschel & Procaccia 1983), for all real orders q.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
-    /// All are the same: a ball of radius r about a point of the measure has a mass of about r^D.
+    /// All D_q are equal: a ball of radius r about a point of the measure has a mass of about r^D.
     Constant {
-        /// The dimension.
+        /// The dimension D.
         value: f64,
-        /// An expression that is equal, as rule files write it, where one was found.
+        /// Equal expression in the syntax of rule files, where one was found.
         closed_form: Option<String>,
     },
-    /// That of a measure whose copies have given shares, under the open set condition.
+    /// Dimensions of a measure whose copies have given shares, under the open set condition.
     Cascade(Weighted),
 }
 
@@ -32,21 +32,21 @@ pub struct Weighted {
 struct Edge {
     from: usize,
     to: usize,
-    /// Of its share of the mass.
+    /// Logarithm of its share of the mass.
     share: f64,
-    /// Of its ratio.
+    /// Logarithm of its ratio.
     ratio: f64,
 }
 
-/// Orders that are nearer to 1 are taken for it.
+/// Distance from 1 below which an order counts as 1.
 const NEAR_ONE: f64 = 1e-7;
 
-/// Exponentials of more are not needed to tell on which side of 1 a radius lies.
+/// Bound of exponents: larger exponentials do not change on which side of 1 a radius lies.
 const MOST_EXPONENT: f64 = 300.0;
 
 impl Spectrum {
-    /// That of a set's natural measure: all D_q are its dimension, where the measure of balls is
-    /// known to be regular.
+    /// Returns the dimensions of a set's natural measure: all D_q are its dimension, where the measure of
+    /// balls is known to be regular.
     #[must_use]
     pub fn natural(dimensions: &Dimensions) -> Option<Self> {
         let hausdorff = &dimensions.hausdorff;
@@ -57,11 +57,13 @@ impl Spectrum {
         })
     }
 
-    /// That of the measure that the weights of a system give, where its maps are similarities and fulfil
-    /// the open set condition (Cawley & Mauldin 1992; for graphs: Edgar & Mauldin 1992; for negative
-    /// orders: Riedi 1995). Maps that are listed twice are one of their weights together.
+    /// Computes the dimensions of the measure that the weights of a system define, where its maps are
+    /// similarities that satisfy the open set condition (Cawley & Mauldin 1992; for graphs: Edgar & Mauldin
+    /// 1992; for negative orders: Riedi 1995). Maps that are listed twice count as one with the sum of their
+    /// weights.
     ///
-    /// `None` where this is not decided, or [the weights have no one measure](crate::ifs::Walk::stationary).
+    /// Returns `None` where this is not decided, or where [the measure is not
+    /// unique](crate::ifs::Walk::stationary).
     #[must_use]
     pub fn of_weights(ifs: &Ifs) -> Option<Self> {
         let Shared { copies, shares, .. } = Shared::of_weights(ifs)?;
@@ -85,7 +87,7 @@ impl Spectrum {
         }))
     }
 
-    /// The dimension of an order.
+    /// Returns the dimension of an order.
     #[must_use]
     pub fn at(&self, order: f64) -> f64 {
         match self {
@@ -100,12 +102,12 @@ impl Weighted {
         if (order - 1.0).abs() < NEAR_ONE {
             return self.information();
         }
-        // A single copy in each: the mass of a point.
+        // A single copy in each set: the mass of a point.
         if self.edges.len() == self.size {
             return 0.0;
         }
-        // Σ p^q r^−τ = 1, or the spectral radius of the matrix of these sums, with τ = (q − 1) D_q: for
-        // larger τ it is larger.
+        // τ = (q − 1) D_q solves Σ p^q r^−τ = 1, or spectral radius 1 of the matrix of these sums, which
+        // increases with τ.
         let radius = |tau: f64| self.radius(|edge| order * edge.share - tau * edge.ratio);
         let (mut low, mut high) = (-1.0, 1.0);
         while radius(low) > 1.0 {
@@ -117,7 +119,7 @@ impl Weighted {
         crossing(low, high, radius) / (order - 1.0) + 0.0
     }
 
-    /// The spectral radius of the matrix of exponentials between sets.
+    /// Returns the spectral radius of the matrix of exponentials between sets.
     fn radius(&self, exponent: impl Fn(&Edge) -> f64) -> f64 {
         let entries: Vec<Entry> = self
             .edges
@@ -133,10 +135,11 @@ impl Weighted {
         perron(self.size, &entries, beside_one).radius
     }
 
-    /// D_1: the entropy of the shares over the mean logarithm of the ratios (Young 1982).
+    /// Returns D_1: the entropy of the shares over the mean logarithm of the ratios (Young 1982).
     fn information(&self) -> f64 {
         let shares = self.edges.iter();
-        // How often the sets come on the way of a point: what the transposed matrix leaves as it is.
+        // The stationary frequency of the sets along the address of a point: an eigenvector of the transposed
+        // matrix.
         let entries: Vec<Entry> = shares
             .map(|edge| (edge.to, edge.from, libm::exp(edge.share)))
             .collect();

@@ -1,4 +1,4 @@
-//! What dimensions are computed from: sets that are made of smaller copies of each other.
+//! Systems of sets that are made of smaller copies of each other, from which dimensions are computed.
 
 use crate::digraph::components;
 use crate::geometry::{DAffine2, DMat2};
@@ -14,31 +14,31 @@ pub(super) struct Copy {
     pub(super) map: DAffine3,
 }
 
-/// Sets K₀, K₁, … that are unions of copies, K_from = ∪ map(K_to) over the copies in `from`
-/// (Mauldin & Williams 1988). One set that holds copies of itself only is the attractor of an
-/// iterated function system (Hutchinson 1981).
+/// Sets K₀, K₁, … that are unions of copies, K_from = ∪ map(K_to) over the copies in `from` (Mauldin &
+/// Williams 1988). One set that holds copies of itself only is the attractor of an iterated function system
+/// (Hutchinson 1981).
 ///
 /// Guarantees: the numbers of sets are in range, and all maps are finite.
 #[derive(Clone, Debug)]
 pub struct System {
-    /// 2 in the plane, 3 in space.
+    /// Dimension of the space: 2 or 3.
     pub(super) space: usize,
     pub(super) size: usize,
     pub(super) copies: Vec<Copy>,
 }
 
 impl System {
-    /// Sets of the plane, from their copies: the number of the set that holds one, the number of the
-    /// set that it is a copy of, and the map.
+    /// Creates sets of the plane from their copies: the number of the set that holds a copy, the number of
+    /// the set that is copied, and the map.
     ///
-    /// `None` if a number is not finite.
+    /// Returns `None` if a number is not finite.
     #[must_use]
     pub fn plane(copies: impl IntoIterator<Item = (usize, usize, DAffine2)>) -> Option<Self> {
         let copies = copies.into_iter();
         Self::new(2, copies.map(|(from, to, map)| (from, to, embedded(map))))
     }
 
-    /// Sets in space, likewise.
+    /// Creates sets in space from their copies, as [`plane`](Self::plane) does.
     #[must_use]
     pub fn space(copies: impl IntoIterator<Item = (usize, usize, DAffine3)>) -> Option<Self> {
         Self::new(3, copies.into_iter())
@@ -58,19 +58,19 @@ impl System {
         })
     }
 
-    /// What the fertile elements of a graph become, without the elements that stay infertile.
+    /// Creates the limit sets of a graph's fertile elements, without those that stay infertile.
     ///
-    /// `None` if the graph is not a list of fixed maps, or has resets.
+    /// Returns `None` if the graph is not a list of fixed maps, or has resets.
     #[must_use]
     pub fn of(graph: &Graph) -> Option<Self> {
         Self::plane(fixed_copies(graph)?)
     }
 
-    /// The number of every set's strongly connected component, and all of these, each with its sets
+    /// Returns the number of every set's strongly connected component, and the components, each with its sets
     /// numbered from 0. A copy never leads to a component of a higher number.
     ///
-    /// The dimension of the whole is the largest of those of components that have a copy inside: every
-    /// point lies in a copy of one, and there are countably many copies.
+    /// The dimension of the whole is the largest of those of components that have a copy inside: every point
+    /// lies in a copy of one, and there are countably many copies.
     pub(super) fn components(&self) -> (Vec<usize>, Vec<Self>) {
         let mut targets = vec![Vec::new(); self.size];
         for copy in &self.copies {
@@ -105,9 +105,9 @@ impl System {
         (component, parts)
     }
 
-    /// Whether all maps are similarities.
+    /// Returns `true` if all maps are similarities.
     pub(super) fn is_similar(&self) -> bool {
-        // In the plane's third direction a map of the plane scales as its area's root.
+        // The embedding of the plane scales the third direction by the square root of the area.
         self.copies.iter().all(|copy| {
             let linear = copy.map.matrix3;
             let ratio = ratio(linear);
@@ -117,10 +117,10 @@ impl System {
         })
     }
 
-    /// The same sets, each in a unit of its own, in which all maps shrink where those along every cycle
-    /// do. Dimensions stay. Maps that are no similarities stay as they are.
+    /// Returns the sets, each in a unit of its own, in which all maps contract if the products along all
+    /// cycles do. Dimensions are unchanged. Systems of maps that are not similarities are returned unchanged.
     pub(super) fn in_own_units(&self) -> Self {
-        // By how much every map shrinks, at least, as a logarithm: what cycles allow.
+        // Minimum contraction of every map, as a logarithm; the largest one that the cycles permit is used.
         const LEAST: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
         if !self.is_similar() || self.shrinks() {
             return self.clone();
@@ -143,8 +143,8 @@ impl System {
         }
     }
 
-    /// Units for all sets, as logarithms: the longest ways that copies lead (Bellman 1958), with so much
-    /// more for every copy. `None` where they have no end.
+    /// Returns units for all sets, as logarithms: the lengths of the longest paths of copies (Bellman 1958),
+    /// where `more` is added for every copy. Returns `None` where these are unbounded.
     fn units(&self, more: f64) -> Option<Vec<f64>> {
         let ways: Vec<(usize, usize, f64)> = self
             .ratios()
@@ -166,24 +166,24 @@ impl System {
         None
     }
 
-    /// Whether all maps are similarities that shrink.
+    /// Returns `true` if all maps are similarities that contract.
     pub(super) fn shrinks(&self) -> bool {
         self.is_similar() && self.ratios().all(|(_, _, ratio)| ratio < 1.0)
     }
 
-    /// The copies as the similarity dimension sees them: from, to, ratio.
+    /// Iterates over the copies as edges with ratios: from, to, ratio.
     pub(super) fn ratios(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let copies = self.copies.iter();
         copies.map(|copy| (copy.from, copy.to, ratio(copy.map.matrix3)))
     }
 }
 
-/// The ratio of a similarity.
+/// Returns the ratio of a similarity.
 pub(super) fn ratio(linear: DMat3) -> f64 {
     libm::cbrt(linear.determinant().abs())
 }
 
-/// A map of the plane as one of space, which scales the third direction like a similarity would.
+/// Extends a map of the plane to space; the third direction is scaled as by a similarity.
 fn embedded(map: DAffine2) -> DAffine3 {
     let DMat2 { x_axis, y_axis } = map.matrix2;
     let across = map.matrix2.determinant().abs().sqrt();
