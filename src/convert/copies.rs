@@ -1,7 +1,7 @@
 //! Straight shapes as unions of smaller copies of themselves.
 //!
-//! A line is two lines of half its length, a triangle four triangles, and a point a smaller point: so
-//! what a system cannot have as a condensation set, since those follow every map, it has as maps.
+//! A line is two lines of half its length, a triangle is four triangles, and a point is a smaller point.
+//! Shapes that cannot be condensation sets of a system, since those follow every map, thereby become maps.
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::rule::{BaseElement, Piece};
@@ -10,8 +10,12 @@ use super::Refusal;
 use super::shape::is_point;
 use super::structure::{Placed, Structure};
 
-/// The structure with straight shapes as instances of a line, a triangle and a point, which are three
-/// more objects that lead back to themselves.
+/// Returns the structure with its straight shapes replaced by instances of a line, a triangle and a point:
+/// three additional objects that instance themselves.
+///
+/// # Errors
+///
+/// Returns [`Refusal::ShapesInPart`] if a shape is curved, or a polygon crosses itself.
 pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
     let line = structure.objects.len();
     let (triangle, point) = (line + 1, line + 2);
@@ -84,7 +88,7 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
     })
 }
 
-/// The corners of an outline; a closed one goes back to the first, which is not listed twice.
+/// Returns the corners of an outline without repeating the first one of a closed outline.
 fn corners(outline: &BaseElement) -> Result<Vec<DVec2>, Refusal> {
     let mut corners = vec![outline.start()];
     for piece in outline.pieces() {
@@ -100,8 +104,8 @@ fn corners(outline: &BaseElement) -> Result<Vec<DVec2>, Refusal> {
     Ok(corners)
 }
 
-/// The triangles of a polygon that does not cross itself: ears are cut off (Meisters 1975). None if
-/// there is none to cut.
+/// Returns a triangulation of a polygon that does not cross itself, by ear clipping (Meisters 1975); `None`
+/// if no ear is found.
 fn triangles(corners: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
     let area = |[a, b, c]: [DVec2; 3]| (b - a).perp_dot(c - a);
     let mut left = corners.to_vec();

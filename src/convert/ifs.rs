@@ -1,13 +1,13 @@
-//! As an iterated function system.
+//! Conversion to an iterated function system.
 //!
-//! A system with a digraph has a set A_j for every map, with A_j = f_j(C) ∪ ⋃ f_j(A_i), and is drawn
-//! as the union of all of them. Objects of which every instance has the object's own map are such
-//! sets as they stand. Of all others, every instance becomes a map: f_e(K_c) for an instance e of
-//! object c, which may follow what the instances in c are. For the union of these to be the scene,
-//! every object has to lie where it first stands in the scene, so its coordinates are those of the
-//! scene: with Q_b the way to object b, the map is Q_b f_e Q_c⁻¹. Every object of the scene has a copy
-//! of what it leads to, and edges lead only inside a copy. Shapes that do not follow every map, as
-//! condensation sets do, are maps too: those of a line, or of a triangle, to its halves.
+//! A system with a digraph has a set A_j = f_j(C) ∪ ⋃ f_j(A_i) for every map, and is drawn as the union of
+//! these sets. Objects whose instances all have the same map are sets of this form already. Of all other
+//! objects, every instance becomes a map: f_e(K_c) for an instance e of object c, which may follow the maps
+//! of the instances in c. For the union of these sets to be the scene, the coordinates of every object have
+//! to be those of the scene at the place where the object first occurs: with Q_b the composed map of the path
+//! to object b, the map is Q_b f_e Q_c⁻¹. Every instance of the scene has a copy of the objects that it leads
+//! to, and edges stay inside a copy. Shapes that do not follow every map, as condensation sets do, become
+//! maps too: those of a line, a triangle or a point to its parts.
 
 use std::collections::VecDeque;
 
@@ -22,18 +22,18 @@ use super::shape::set;
 use super::structure::{Placed, Structure};
 use super::{Keeps, Refusal};
 
-/// A system of more maps is refused.
+/// Limit of the number of maps.
 const MOST_MAPS: usize = 1_000;
 
-/// A system with a digraph.
+/// An iterated function system with a digraph.
 #[derive(Default)]
 struct System {
     maps: Vec<DAffine2>,
-    /// From which map to which.
+    /// Edges: a map, and a map that may follow it.
     edges: Vec<[usize; 2]>,
     /// The condensation sets.
     sets: Vec<Placed>,
-    /// Where the initial set lies.
+    /// Map of the initial set.
     initial: DAffine2,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
     });
     let initial = match initial {
         Some(Err(refusal)) if keeps == Keeps::Approximants => return Err(refusal),
-        // The limit does not hang on it.
+        // The limit set does not depend on the initial set.
         Some(initial) => initial.ok(),
         None => None,
     };
@@ -79,7 +79,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
         .set_some("initial", initial))
 }
 
-/// Refuses what is drawn otherwise at some step.
+/// Returns an error if the approximants of a system differ from those of the structure.
 fn check_steps(structure: &Structure) -> Result<(), Refusal> {
     let refuse = |what| Err(Refusal::Steps(what));
     if structure.objects.len() != 1 || structure.scene.len() != 1 {
@@ -92,7 +92,7 @@ fn check_steps(structure: &Structure) -> Result<(), Refusal> {
     }
 }
 
-/// A map in the shortest of its forms.
+/// Writes a map in its shortest form.
 fn of_map(map: &DAffine2) -> Entries {
     let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
     let entries = Entries::default();
@@ -110,7 +110,7 @@ fn of_map(map: &DAffine2) -> Entries {
     linear.set_some("shift", (shift != DVec2::ZERO).then(|| point(shift)))
 }
 
-/// For every map, those that may follow it.
+/// Writes, for every map, the maps that may follow it.
 fn edges(edges: &[[usize; 2]], count: usize) -> Value {
     let number = |map: usize| value(f64::from(u32::try_from(map + 1).unwrap_or(u32::MAX)));
     let entries = (0..count).fold(Entries::default(), |entries, from| {
@@ -128,7 +128,7 @@ fn edges(edges: &[[usize; 2]], count: usize) -> Value {
     entries.value()
 }
 
-/// The system whose maps are the objects, if every object is the image of others under one map.
+/// Returns the system with one map for each object, if all instances in every object have the same map.
 fn direct(structure: &Structure) -> Option<System> {
     let is_here = |placed: &Placed| placed.map == DAffine2::IDENTITY;
     let (objects, sets): (Vec<_>, Vec<_>) = structure
@@ -177,7 +177,7 @@ fn direct(structure: &Structure) -> Option<System> {
     (0..system.maps.len()).all(left).then_some(system)
 }
 
-/// Whether two lists of shapes hold the same.
+/// Returns whether two lists of shapes have the same union.
 fn is_union(a: &[Placed], b: &[Placed]) -> bool {
     let within = |a: &[Placed], b: &[Placed]| {
         a.iter().all(|one| {
@@ -188,18 +188,18 @@ fn is_union(a: &[Placed], b: &[Placed]) -> bool {
     within(a, b) && within(b, a)
 }
 
-/// An object where it stands in the scene.
+/// An object in the coordinates of the scene.
 struct Vertex {
-    /// The instance of the scene that it descends from.
+    /// Index of the scene's instance that it descends from.
     copy: usize,
     object: usize,
-    /// The way to it.
+    /// Composed map of the path to the object.
     frame: DAffine2,
-    /// What stands there, with the number of the vertex for what is replaced.
+    /// Instances in the object, each with the index of its vertex if it is replaced.
     instances: Vec<(Placed, Option<usize>)>,
 }
 
-/// The system whose maps are the instances.
+/// Returns the system with one map for each instance.
 fn placed(structure: &Structure) -> Result<System, Refusal> {
     let expanded = expanded(structure)?;
     let (roots, loose): (Vec<_>, Vec<_>) = expanded
@@ -221,7 +221,7 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
         initial: distinct[0].map,
         ..System::default()
     };
-    // The maps, with the vertex that each is of and the one that it is an image of.
+    // The vertex that contains each map's instance, and the vertex that it is an image of.
     let mut ends = Vec::new();
     let mut sets: Option<Vec<Placed>> = None;
     for (number, vertex) in vertices.iter().enumerate() {
@@ -252,7 +252,7 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
         }
     }
     system.sets = sets.unwrap_or_default();
-    // What lies loose in the scene would follow every map.
+    // Shapes of the scene outside all objects would follow every map.
     let with_loose: Vec<_> = system.sets.iter().chain(&loose).cloned().collect();
     if !is_union(&with_loose, &system.sets) {
         return Err(Refusal::ShapesInPart);
@@ -264,7 +264,7 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
     Ok(system)
 }
 
-/// Without what rounding has left of zeros.
+/// Returns a map with the rounding errors of zeros removed.
 fn settled(map: DAffine2) -> DAffine2 {
     const ROUNDING: f64 = 1e-15;
     let columns = [map.matrix2.x_axis, map.matrix2.y_axis, map.translation];
@@ -281,7 +281,7 @@ fn settled(map: DAffine2) -> DAffine2 {
     DAffine2::from_cols(x, y, shift)
 }
 
-/// The objects that every instance of the scene leads to, with ways to them that can be undone.
+/// Returns the objects that every instance of the scene leads to, with invertible maps of the paths to them.
 fn vertices(
     structure: &Structure,
     roots: &[Placed],
@@ -297,7 +297,7 @@ fn vertices(
         }
         let mut open = VecDeque::new();
         open.extend(root.object.map(|object| (object, root.map)));
-        // Maps that flatten come to an object last, if nothing else does.
+        // A map that flattens the plane is used only if no other path leads to an object.
         let mut flat = None;
         while let Some((object, frame)) = open.pop_front() {
             let known = |vertex: &Vertex| vertex.object == object;
@@ -350,7 +350,8 @@ struct Expanded {
     objects: Vec<Vec<Placed>>,
 }
 
-/// With only those objects that lead back to themselves: others give way to what stands in them.
+/// Returns scene and objects with only those objects that lead back to themselves; others are replaced by
+/// their content.
 fn expanded(structure: &Structure) -> Result<Expanded, Refusal> {
     let inside = |object: &Vec<Placed>| object.iter().filter_map(|placed| placed.object).collect();
     let targets: Vec<Vec<usize>> = structure.objects.iter().map(inside).collect();

@@ -1,4 +1,4 @@
-//! As a structure of objects that instance each other.
+//! Conversion to a structure of objects that instance each other.
 
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;
@@ -14,7 +14,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
     let has_shapes = structure.instances().any(|placed| placed.object.is_none());
     let initial = match structure.initial() {
         Some(Some(shape)) => Some(set(&structure.shapes[shape], &DAffine2::IDENTITY)),
-        // Where there are shapes, nothing is drawn in the place of objects.
+        // Where there are shapes, objects that are not replaced draw nothing.
         Some(None) | None
             if keeps == Keeps::Limit || has_shapes && structure.objects.is_empty() =>
         {
@@ -38,7 +38,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
         objects = objects.add(name, instances(structure, object)?);
     }
     if structure.objects.is_empty() {
-        // A structure has an object: here the scene is one.
+        // A structure needs an object: the scene becomes one.
         objects = objects.add("A", instances(structure, &structure.scene)?);
         entries = entries
             .set("objects", objects.value())

@@ -1,8 +1,8 @@
-//! As an L-system: objects are symbols, and a turtle goes where their instances lie.
+//! Conversion to an L-system: objects become symbols, and a turtle moves to their instances.
 //!
-//! Where all instances are lines of one length that are replaced, in chains from end to end, and their
-//! directions are multiples of one angle, the strings are plain: `F+F--F+F`. Otherwise every instance
-//! stands in brackets of its own, with free angles, moves and scales.
+//! Where all instances are replaced lines of one length, in chains from end to end, and their directions are
+//! multiples of one angle, the strings are plain: `F+F--F+F`. Otherwise every instance stands in brackets of
+//! its own, with arbitrary angles, moves and scales.
 
 mod bracketed;
 mod chain;
@@ -13,7 +13,7 @@ use super::rule::similarity;
 use super::structure::Structure;
 use super::{Keeps, Refusal};
 
-/// Letters for symbols, beginning with that for steps; those that mean something else are left out.
+/// Letters of symbols, in order of use; letters with a different meaning by default are left out.
 const LETTERS: &str = "FABCDEHIJKLMNOPQRSTUVWXYZabcdeghijklmnopqrstuvwxyz";
 
 pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
@@ -29,7 +29,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
     }
 }
 
-/// The letter of a symbol by number.
+/// Returns the letter of a symbol, given its index.
 fn letter(number: usize) -> Result<char, Refusal> {
     let letters = LETTERS.chars().count();
     LETTERS
@@ -38,7 +38,7 @@ fn letter(number: usize) -> Result<char, Refusal> {
         .ok_or(Refusal::TooManySymbols(letters))
 }
 
-/// An angle in degrees, without what rounding has added to a simple one.
+/// Converts an angle to degrees, rounded to a simple fraction that differs only by rounding.
 fn degrees(radians: f64) -> f64 {
     const MOST_PARTS: u32 = 60;
     const ROUNDING: f64 = 1e-12;

@@ -1,13 +1,13 @@
-//! From one way of writing a linear fractal to another.
+//! Conversion between kinds of linear fractals.
 //!
-//! A model is taken apart into the objects of its graph and the instances in their place, which are
-//! written as a file of another kind: a rule of fertile elements is a system of maps, its visible
-//! infertile elements are condensation sets, and a recurrent system is a structure of objects (Hart
-//! 1992, section 3.3). What is written has been read back.
+//! A model is decomposed into the objects of its instancing graph and their instances, which are written as a
+//! document of another kind: a rule of fertile elements is a system of maps, its visible infertile elements
+//! are condensation sets, and a recurrent system is a structure of objects (Hart 1992, section 3.3). Every
+//! result has been read back.
 //!
-//! The *limit set* stays the same, to rounding; on request every approximant does as well. Closed
-//! outlines belong to it with what they enclose. Weights, tints and the order of traversal are not
-//! part of the set and are left behind where the other kind has nothing like them.
+//! The *limit set* is preserved, to rounding; on request every approximant is preserved too. Closed outlines
+//! belong to it with the area that they enclose. Weights, tints and the order of traversal are not part of
+//! the set and are dropped where the other kind has no equivalent.
 
 mod copies;
 mod ifs;
@@ -32,26 +32,26 @@ use crate::model::{Kind, Model};
 
 use structure::Structure;
 
-/// What a conversion keeps.
+/// Property that a conversion preserves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Keeps {
     /// The limit set.
     #[default]
     Limit,
-    /// The limit set, and what every approximant draws.
+    /// The limit set and every approximant.
     Approximants,
 }
 
-/// Why a model is not converted.
+/// An error in a conversion.
 #[derive(Debug, thiserror::Error)]
 pub enum ConvertError {
-    /// The other kind has no way to write it.
+    /// The other kind cannot express the model.
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// A generator has a point that is not finite.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// What was written is no file of its kind.
+    /// The document that was written cannot be read back.
     #[error("what it becomes cannot be read back: {}", first_message(.0))]
     NotReadBack(Diagnostics),
 }
@@ -62,21 +62,22 @@ fn first_message(diagnostics: &Diagnostics) -> String {
         .map_or_else(String::new, |first| first.message().to_owned())
 }
 
-/// Steps that graphs are compiled for: those of rules whose objects are soon all known need no more.
+/// Step that graphs are compiled for; where the objects of a rule are complete after fewer steps, more change
+/// nothing.
 const STEPS: u32 = 64;
 
-/// L-systems whose steps differ in kind are converted as they are after some steps: so many unless they say,
-/// if there are no more elements than this.
+/// Step at which an L-system is converted if its steps differ in kind and its file does not specify one.
 const DEEPEST: u32 = 12;
+/// Limit of the number of elements at that step.
 const MOST_ELEMENTS: u64 = 20_000;
 
-/// Writes a model as a file of another kind.
+/// Converts a model to a document of another kind.
 ///
-/// Numbers are exact: those of the file read as the same doubles.
+/// Numbers are exact: those of the document are read as the same doubles.
 ///
 /// # Errors
 ///
-/// If the kind has no way to write it, or if the model has no limit set.
+/// Returns an error if the other kind cannot express the model, or if the model has no limit set.
 pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, ConvertError> {
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
@@ -89,7 +90,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         _ => STEPS,
     };
     let graph = model.compile(steps)?;
-    // What knows how many steps are to come has no limit set, but is as it is after them.
+    // A time-indexed structure has no limit set, but is finite after its steps.
     let ends = graph.is_levelled() && graph.is_plain() && to == Kind::Instancing;
     if !ends {
         graph.check_limit_set().map_err(Refusal::from)?;
@@ -130,7 +131,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     }
 }
 
-/// The file: what it says of itself, the objects, and how it likes to be drawn.
+/// Returns the entries of a document: description, content, dimensions, style and view.
 fn headed(heading: &Heading, kind: Kind, own: Entries) -> Entries {
     let number = |value: f64| number::value(value);
     let kind = Entries::default().set("kind", Value::Text(kind.name().into()));

@@ -1,17 +1,18 @@
-//! Numbers that read as they are.
+//! Notation of numbers that is read as the same double.
 
 use crate::build::Number;
 use crate::build::written::sequence;
 use crate::document::node::Value;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
-/// Denominators of fractions.
+/// Largest denominator of fractions.
 const LARGEST_DENOMINATOR: u32 = 36;
 
-/// Numbers of no more characters are not written as fractions.
+/// Number of characters up to which decimals are not replaced by fractions.
 const SHORT: usize = 6;
 
-/// A number: as a fraction, if that is the same double and shorter to read, or in the fewest digits.
+/// Writes a number as a fraction, if that is the same double and the decimals are longer than [`SHORT`], or
+/// else in the fewest digits.
 pub(super) fn value(number: f64) -> Value {
     match fraction(number) {
         Some(fraction) => Value::Text(fraction),
@@ -19,13 +20,13 @@ pub(super) fn value(number: f64) -> Value {
     }
 }
 
-/// The same in a formula.
+/// Writes a number inside an expression.
 pub(super) fn text(number: f64) -> String {
     fraction(number).unwrap_or_else(|| (number + 0.0).to_string())
 }
 
 fn fraction(number: f64) -> Option<String> {
-    // Minus zero is zero.
+    // Adding zero turns minus zero into zero.
     if (number + 0.0).to_string().len() <= SHORT {
         return None;
     }
@@ -45,12 +46,12 @@ pub(super) fn points(all: impl IntoIterator<Item = DVec2>) -> Value {
     sequence(all.into_iter().map(point))
 }
 
-/// The rows of a matrix.
+/// Writes the rows of a matrix.
 pub(super) fn matrix(matrix: DMat2) -> Value {
     points([matrix.row(0), matrix.row(1)])
 }
 
-/// The factor or factors of a map that turns nothing.
+/// Writes the factor or the two factors of a diagonal matrix; `None` for any other matrix.
 pub(super) fn scale(matrix: DMat2) -> Option<Value> {
     let (x, y) = (matrix.x_axis, matrix.y_axis);
     let turns = x.y != 0.0 || y.x != 0.0;
@@ -62,7 +63,7 @@ pub(super) fn scale(matrix: DMat2) -> Option<Value> {
     (!turns).then_some(factor)
 }
 
-/// Whether two maps are the same, to rounding.
+/// Returns whether two maps are equal, to rounding.
 pub(super) fn is_same(a: &DAffine2, b: &DAffine2) -> bool {
     const ROUNDING: f64 = 1e-12;
     let size = 1.0 + a.translation.abs().max_element();

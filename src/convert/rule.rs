@@ -1,4 +1,4 @@
-//! As a production rule: objects are generators, instances elements.
+//! Conversion to a production rule: objects become generators, instances become elements.
 
 use crate::build::written::{self, Entries, sequence};
 use crate::document::node::Value;
@@ -9,7 +9,7 @@ use super::Refusal;
 use super::number::{point, value};
 use super::structure::{Placed, Structure};
 
-/// Maps that stretch this little more one way than another are similarities.
+/// Relative difference of a map's stretches below which it is a similarity.
 const ROUNDING: f64 = 1e-12;
 
 pub(super) fn write(structure: &Structure) -> Result<Entries, Refusal> {
@@ -19,7 +19,7 @@ pub(super) fn write(structure: &Structure) -> Result<Entries, Refusal> {
     };
     let entries = Entries::default().set("initiator", writer.elements(None)?);
     let entries = match structure.objects.len() {
-        // A rule has a generator: nothing uses this one.
+        // A rule needs a generator: no element uses this one.
         0 => {
             let nothing = [DVec2::ZERO, DVec2::X].map(point);
             entries.set("generator", sequence(nothing))
@@ -42,7 +42,7 @@ fn name(object: usize) -> String {
 
 struct Writer<'s> {
     structure: &'s Structure,
-    /// What most elements look like.
+    /// The first replaced instance, whose shape becomes the rule's base element.
     usual: Option<&'s Placed>,
 }
 
@@ -52,7 +52,7 @@ impl Writer<'_> {
         (!outline.is_line()).then(|| written::base_element(outline))
     }
 
-    /// The elements of a generator, or of the initiator.
+    /// Returns the elements of a generator, or of the initiator.
     fn elements(&self, object: Option<usize>) -> Result<Value, Refusal> {
         let all = self.structure.placed(object);
         let elements: Result<Vec<_>, _> = all
@@ -75,7 +75,7 @@ impl Writer<'_> {
         let (frame, outline) = match (placed.object, similar) {
             (_, Ok(())) => (placed.map, outline.clone()),
             (Some(_), Err(refusal)) => return Err(refusal),
-            // What stays as it is may have a shape of its own.
+            // A kept element may have a base element of its own.
             (None, Err(refusal)) => {
                 let outline = image(outline, &placed.map).ok_or(refusal)?;
                 (DAffine2::IDENTITY, outline)
@@ -102,7 +102,7 @@ impl Writer<'_> {
     }
 }
 
-/// Refuses a map that is no similarity, or that leaves a point.
+/// Returns an error if a map is not a similarity, or if its rank is 0.
 pub(super) fn similarity(map: &DAffine2, called: &dyn Fn() -> String) -> Result<(), Refusal> {
     let longest = stretch(&map.matrix2);
     if longest == 0.0 {
@@ -119,7 +119,7 @@ pub(super) fn similarity(map: &DAffine2, called: &dyn Fn() -> String) -> Result<
     Ok(())
 }
 
-/// The image of an outline; none if a map leaves nothing of it.
+/// Returns the image of an outline; `None` if it has no extent.
 fn image(outline: &BaseElement, map: &DAffine2) -> Option<BaseElement> {
     let pieces = outline.pieces().iter();
     let pieces: Vec<Piece> = pieces.map(|piece| piece.transformed(map)).collect();

@@ -1,4 +1,4 @@
-//! Outlines as sets of the plane.
+//! Outlines as sets of the plane in documents.
 
 use crate::build::written::Entries;
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -8,13 +8,13 @@ use crate::rule::{BaseElement, Piece};
 use super::Refusal;
 use super::number::{point, points, value};
 
-/// An ellipse has so many pieces.
+/// The number of pieces of an ellipse's outline.
 const PIECES_OF_ELLIPSES: usize = 16;
 
-/// Lines of no more than this, as a multiple of where they lie, are points.
+/// Length, relative to the position, up to which a line stands for a point.
 const POINT: f64 = 1e-15;
 
-/// The image of an outline under a map, as a set: a mapping with one key.
+/// Writes the image of an outline under a map as a set: a mapping with one key.
 pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refusal> {
     let set = Entries::default();
     let straight: Option<Vec<DVec2>> = outline
@@ -36,7 +36,7 @@ pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refu
             return Ok(set.set("point", point(start)));
         }
         if outline.is_closed() {
-            // The last side is what `polygon` says.
+            // A polygon closes by itself.
             all.pop();
             if Shape::polygon(&all).is_some_and(|polygon| polygon.moments().is_some()) {
                 return Ok(set.set("polygon", points(all)));
@@ -64,7 +64,7 @@ pub(super) fn set(outline: &BaseElement, map: &DAffine2) -> Result<Entries, Refu
     })
 }
 
-/// The ends of the line that points lie on, if they do.
+/// Returns the ends of the segment on which all points lie; `None` if they do not lie on a line.
 fn ends_of_line(all: &[DVec2]) -> Option<[DVec2; 2]> {
     const ROUNDING: f64 = 1e-12;
     let start = *all.first()?;
@@ -82,7 +82,7 @@ fn ends_of_line(all: &[DVec2]) -> Option<[DVec2; 2]> {
     ])
 }
 
-/// Whether an outline stands for a point: is the shortest line that there is.
+/// Returns whether an outline stands for a point: whether its extent is that of rounding errors at its place.
 pub(super) fn is_point(outline: &BaseElement) -> bool {
     let start = outline.start();
     let small = POINT * (1.0 + start.abs().max_element());
@@ -90,7 +90,7 @@ pub(super) fn is_point(outline: &BaseElement) -> bool {
     ends.all(|end| (end - start).abs().max_element() <= small)
 }
 
-/// The map of the unit disc to an outline, if that is an ellipse.
+/// Returns the map of the unit disc onto an outline; `None` if the outline is not an ellipse.
 fn ellipse(outline: &BaseElement) -> Option<DAffine2> {
     const ROUNDING: f64 = 1e-12;
     let pieces = outline.pieces();
@@ -112,8 +112,8 @@ fn ellipse(outline: &BaseElement) -> Option<DAffine2> {
     pieces.iter().zip(disc.pieces()).all(same).then_some(map)
 }
 
-/// The half axes of the ellipse that a linear map makes of the unit disc, and the angle of the first
-/// in degrees.
+/// Returns the half axes of the unit disc's image under a linear map, and the angle of the first axis in
+/// degrees.
 fn axes(linear: DMat2) -> (DVec2, f64) {
     let (x, y) = (linear.x_axis, linear.y_axis);
     let [long, short] = [x.length(), y.length()];
@@ -123,7 +123,7 @@ fn axes(linear: DMat2) -> (DVec2, f64) {
     if x.y == 0.0 && y.x == 0.0 {
         return (DVec2::new(x.x.abs(), y.y.abs()), 0.0);
     }
-    // The axes are the images of orthogonal directions that stay orthogonal.
+    // The axes are the images of the orthogonal directions that stay orthogonal.
     let turn = 0.5 * libm::atan2(2.0 * x.dot(y), x.length_squared() - y.length_squared());
     let (cosine, sine) = (libm::cos(turn), libm::sin(turn));
     let [first, second] = [x * cosine + y * sine, y * cosine - x * sine];

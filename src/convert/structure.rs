@@ -1,4 +1,4 @@
-//! What all kinds have in common: objects, and the instances in their place.
+//! The common form of all kinds: objects and their instances.
 
 use crate::geometry::DAffine2;
 use crate::graph::{Graph, Instance, NoLimit, Replacement};
@@ -8,33 +8,33 @@ use crate::rule::BaseElement;
 
 use super::{Keeps, Refusal};
 
-/// An instance: a map, and what stands there.
+/// An instance: a map of an object or of a shape that is kept.
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
     pub(super) map: DAffine2,
-    /// What it looks like as long as it is not replaced, by number.
+    /// Index of the shape that is drawn until the instance is replaced.
     pub(super) shape: usize,
     pub(super) visible: bool,
     pub(super) tint: Option<Tint>,
-    /// The object that it is one of; none if it stays as it is.
+    /// Index of the object; `None` if the instance is kept.
     pub(super) object: Option<usize>,
 }
 
-/// A model taken apart.
+/// A model, decomposed into objects and instances.
 pub(super) struct Structure {
-    /// What instances look like.
+    /// Shapes of instances.
     pub(super) shapes: Vec<BaseElement>,
-    /// What stands in the place of every object; never nothing.
+    /// Instances in each object; never empty.
     pub(super) objects: Vec<Vec<Placed>>,
-    /// Approximant 0; never nothing.
+    /// Instances of the scene, which are approximant 0; never empty.
     pub(super) scene: Vec<Placed>,
-    /// What messages call an instance of an object.
+    /// Terms of messages about instances.
     pub(super) words: Words,
-    /// What the file calls objects, if it does, by number.
+    /// Names of the objects in the file, by index, if it has names.
     pub(super) names: Vec<String>,
 }
 
-/// What the parts of a file are called.
+/// Terms for the parts of a file.
 #[derive(Clone, Copy)]
 pub(super) enum Words {
     Maps,
@@ -43,9 +43,13 @@ pub(super) enum Words {
 }
 
 impl Structure {
-    /// The objects of a graph, one for each behaviour; where they know how many steps are to come, those of
-    /// a number of steps. For the limit, what comes to nothing is left out.
-    /// `names` are what the file calls the graph's objects, if it does.
+    /// Decomposes a graph into objects, one for each behaviour; a time-indexed graph is decomposed for a
+    /// number of steps. Where only the limit set is kept, objects that contribute nothing to it are left out.
+    /// `names` are the names of the graph's objects in the file, or empty.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the scene is empty, or if an object in it is replaced by nothing.
     pub(super) fn of_graph(
         graph: &Graph,
         steps: u32,
@@ -73,7 +77,7 @@ impl Structure {
         for (object, alive) in graph.objects().iter().zip(&alive) {
             live[object.behaviour] |= alive;
         }
-        // What is not drawn and stays as it is adds nothing at any step.
+        // Invisible elements that are kept draw nothing at any step.
         let stays = |instance: &&Instance| {
             let object = &graph.objects()[instance.object];
             match object.replacement {
@@ -114,11 +118,11 @@ impl Structure {
         Ok(structure)
     }
 
-    /// The objects of a system, as Hart (1992, section 3.3) makes them of its digraph: one for what
-    /// every map has just moved, or a single one where any map may follow any other. `shapes` are
-    /// the initial set and the condensation sets.
+    /// Decomposes a system into the objects of its digraph (Hart 1992, section 3.3): one for the set that
+    /// every map has just moved, or a single one where any map may follow any other. `shapes` are the
+    /// outlines of the initial set and of the condensation sets.
     pub(super) fn of_ifs(ifs: &Ifs, shapes: Vec<BaseElement>) -> Self {
-        // An initial set of several outlines is no shape. The limit does not hang on it.
+        // An initial set of several outlines is not a shape. The limit set does not depend on it.
         let is_shape = ifs.initial().is_none_or(|set| set.count() == 1);
         let placed = |map: DAffine2, shape: usize, object: Option<usize>| Placed {
             map,
@@ -157,7 +161,7 @@ impl Structure {
         }
     }
 
-    /// With only those objects that the scene leads to, in the order in which it does.
+    /// Returns the structure with only those objects that the scene leads to, in breadth-first order.
     fn renumbered(self) -> Self {
         let mut numbers = vec![None; self.objects.len()];
         let mut order = Vec::new();
@@ -198,17 +202,18 @@ impl Structure {
         }
     }
 
-    /// What stands in the place of an object, or in the scene.
+    /// Returns the instances in an object, or in the scene.
     pub(super) fn placed(&self, object: Option<usize>) -> &[Placed] {
         object.map_or(&self.scene, |object| &self.objects[object])
     }
 
-    /// All instances, those of the scene first.
+    /// Iterates over all instances, those of the scene first.
     pub(super) fn instances(&self) -> impl Iterator<Item = &Placed> {
         self.scene.iter().chain(self.objects.iter().flatten())
     }
 
-    /// What all that is replaced looks like before, if it all looks the same: nothing, or a shape.
+    /// Returns the common drawing of all instances before they are replaced, which is `None` inside or a
+    /// shape; `None` outside if they differ or there are none.
     pub(super) fn initial(&self) -> Option<Option<usize>> {
         let fertile = self.instances().filter(|placed| placed.object.is_some());
         let mut looks = fertile.map(|placed| placed.visible.then_some(placed.shape));
@@ -216,7 +221,8 @@ impl Structure {
         looks.all(|look| look == first).then_some(first)
     }
 
-    /// `map 2`, `instance 3 of object 1`, `element 1 of the initiator`; `object` is none in the scene.
+    /// Returns the name of an instance for messages: `map 2`, `instance 3 of object 1`, `element 1 of the
+    /// initiator`. With no `object`, the instance is one of the scene.
     pub(super) fn called(&self, object: Option<usize>, number: usize) -> String {
         let (what, scene, of) = match self.words {
             Words::Maps => return format!("map {}", number + 1),

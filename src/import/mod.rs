@@ -1,4 +1,4 @@
-//! What comes from elsewhere: pictures, tables of points, and files of other programs.
+//! Import of external data: pictures, tables of points, and files of other programs.
 
 mod fractint;
 mod picture;

@@ -1,3 +1,5 @@
+//! Pictures (PNG and JPEG) as one value a pixel, and thresholds that separate the set from its background.
+
 use std::io::Cursor;
 
 use png::{ColorType, Decoder, Limits, Transformations};
@@ -5,13 +7,13 @@ use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// The most pixels of a picture.
+/// Limit of the number of pixels.
 const MOST_PIXELS: u64 = 1 << 30;
 
-/// What is wrong with a picture.
+/// An error in reading a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// It is neither PNG nor JPEG.
+    /// The file is neither PNG nor JPEG.
     #[error("the picture is neither PNG nor JPEG")]
     Unknown,
     /// The PNG cannot be read.
@@ -20,43 +22,43 @@ pub enum PictureError {
     /// The JPEG cannot be read.
     #[error("the JPEG cannot be read: {0}")]
     Jpeg(String),
-    /// It has too many pixels.
+    /// The picture has too many pixels.
     #[error("the picture has {width} x {height} pixels, more than {MOST_PIXELS}")]
     TooLarge {
-        /// Its width.
+        /// Width of the picture.
         width: u64,
-        /// Its height.
+        /// Height of the picture.
         height: u64,
     },
-    /// It has no pixels.
+    /// The picture has no pixels.
     #[error("the picture has no pixels")]
     Empty,
 }
 
-/// What of a pixel tells whether it belongs to the set.
+/// The property of a pixel that decides whether it belongs to the set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Its darkness: white is 0, black 255 (ITU-R BT.601).
+    /// Darkness: 0 for white, 255 for black (ITU-R BT.601).
     Darkness,
-    /// Its opacity: 0 can be seen through.
+    /// Opacity: 0 for transparent, 255 for opaque.
     Alpha,
 }
 
-/// A picture as one number a pixel.
+/// A picture with one value a pixel.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
-    /// What the numbers are.
+    /// Property that the values hold.
     pub channel: Channel,
-    /// The numbers, row by row from the top.
+    /// Values, row by row from the top.
     pub values: Vec<u8>,
 }
 
 impl Picture {
-    /// Whether bytes begin as those of a picture that can be read.
+    /// Returns whether bytes start with the signature of a PNG or a JPEG.
     #[must_use]
     pub fn is_picture(bytes: &[u8]) -> bool {
         is_png(bytes) || is_jpeg(bytes)
@@ -64,12 +66,13 @@ impl Picture {
 
     /// Reads a PNG or JPEG.
     ///
-    /// Without a channel, it is the opacity of a picture that has transparent pixels, or else the
-    /// darkness. Colours under transparency are as dark as they are on white.
+    /// With `None`, the channel is the opacity if the picture has transparent pixels, or else the darkness.
+    /// The darkness of a transparent pixel is that on a white background.
     ///
     /// # Errors
     ///
-    /// If it is none, is not whole or too large.
+    /// Returns an error if the bytes are neither format or are damaged, or if the picture is empty or too
+    /// large.
     pub fn read(bytes: &[u8], channel: Option<Channel>) -> Result<Self, PictureError> {
         let (width, height, values, channel) = if is_png(bytes) {
             png(bytes, channel)?
@@ -86,7 +89,7 @@ impl Picture {
         })
     }
 
-    /// The picture with all numbers taken from 255: what was left out is the set.
+    /// Returns the picture with every value subtracted from 255, which exchanges the set and its background.
     #[must_use]
     pub fn inverted(mut self) -> Self {
         self.values
@@ -95,9 +98,10 @@ impl Picture {
         self
     }
 
-    /// The threshold that parts the numbers best: values from it on belong to the set (Otsu 1979).
+    /// Returns the threshold that separates the values best; values from the threshold on belong to the set
+    /// (Otsu 1979).
     ///
-    /// A picture of one value has none, and belongs to the set as a whole if that is 128 or more.
+    /// The threshold of a picture with a single value is 128.
     #[must_use]
     pub fn otsu(&self) -> u8 {
         let mut histogram = [0u64; 256];
@@ -108,7 +112,7 @@ impl Picture {
     }
 }
 
-/// The threshold with the largest variance between the two classes.
+/// Returns the threshold with the largest variance between the two classes.
 #[expect(
     clippy::cast_precision_loss,
     reason = "a threshold is chosen, nothing is counted"
@@ -144,7 +148,7 @@ fn is_jpeg(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0xff, 0xd8, 0xff])
 }
 
-/// Refuses pictures that are too large for memory, and those that are none.
+/// Returns an error if a picture is empty or has more than [`MOST_PIXELS`] pixels.
 fn check(width: u64, height: u64) -> Result<(), PictureError> {
     match width.checked_mul(height) {
         Some(0) => Err(PictureError::Empty),
@@ -171,7 +175,7 @@ fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
     };
     let mut pixels = Pixels::new(width * height, channels, asked);
     if reader.info().interlaced {
-        // Rows come in no order: the whole frame is needed.
+        // The rows of an interlaced picture come out of order: the whole frame is needed.
         let mut frame = vec![0; width * height * channels];
         reader.next_frame(&mut frame)?;
         pixels.add(&frame);
@@ -208,7 +212,7 @@ fn jpeg(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
     Ok((width, height, values, channel))
 }
 
-/// Pixels on their way to one number each.
+/// Accumulator of samples, which reduces each pixel to one value.
 struct Pixels {
     channels: usize,
     asked: Option<Channel>,
@@ -262,7 +266,7 @@ impl Pixels {
     }
 }
 
-/// Whether opacity may be what is asked for.
+/// Returns whether the opacity may be the channel of the result.
 fn keeps_alpha(asked: Option<Channel>, channels: usize) -> bool {
     match asked {
         Some(channel) => channel == Channel::Alpha,
@@ -270,7 +274,7 @@ fn keeps_alpha(asked: Option<Channel>, channels: usize) -> bool {
     }
 }
 
-/// The luminance of a colour (ITU-R BT.601), in 65,536ths.
+/// Returns the luminance of a colour (ITU-R BT.601), with weights in 65,536ths.
 fn luma(red: u8, green: u8, blue: u8) -> u8 {
     let [red, green, blue] = [red, green, blue].map(u32::from);
     let sum = 19_595 * red + 38_470 * green + 7_471 * blue + 0x8000;

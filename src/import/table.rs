@@ -1,3 +1,5 @@
+//! Tables of points in CSV.
+
 use std::cell::Cell;
 use std::io::{self, Read};
 
@@ -5,13 +7,13 @@ use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim};
 
 use crate::geometry::DVec2;
 
-/// The most points that a table may have: they take 16 bytes each.
+/// Limit of the number of points in a table; a point takes 16 bytes.
 const MOST_POINTS: usize = 1 << 27;
 
-/// What is wrong with a table of points. Rows are counted from 1, the header included.
+/// An error in a table of points. Rows are numbered from 1, the header included.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// The columns are not said, and there are not two.
+    /// No columns are named, and the table does not have two.
     #[error(
         "the table has {columns} columns, and points have two: say which ones, as in --columns x,y"
     )]
@@ -19,39 +21,39 @@ pub enum TableError {
         /// The number of columns.
         columns: usize,
     },
-    /// A column that was asked for is not there.
+    /// A named column does not exist.
     #[error("the table has no column '{name}'")]
     NoColumn {
-        /// Its name.
+        /// Name of the column.
         name: String,
     },
-    /// A row has more or fewer columns than the first.
+    /// The number of columns of a row differs from that of the first.
     #[error("row {row}: {found} columns, not {expected} as in the rows before")]
     Ragged {
-        /// The row.
+        /// Number of the row.
         row: u64,
-        /// Its number of columns.
+        /// The number of columns of the row.
         found: u64,
-        /// That of the first row.
+        /// The number of columns of the first row.
         expected: u64,
     },
     /// A coordinate is not a number.
     #[error("row {row}: '{text}' is not a number")]
     NotANumber {
-        /// The row.
+        /// Number of the row.
         row: u64,
-        /// What is there.
+        /// Text of the field, up to 40 characters.
         text: String,
     },
     /// A coordinate is not finite.
     #[error("row {row}: the coordinate {text} is not finite")]
     NotFinite {
-        /// The row.
+        /// Number of the row.
         row: u64,
-        /// What is there.
+        /// Text of the field, up to 40 characters.
         text: String,
     },
-    /// There are too many points.
+    /// The table has more points than the limit.
     #[error("there are more than {MOST_POINTS} points")]
     TooMany,
     /// The table cannot be read.
@@ -59,15 +61,16 @@ pub enum TableError {
     Csv(csv::Error),
 }
 
-/// Reads points from CSV: comma-separated rows, with a header or without.
+/// Reads points from CSV: comma-separated rows, with or without a header.
 ///
-/// `columns` names the two columns with the coordinates, as the header has them or by number from
-/// 1; a table of two columns needs none.
+/// `columns` names the two columns of the coordinates, by their names in the header or by number from 1; a
+/// table of two columns needs none. The first row is a header if neither of its coordinates is a number.
+/// Lines that start with `#` are comments.
 ///
 /// # Errors
 ///
-/// If a row has no two finite numbers there, or as many columns as no other; if the table cannot be
-/// read, or has more points than memory should hold.
+/// Returns an error if the columns are not found, if a row does not hold two finite numbers there or differs
+/// in length from the first, if the table cannot be read, or if it has too many points.
 pub fn read_points(
     input: impl Read,
     columns: Option<&[String; 2]>,
@@ -109,13 +112,13 @@ pub fn read_points(
     Ok(points)
 }
 
-/// The most bytes from one row to the next: a stream without ends of lines must not fill the memory.
+/// Limit of the number of bytes between two rows: a stream without line ends must not fill the memory.
 const MOST_BYTES: usize = 1 << 24;
 
 /// A reader that fails where a row is longer than [`MOST_BYTES`].
 struct Rows<'a, R> {
     input: R,
-    /// The bytes since the last row.
+    /// The number of bytes since the last row.
     bytes: &'a Cell<usize>,
 }
 
@@ -131,7 +134,7 @@ impl<R: Read> Read for Rows<'_, R> {
     }
 }
 
-/// Where the coordinates stand, by the first row.
+/// Returns the positions of the coordinates, by the first row.
 fn find(first: &ByteRecord, columns: Option<&[String; 2]>) -> Result<[usize; 2], TableError> {
     let Some([x, y]) = columns else {
         return match first.len() {

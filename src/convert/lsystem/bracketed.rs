@@ -1,8 +1,9 @@
-//! Free strings: every instance in brackets of its own, where the turtle turns, moves, and changes the
-//! length of its steps.
+//! Bracketed strings: every instance in brackets of its own, in which the turtle turns, moves, and changes
+//! the length of its steps.
 //!
-//! Whatever a symbol becomes, the turtle goes on one step ahead of where it met it, so that what replaces
-//! it is the same at every step. Where only the limit is kept, all that is replaced is drawn as a line.
+//! After every symbol the turtle continues one step ahead of where it met the symbol, so that the successor
+//! is the same at every step. Where only the limit set is kept, everything that is replaced is drawn as a
+//! line.
 
 use std::fmt::Write as _;
 
@@ -16,19 +17,19 @@ use super::super::structure::{Placed, Structure};
 use super::super::{Keeps, Refusal};
 use super::{degrees, letter};
 
-/// What an instance is: an object, or a shape that stays.
+/// A symbol: an object, or a shape that is kept, with its appearance.
 #[derive(PartialEq)]
 struct Symbol {
     object: Option<usize>,
     look: Look,
 }
 
-/// What a symbol looks like.
+/// Drawing of a symbol.
 #[derive(Clone, Copy, PartialEq)]
 enum Look {
     Nothing,
     Line,
-    /// A shape, by number.
+    /// The shape with this index.
     Shape(usize),
 }
 
@@ -74,14 +75,14 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
 struct Writer<'s> {
     structure: &'s Structure,
     keeps: Keeps,
-    /// Those that have been met; their numbers are those of letters.
+    /// Symbols met so far, in the order of their letters.
     symbols: Vec<Symbol>,
-    /// Whether any instance is mirrored.
+    /// Whether an instance is mirrored.
     reflects: bool,
 }
 
 impl Writer<'_> {
-    /// The string of an object, or of the scene.
+    /// Returns the string of an object, or of the scene.
     fn string(&mut self, object: Option<usize>) -> Result<String, Refusal> {
         let structure = self.structure;
         let all = structure.placed(object);
@@ -92,7 +93,7 @@ impl Writer<'_> {
             }
             let symbol = self.letter(placed)?;
             let way = self.way(placed);
-            // What stands alone needs no way back.
+            // A single instance needs no way back.
             let is_alone = all.len() == 1 && object.is_none();
             let written = if is_alone {
                 write!(string, "{way}{symbol}")
@@ -107,7 +108,7 @@ impl Writer<'_> {
         Ok(string)
     }
 
-    /// What takes the turtle to an instance.
+    /// Returns the commands that move the turtle to an instance.
     fn way(&mut self, placed: &Placed) -> String {
         let mut way = String::new();
         let mut heading = DVec2::X;
@@ -161,7 +162,7 @@ impl Writer<'_> {
     }
 }
 
-/// What a turtle does to draw a shape in the unit frame.
+/// Returns the turtle's actions that draw a shape of the unit frame.
 fn meaning(shape: &BaseElement) -> Result<Value, Refusal> {
     let action =
         |name: &str, number: f64| Entries::default().set(name, number::value(number)).value();

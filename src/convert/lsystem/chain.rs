@@ -1,7 +1,7 @@
 //! Plain strings: chains of lines of one length.
 //!
-//! A line that is traversed from its end, or whose copies lie on its other side, is another symbol: its
-//! production is the same chain backwards, or with all turns the other way.
+//! A line that is traversed backwards, or that is mirrored, is another symbol: its production is the same
+//! chain backwards, or with all turns inverted.
 
 use crate::build::written::Entries;
 use crate::document::node::Value;
@@ -11,13 +11,13 @@ use super::super::number;
 use super::super::structure::{Placed, Structure};
 use super::{degrees, letter};
 
-/// What is the same but for rounding.
+/// Relative tolerance of comparisons.
 const ROUNDING: f64 = 1e-9;
 
-/// Angles are whole parts of the circle, at most so many.
+/// Limit of the number of parts of a turn.
 const MOST_PARTS: i32 = 360;
 
-/// What a line is replaced by.
+/// A symbol: the object that replaces a line, and the traversal of the line.
 #[derive(Clone, Copy, PartialEq)]
 struct Symbol {
     object: usize,
@@ -25,7 +25,7 @@ struct Symbol {
     mirrored: bool,
 }
 
-/// A line of a chain as it is traversed: where to, and what it is.
+/// A line of a chain in order of traversal: its vector and its symbol.
 struct Line {
     along: DVec2,
     symbol: Symbol,
@@ -62,7 +62,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
     };
     let scene_turns = turns(&scene, first);
     let mut all: Vec<Vec<f64>> = chains.iter().map(|lines| turns(lines, DVec2::X)).collect();
-    // Strings may begin along their first line if all are then turned alike.
+    // Strings may begin along their first line if all of them turn by the same angle at first.
     let offset = all[0][0];
     let shifted: Vec<Vec<f64>> = all
         .iter()
@@ -89,7 +89,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
         mirrored: false,
     };
     let axiom = writer.string(&scene, &scene_turns, plain)?;
-    // How it looks at the end is nothing to the axiom.
+    // The final heading does not matter in the axiom.
     let axiom = axiom.trim_end_matches(['+', '-']).to_owned();
     let mut productions = Entries::default();
     let mut done = 0;
@@ -98,7 +98,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
         productions = productions.add(letter(done).ok()?, Value::Text(string));
         done += 1;
     }
-    // F draws anyway.
+    // F draws by default.
     let drawn = (1..done).try_fold(Entries::default(), |entries, number| {
         Some(entries.add(letter(number).ok()?, Value::Text("draw".into())))
     })?;
@@ -116,7 +116,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
     )
 }
 
-/// Instances as a chain, from and to the ends of the frame where that is asked.
+/// Returns instances as a chain that starts and ends at `ends`, if given; `None` if they form no chain.
 fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
     let near = |a: DVec2, b: DVec2, size: f64| (a - b).length() <= ROUNDING * size;
     let ways = [false, true].map(|backwards| {
@@ -129,7 +129,7 @@ fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
             );
             let size = (to - from).length();
             let follows = |point: DVec2| at.is_none_or(|at| near(at, point, size));
-            // Without a place to start from, the first line may be traversed either way.
+            // Without a given start, the first line may be traversed either way.
             let backwards = match (at, follows(from), follows(to)) {
                 (None, ..) => number == 0 && backwards,
                 (_, true, _) => false,
@@ -153,7 +153,7 @@ fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
     ways.into_iter().flatten().next()
 }
 
-/// Whether the first line of a chain starts at the origin.
+/// Returns whether the first line of a chain starts at the origin.
 fn starts_at_origin(placed: &[Placed], chain: &[Line]) -> bool {
     let (Some(placed), Some(line)) = (placed.first(), chain.first()) else {
         return false;
@@ -166,7 +166,7 @@ fn starts_at_origin(placed: &[Placed], chain: &[Line]) -> bool {
     placed.map.transform_point2(end).length() <= ROUNDING
 }
 
-/// Into how many parts of the circle all turns fit; not fewer than three
+/// Returns the least number of parts of a turn, from 3, of which all turns are multiples.
 fn parts(turns: impl Iterator<Item = f64> + Clone) -> Option<i32> {
     (3..=MOST_PARTS).find(|&parts| {
         turns.clone().all(|turn| {
@@ -178,12 +178,12 @@ fn parts(turns: impl Iterator<Item = f64> + Clone) -> Option<i32> {
 
 struct Writer {
     parts: i32,
-    /// The symbols that have been met, by number.
+    /// Symbols met so far, in the order of their letters.
     symbols: Vec<Symbol>,
 }
 
 impl Writer {
-    /// The string of a chain as a symbol has it.
+    /// Returns the string of a chain for a symbol that traverses it.
     fn string(&mut self, lines: &[Line], turns: &[f64], of: Symbol) -> Option<String> {
         let mut string = String::new();
         let mut heading = 0;
@@ -210,7 +210,7 @@ impl Writer {
         Some(string)
     }
 
-    /// The shorter way round.
+    /// Appends a turn in the shorter direction.
     fn turn(&self, string: &mut String, units: i32) {
         let left = units.rem_euclid(self.parts);
         let right = self.parts - left;

@@ -1,46 +1,47 @@
-//! The commands of which the strings of L-systems are made.
+//! Commands in the strings of Fractint's L-systems.
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
 
 use super::entries::Word;
 
-/// A command, as Fractint's manual has it (chapter "L-Systems").
+/// A command of Fractint's manual (chapter "L-Systems").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Command {
-    /// `F` and `G`, or `D` and `M`: a step that is drawn or not, by the one heading or the other.
+    /// `F` and `G`, or `D` and `M`: a step with a line or without, in the direction of one heading or the
+    /// other.
     Step { heading: Heading, drawn: bool },
-    /// `+` and `-`, by the entry's angle; the factor is 1 or -1.
+    /// `+` and `-`: a turn by the entry's angle, times 1 or −1.
     Turn(i8),
-    /// `\nn` and `/nn`: degrees, counter-clockwise, of the other heading.
+    /// `\nn` and `/nn`: a turn of the other heading by degrees, counter-clockwise or clockwise.
     Degrees(Factor),
-    /// `|`
+    /// `|`: a half turn.
     Back,
-    /// `!`: from here on turns go the other way.
+    /// `!`: reverses the direction of all later turns.
     Reverse,
-    /// `@nn`: what steps are multiplied with from here on.
+    /// `@nn`: multiplies the length of later steps.
     Scale(Factor),
-    /// `[`
+    /// `[`: saves the state.
     Push,
-    /// `]`
+    /// `]`: restores the state.
     Pop,
-    /// `Cnn`
+    /// `Cnn`: sets the colour index.
     Colour(i64),
-    /// `<nn` and `>nn`: what is added to the number of the colour, or taken from it.
+    /// `<nn` and `>nn`: adds to the colour index, or subtracts from it.
     Shift { by: i64, down: bool },
-    /// Anything else draws nothing.
+    /// Any other character, which draws nothing.
     Other(char),
 }
 
-/// The turtle has two headings that know nothing of each other.
+/// One of the turtle's two independent headings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Heading {
-    /// That of `F`, `G`, `+`, `-` and `|`.
+    /// Heading of `F`, `G`, `+`, `-` and `|`.
     Units,
-    /// That of `D`, `M`, `\` and `/`.
+    /// Heading of `D`, `M`, `\` and `/`.
     Degrees,
 }
 
-/// A number with `I` (its inverse) or `Q` (its root) before it.
+/// A number with the prefixes `I` (its inverse) or `Q` (its square root).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Factor {
     number: f64,
@@ -50,7 +51,7 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// As a formula.
+    /// Formats the number as an expression.
     pub(super) fn formula(self) -> String {
         let number = self.number;
         let formula = match (self.inverse, self.root) {
@@ -65,17 +66,17 @@ impl Factor {
         }
     }
 
-    /// Whether the command before it turns it round: `/` does, `\` does not.
+    /// Returns whether the command before the number negates it: `/` does, `\` does not.
     pub(super) fn is_negative(self) -> bool {
         self.negative
     }
 
-    /// Whether it is a number.
+    /// Returns whether the number and its inverse, where it is taken, are finite.
     fn is_finite(self) -> bool {
         self.number.is_finite() && !(self.inverse && self.number == 0.0)
     }
 
-    /// The number of a colour.
+    /// Returns the number as a colour index, truncated and saturating.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "casts from floats saturate"
@@ -91,7 +92,7 @@ impl Factor {
     }
 }
 
-/// The commands of a string, each with its place; what is wrong in it is said.
+/// Returns the commands of a string, each with its place; errors are added to `found`.
 pub(super) fn of(word: &Word, found: &mut Diagnostics) -> Vec<(Command, Place)> {
     let mut commands = Vec::new();
     let mut at = 0;
@@ -147,8 +148,8 @@ pub(super) fn of(word: &Word, found: &mut Diagnostics) -> Vec<(Command, Place)> 
     commands
 }
 
-/// A number at the start of a text, and its length: nothing there is 0, and what comes behind a second
-/// point does not count.
+/// Parses a number at the start of a text; returns it with its length. A missing number is 0, and text from a
+/// second decimal point on is ignored.
 fn factor(text: &str) -> (Factor, usize) {
     let letters = text.len() - text.trim_start_matches(['I', 'Q']).len();
     let digits = &text[letters..];

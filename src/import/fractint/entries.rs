@@ -1,4 +1,4 @@
-//! The entries of a file, and the words of which they are made.
+//! Lexical structure of Fractint's files: entries, and the words that they consist of.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,31 +9,32 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub(super) name: String,
-    /// Where its name stands.
+    /// Place of the name.
     pub(super) place: Place,
-    /// What is said in parentheses behind the name, such as `3D`.
+    /// Remark in parentheses after the name, such as `3D`.
     pub(super) remark: Option<String>,
     pub(super) words: Vec<Word>,
     comments: Vec<String>,
     pub(super) found: Diagnostics,
 }
 
-/// A stretch without blanks, in capital letters: Fractint does not tell them from small ones.
+/// A sequence of characters without blanks, in capital letters because Fractint ignores case.
 #[derive(Clone, Debug)]
 pub(super) struct Word {
     pub(super) text: String,
     pub(super) place: Place,
-    /// Whether it is the first of a line.
+    /// Whether the word is the first of its line.
     pub(super) starts_line: bool,
 }
 
 impl Word {
-    /// As the file has it.
+    /// Returns the word as written in the file.
     pub(super) fn written(&self) -> &str {
         &self.place.source().text()[self.place.range()]
     }
 
-    /// A part of it: characters of one byte, as only these have a meaning.
+    /// Returns the place of a part of the word. Offsets agree with those of the file because capitalisation
+    /// changes ASCII letters only.
     pub(super) fn part(&self, range: Range<usize>) -> Place {
         let start = self.place.range().start;
         Place::new(self.place.source(), start + range.start..start + range.end)
@@ -41,7 +42,7 @@ impl Word {
 }
 
 impl Entry {
-    /// What its comments say, as one text.
+    /// Returns the text of the comments, one line each.
     pub(super) fn comment(&self) -> String {
         self.comments.join("\n")
     }
@@ -63,7 +64,7 @@ impl Entry {
     }
 }
 
-/// Where the words of a line are. An equals sign is a word.
+/// Iterates over the ranges of the words in a line. An equals sign is a word of its own.
 fn words_of(line: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -80,14 +81,14 @@ fn words_of(line: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     })
 }
 
-/// All entries of a text but those that are comments.
+/// Returns the entries of a text, except those that are called `comment`.
 pub(super) fn of(source: &Arc<Source>, stray: &mut Diagnostics) -> Vec<Entry> {
     let text = source.text();
     let mut entries = Vec::new();
     let mut open: Option<Entry> = None;
     let mut start = 0;
     while start < text.len() {
-        // What is left of a line, up to a brace outside of a comment.
+        // The rest of a line, up to a brace outside a comment.
         let rest = &text[start..];
         let length = rest.find(['\n', '\r']).unwrap_or(rest.len());
         let line = &rest[..length];
@@ -114,7 +115,7 @@ pub(super) fn of(source: &Arc<Source>, stray: &mut Diagnostics) -> Vec<Entry> {
     entries
 }
 
-/// An entry that begins with what stands before its brace.
+/// Returns an entry with the name and the remark before its brace.
 fn named(source: &Arc<Source>, range: Range<usize>) -> Entry {
     let place = trimmed(source, range);
     let said = &source.text()[place.range()];
@@ -139,7 +140,7 @@ fn named(source: &Arc<Source>, range: Range<usize>) -> Entry {
     }
 }
 
-/// Says of a line that it belongs to no entry, if it says anything.
+/// Reports a line that belongs to no entry, unless it is blank.
 fn wander(source: &Arc<Source>, range: Range<usize>, stray: &mut Diagnostics) {
     let place = trimmed(source, range);
     if !place.range().is_empty() {

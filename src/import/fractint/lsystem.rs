@@ -1,4 +1,5 @@
-//! L-systems: an angle, an axiom and rules, each in a line of its own or behind each other.
+//! Conversion of Fractint's L-systems: an angle, an axiom and rules, on lines of their own or one after
+//! another.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -12,16 +13,16 @@ use super::commands::{self, Command, Heading};
 use super::entries::{Entry, Word};
 use super::palette;
 
-/// Commands with numbers, and those that are no letters: to have a rule, each needs an equals sign.
+/// Commands with numbers, and those that are not letters; a rule of one of them needs an equals sign.
 const COMMANDS: &str = "+-|![]/\\@C<>";
 
-/// What an entry says.
+/// Content of an entry.
 #[derive(Default)]
 struct System<'e> {
-    /// Turns are 360 degrees divided by it.
+    /// Divisor of 360 degrees that gives the angle of a turn.
     angle: Option<u32>,
     axiom: Option<&'e Word>,
-    /// Every rule's symbol, and the strings that make it up.
+    /// Rules: the symbol of each, and the strings that its successor consists of.
     rules: Vec<(char, Vec<&'e Word>)>,
 }
 
@@ -46,11 +47,11 @@ pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
     if found.has_errors() {
         return None;
     }
-    // A rule that is never used says nothing.
+    // Rules of symbols that never occur are left out.
     let used = used(&axiom, &rules);
     rules.retain(|(symbol, _)| used.contains(symbol));
     if rules.is_empty() {
-        // Without rules every string is the axiom.
+        // Without rules every word is the axiom: a symbol that replaces itself keeps it.
         let kept = axiom.iter().find(|command| argument(**command).is_none());
         rules.extend(kept.map(|kept| (symbol(*kept), vec![*kept])));
     }
@@ -75,10 +76,10 @@ pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
     )
 }
 
-/// Every rule's symbol, and what replaces it.
+/// Rules: the symbol of each, and the commands that replace it.
 type Rules = Vec<(char, Vec<Command>)>;
 
-/// The commands of a string, whose brackets must be balanced.
+/// Returns the commands of a string, and reports brackets that are not balanced.
 fn balanced(commands: Vec<(Command, Place)>, found: &mut Diagnostics) -> Vec<Command> {
     let mut open = Vec::new();
     let mut plain = Vec::new();
@@ -100,7 +101,7 @@ fn balanced(commands: Vec<(Command, Place)>, found: &mut Diagnostics) -> Vec<Com
     plain
 }
 
-/// The symbols that ever occur.
+/// Returns the symbols that occur in some word.
 fn used(axiom: &[Command], rules: &Rules) -> BTreeSet<char> {
     let mut used = BTreeSet::new();
     let mut next = vec![axiom];
@@ -170,7 +171,7 @@ impl<'e> System<'e> {
         while let [word, rest @ ..] = words {
             let equals = rest.iter().take_while(|word| word.text == "=").count();
             let rest = &rest[equals..];
-            // What follows is its value, unless it begins something else.
+            // The next word is the value, unless it begins another definition.
             let begins = |rest: &[Word]| match rest {
                 [next, behind @ ..] => {
                     next.starts_line || behind.first().is_some_and(|word| word.text == "=")
@@ -223,7 +224,7 @@ impl<'e> System<'e> {
         }
     }
 
-    /// Several rules of one symbol are one, in parts.
+    /// Adds a rule. Several rules of one symbol are joined, as parts of one string.
     fn add_rule(&mut self, symbol: char, value: Option<&'e Word>) {
         match self.rules.iter_mut().find(|(known, _)| *known == symbol) {
             Some((_, words)) => words.extend(value),
@@ -232,23 +233,23 @@ impl<'e> System<'e> {
     }
 }
 
-/// Writes commands as a file of ours has them.
+/// Writer of commands in the notation of kfrac.
 struct Writer<'c> {
     angle: u32,
-    /// All commands there are.
+    /// Commands of the axiom and of all rules.
     all: Vec<&'c Command>,
-    /// The symbols that have rules.
+    /// Symbols that have rules.
     replaced: BTreeSet<char>,
-    /// Which headings steps go by: turns of the other one change nothing.
+    /// Whether any step uses the first and the second heading; turns of an unused heading have no effect.
     headings: [bool; 2],
     colours: Option<Colours>,
 }
 
-/// Which colours a palette has, by their numbers in Fractint's: the one first with which it begins.
+/// Colours of the palette, by their indices in Fractint's; the initial colour comes first.
 enum Colours {
-    /// These.
+    /// The colours with these indices.
     Some(Vec<i64>),
-    /// All: numbers are added to them.
+    /// All colours, because commands add to the index.
     All,
 }
 
@@ -288,12 +289,13 @@ impl<'c> Writer<'c> {
         }
     }
 
-    /// Whether steps go by both headings, so that the second one is our second one.
+    /// Returns whether steps use both headings; the second one then becomes the turtle's second heading.
     fn has_both(&self) -> bool {
         self.headings == [true; 2]
     }
 
-    /// Whether turns by degrees have a symbol of their own: where `+` and `-` have other meanings.
+    /// Returns whether turns by degrees need symbols of their own: where steps use both headings, or a turn
+    /// has a rule.
     fn has_slashes(&self) -> bool {
         let mut turns = ['+', '-', '/', '\\'].iter();
         self.has_both() || turns.any(|turn| self.replaced.contains(turn))
@@ -377,7 +379,7 @@ impl<'c> Writer<'c> {
         argument.map_or_else(|| name.into(), |argument| format!("{name}({argument})"))
     }
 
-    /// The number of a colour in our palette.
+    /// Returns the index of a colour in the palette that is written.
     fn colour(&self, colour: i64) -> usize {
         let number = colour.rem_euclid(palette::COLOURS);
         let place = match &self.colours {
@@ -387,7 +389,7 @@ impl<'c> Writer<'c> {
         place.unwrap_or(0)
     }
 
-    /// What symbols mean, where it is not what they always do.
+    /// Returns the meanings of symbols that differ from the default ones.
     fn symbols(&self) -> Entries {
         let text = |text: &str| Value::Text(text.into());
         let action = |name: &str, value: &str| Entries::default().set(name, text(value)).value();
@@ -411,7 +413,7 @@ impl<'c> Writer<'c> {
                     }
                     text("nothing")
                 }
-                // The largest turn below a half one, always the same way.
+                // The largest multiple of the angle below a half turn, in the same direction always.
                 Command::Back if turns_back => {
                     let turn = format!("-180 + 180/{}", self.angle);
                     action(if reverses { "rotate" } else { "turn" }, &turn)
@@ -439,7 +441,7 @@ impl<'c> Writer<'c> {
         symbols
     }
 
-    /// The colours, on black as Fractint draws.
+    /// Returns the style: the palette on a black background, as in Fractint.
     fn style(&self) -> Option<Value> {
         let numbers: Vec<i64> = match self.colours.as_ref()? {
             Colours::Some(all) => all.clone(),

@@ -1,4 +1,5 @@
-//! Systems of maps: rows of `a b c d e f p`, for x' = a x + b y + e and y' = c x + d y + f.
+//! Conversion of Fractint's systems of maps: rows of `a b c d e f p`, for x' = a x + b y + e and y' = c x + d
+//! y + f.
 
 use crate::build::Number;
 use crate::build::written::{Entries, sequence};
@@ -7,7 +8,7 @@ use crate::document::node::Value;
 
 use super::entries::{Entry, Word};
 
-/// Numbers of a map: its matrix, its shift and its probability.
+/// The number of numbers in a row: matrix, translation and probability.
 const ROW: usize = 7;
 
 pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {

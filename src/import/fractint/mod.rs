@@ -1,8 +1,8 @@
 //! Files of Fractint, a program of the years from 1988: L-systems (`.l`) and systems of maps (`.ifs`).
 //!
-//! A file has many entries, `Name { … }`, with comments from a semicolon to the end of a line. Each
-//! becomes a file of its own. What an entry says that cannot be told is named, with its place, and
-//! the others are read all the same.
+//! A file has many entries, `Name { … }`, with comments from a semicolon to the end of a line. Each becomes a
+//! document of its own. Parts of an entry that cannot be converted are reported with their places, and the
+//! other entries are read all the same.
 
 mod commands;
 mod entries;
@@ -20,27 +20,27 @@ use crate::document::node::{Node, Value};
 
 use entries::Entry;
 
-/// What the entries of a file are.
+/// Kind of the entries in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fractint {
-    /// L-systems, files that end in `.l`.
+    /// L-systems, in files with the extension `.l`.
     LSystems,
-    /// Systems of affine maps of the plane, files that end in `.ifs`.
+    /// Systems of affine maps of the plane, in files with the extension `.ifs`.
     Ifs,
 }
 
-/// An entry that has been looked at.
+/// Result of importing an entry.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// Its name in the file.
+    /// Name of the entry in its file.
     pub name: String,
-    /// The same as a file of ours; `None` if it could not be written.
+    /// The entry as a document of kfrac; `None` if the conversion failed.
     pub document: Option<Document>,
-    /// What could not be read, or is not the same: errors where there is no document.
+    /// Diagnostics of parts that could not be read or differ; errors if there is no document.
     pub found: Diagnostics,
 }
 
-/// The entries of a file, in its order, and what stands between them that is none.
+/// Reads the entries of a file, in its order; the diagnostics report text that belongs to no entry.
 #[must_use]
 pub fn read(source: &Arc<Source>, kind: Fractint) -> (Vec<Imported>, Diagnostics) {
     let mut stray = Diagnostics::default();
@@ -63,7 +63,7 @@ fn import(entry: &Entry, kind: Fractint) -> Imported {
     }
 }
 
-/// The file with what is said of the entry, read back.
+/// Returns the document of an entry, completed with its name, comments and source, and read back.
 fn document(entry: &Entry, own: Entries, found: &mut Diagnostics) -> Option<Document> {
     let text = |text: &str| Value::Text(text.into());
     let file = entry.place.source().path().file_name();
@@ -82,7 +82,7 @@ fn document(entry: &Entry, own: Entries, found: &mut Diagnostics) -> Option<Docu
     match checked {
         Ok(document) => Some(document),
         Err(mistakes) => {
-            // Their places are in a text that nobody sees.
+            // The places of these errors are in a generated text: the entry is reported instead.
             let said = mistakes.iter().map(|mistake| {
                 let here = Diagnostic::error(mistake.message()).at(&entry.place);
                 mistake

@@ -1,15 +1,15 @@
-//! The colours that Fractint draws with unless it is given others.
+//! Default palette of Fractint.
 
 use crate::style::Colour;
 
 /// The number of colours.
 pub(super) const COLOURS: i64 = 256;
 
-/// The one that it begins with: white, on black.
+/// Index of the initial colour: white, on black.
 pub(super) const FIRST: i64 = 15;
 
-/// The least and the greatest part of the hues behind the greys, for every group of 24, in 63rds; parts
-/// between them are at quarters.
+/// Levels of a colour component in 63rds, from the least to the greatest in quarters, for every group of 24
+/// hues after the greys.
 const GROUPS: [[u8; 5]; 9] = [
     [0, 16, 31, 47, 63],
     [31, 39, 47, 55, 63],
@@ -24,8 +24,8 @@ const GROUPS: [[u8; 5]; 9] = [
 
 const GREYS: [u8; 16] = [0, 5, 8, 11, 14, 17, 20, 24, 28, 32, 36, 40, 45, 50, 56, 63];
 
-/// A colour of the VGA's default palette of 256 by its number, which begins again behind the last: the 16 of
-/// the EGA, 16 greys, nine rings of 24 hues from blue over red and green, and black.
+/// Returns a colour of the VGA's default palette of 256; indices wrap around. The palette consists of the 16
+/// colours of the EGA, 16 greys, nine rings of 24 hues from blue over red and green, and black.
 pub(super) fn vga(number: i64) -> Colour {
     let number = usize::try_from(number.rem_euclid(COLOURS)).unwrap_or(0);
     let parts = match number {
@@ -39,14 +39,15 @@ pub(super) fn vga(number: i64) -> Colour {
     Colour::of_rgba([red, green, blue, 255])
 }
 
-/// Bits for red, green and blue, and one for all of them; dark yellow is brown.
+/// Returns a colour of the EGA: one bit for each of red, green and blue, and one for all of them; dark yellow
+/// is brown.
 fn ega(number: usize) -> [u8; 3] {
     let part = |bit: usize| 42 * u8::from(number & bit != 0) + 21 * u8::from(number & 8 != 0);
     let [red, green, blue] = [4, 2, 1].map(part);
     [red, if number == 6 { 21 } else { green }, blue]
 }
 
-/// A hue: one part after another rises or falls by four steps.
+/// Returns a hue of a ring: one component after another rises or falls in four steps.
 fn hue(levels: [u8; 5], number: usize) -> [u8; 3] {
     let level = |at: usize| levels[at];
     let (step, [least, _, _, _, most]) = (number % 4, levels);

@@ -1,3 +1,5 @@
+//! Tests of the import of Fractint's files.
+
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostics, Place, Source};
@@ -18,7 +20,7 @@ fn entries_of(text: &str) -> (Vec<Entry>, Diagnostics) {
     (entries, stray)
 }
 
-/// Messages with the texts that they are about.
+/// Returns the messages with the texts at their places.
 fn said(found: &Diagnostics) -> Vec<(&str, &str)> {
     let text = |place: &Place| -> std::ops::Range<usize> { place.range() };
     found
@@ -168,7 +170,7 @@ fn systems_of_maps_are_read() {
     };
     let maps = system.ifs().maps();
     assert_eq!(maps.len(), 2);
-    // x' = a x + b y + e, y' = c x + d y + f.
+    // Coefficients in the order of x' = a x + b y + e, y' = c x + d y + f.
     assert_eq!(
         maps[1].affine.to_cols_array(),
         [0.85, -0.04, 0.04, 0.85, 0.0, 1.6]
@@ -236,7 +238,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
     assert_eq!(told, expected);
 }
 
-/// The only entry of an L-system file as YAML, from `angle` on.
+/// Returns the only entry of an L-system file as YAML, from `angle` on.
 fn lsystem(text: &str) -> String {
     let (imported, stray) = read(&Source::new("test.l", text), Fractint::LSystems);
     assert!(stray.is_empty(), "{stray}");
@@ -259,7 +261,7 @@ fn lsystems_are_read_line_by_line_or_word_by_word() {
         lsystem("Dragon { angle 8 axiom fx F= Y=+fx--fy+ X =-fx++fy- }"),
         dragon
     );
-    // Long rules come in parts.
+    // Long rules are split into parts.
     let koch = "angle: 360/6\naxiom: F\nproductions: {F: F+F--F+F}\n";
     assert_eq!(lsystem("Koch { axiom F F=F+F F=--F+F\n angle 6 }"), koch);
     assert_eq!(lsystem("Koch { axiom F\n F F+F--F+F\n angle = 6 }"), koch);
@@ -272,18 +274,18 @@ fn commands_become_symbols_with_meanings() {
         "angle: 360/6\naxiom: F[@(1/sqrt(2))!GF]|FX\nproductions: {F: F@(2)F, X: \"{.F\"}\nsymbols:\n  \
          \"@(s)\": {scale: s}\n  \"!\": reflect\n  G: move\n  \"{\": nothing\n  .: nothing\n"
     );
-    // Half a turn is not whole in parts of an odd number: it is the largest turn below.
+    // A half turn is no multiple of an odd fraction of a turn: the largest turn below is taken.
     assert_eq!(
         lsystem("a { angle 5 axiom F|F F=FF }"),
         "angle: 360/5\naxiom: F|F\nproductions: {F: FF}\nsymbols:\n  \"|\": {turn: -180 + 180/5}\n"
     );
-    // It is not reversed, but other turns are.
+    // The half turn is not reversed, other turns are.
     assert_eq!(
         lsystem("a { angle 5 axiom F|!F F=FF }"),
         "angle: 360/5\naxiom: F|!F\nproductions: {F: FF}\nsymbols:\n  \"|\": {rotate: -180 + 180/5}\n  \
          \"!\": reflect\n"
     );
-    // The other heading is in degrees.
+    // The other heading turns by degrees.
     assert_eq!(
         lsystem("a { angle 5 axiom D\\36.5M/12D+ D=DD }"),
         "angle: 360/5\naxiom: D+(36.5)M-(12)D\nproductions: {D: DD}\nsymbols: {D: draw, M: move}\n"
@@ -313,7 +315,7 @@ fn commands_become_symbols_with_meanings() {
         "angle: 360/4\naxiom: D/(30)Dg(-60)\nproductions: {g(a): D, D: D'(1)D, \"'(n)\": D}\nsymbols:\n  D: \
          draw\n  /(a): {turn: a}\n  g(a): {turn: a}\n"
     );
-    // What has no meaning may have rules.
+    // Symbols without a meaning may have rules.
     assert_eq!(
         lsystem("a { angle 4 axiom F(F),'F: F=FF (=F) '=F+F :=F }"),
         "angle: 360/4\naxiom: FaFbcdFe\nproductions: {F: FF, a: Fb, d: F+F, e: F}\n"
@@ -327,7 +329,7 @@ fn colours_are_those_of_the_palette() {
         "angle: 360/4\naxiom: F'(1)F'(3)F\nproductions: {F: F'(2)F}\nstyle:\n  \
          background: \"#000000\"\n  palette: [\"#ffffff\", \"#0000aa\", \"#55ffff\", \"#ff5555\"]\n"
     );
-    // Where numbers are added to them, any may come.
+    // Where commands add to the index, any colour may occur.
     let shifted = lsystem("a { angle 4 axiom c7F<2F>3F<0F F=FF }");
     assert!(shifted.contains("'(248)F;(2)F;(-3)FF"), "{shifted}");
     assert!(shifted.contains(";(n): {shift_colour: n}"), "{shifted}");
@@ -359,7 +361,7 @@ fn the_step_that_is_taken_draws_something() {
     }
 }
 
-/// Two headings that know nothing of each other: both are saved, and both are reversed.
+/// The two headings are independent; both are saved, and both are reversed.
 #[test]
 fn the_turtle_has_two_headings() {
     let (imported, _) = read(
@@ -380,7 +382,7 @@ fn the_turtle_has_two_headings() {
     });
     let expected = [0.0, 45.0, 180.0, 90.0, 90.0, 45.0, 0.0, 0.0, 180.0];
     assert_eq!(degrees.collect::<Vec<_>>(), expected);
-    // What is grown is what the turtle draws.
+    // The graph grows the lines that the turtle draws.
     let graph = Graph::of_lsystem(&system, 0, 0, 1000).expect("it is short");
     assert_eq!(graph.initiators.len(), 1);
     let grown = graph.initiators[0].instances.iter().map(|it| it.frame);
@@ -440,7 +442,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
         ("back", true, vec![]),
     ];
     assert_eq!(told.collect::<Vec<_>>(), expected);
-    // At the character, not anywhere in the entry.
+    // Errors are reported at the character, not at the entry.
     let places = imported[4].found.iter().map(|found| {
         let place = found.place().expect("every mistake has its place");
         (place.line(), place.column())
