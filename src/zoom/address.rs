@@ -1,40 +1,41 @@
+//! Addresses of points of a limit set, and their notation.
+
 use std::fmt;
 use std::str::FromStr;
 
 use crate::geometry::DVec2;
 
-/// A point of a limit set: the one that all elements on a way into it have in common, or one that
-/// is told by its coordinates.
+/// Address of a point: a sequence of positions, whose nested elements have exactly this point in common,
+/// or its coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Address {
-    /// The position in the initiator, then at each replacement the position in the generator as
-    /// listed, counted across its parts, those that seed included: first some, then others over and
-    /// over.
+    /// Position in the initiator, followed at each replacement by the position in the generator as
+    /// listed, counted across its parts, including seed parts: an initial sequence, then a periodic one.
     Path {
-        /// What comes once.
+        /// Initial sequence.
         first: Vec<u32>,
-        /// What is repeated for ever; not empty.
+        /// Period, which is not empty.
         repeated: Vec<u32>,
     },
-    /// A point of the plane.
+    /// Point of the plane, in the model's units.
     Point(DVec2),
 }
 
-/// What is wrong with an address.
+/// Error: a text is not an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// It is none.
+    /// The text has another form.
     #[error(
         "an address is a way of positions that goes on for ever, such as 0.2.(1), or a point x,y"
     )]
     Unreadable,
-    /// It ends.
+    /// The sequence is finite.
     #[error(
         "this way ends at an element, which is no point yet: what is repeated for ever stands in \
          brackets at its end, as in 0.2.(1)"
     )]
     Ends,
-    /// It is longer than anyone writes.
+    /// The address has too many positions.
     #[error("an address has {MOST_POSITIONS} positions at most")]
     TooLong,
 }
@@ -70,7 +71,7 @@ impl FromStr for Address {
     }
 }
 
-/// Positions between full stops.
+/// Parses positions separated by full stops.
 fn positions(text: &str) -> Result<Vec<u32>, AddressError> {
     let read = |position: &str| match position.trim() {
         digits if digits.starts_with('+') => Err(AddressError::Unreadable),
@@ -79,7 +80,7 @@ fn positions(text: &str) -> Result<Vec<u32>, AddressError> {
     text.split('.').map(read).collect()
 }
 
-/// As it is written.
+/// Formats the address in the notation that is parsed.
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (first, repeated) = match self {

@@ -1,4 +1,4 @@
-//! The point that an address names.
+//! Computation of the point that an address names.
 
 use std::sync::Arc;
 
@@ -13,10 +13,10 @@ use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
 use super::{Address, GRAIN, Growth, SPARE, Window, ZoomError};
 
-/// An address that has not come to a point after so many steps never does.
+/// Limit of the number of steps within which the elements of an address must shrink to a point.
 const MOST_STEPS: u32 = 1_000_000;
 
-/// The point in the middle of a window, in multiples of 2^-`bits`.
+/// Returns the centre of a window, in multiples of 2^-`bits`.
 pub(super) fn centre(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -48,13 +48,14 @@ pub(super) fn centre(
     let initiator = graph.initiator(0).instances.iter();
     let initiator: Vec<_> = initiator.map(|it| (Placement::Stays, it)).collect();
     let (_, root) = found(&initiator, position, 0)?;
-    // The step in which the fractal was born.
+    // Step of the fractal's birth.
     let mut born = 0;
     let mut standing = Standing::whole(growth.seed).root(graph, &root);
     let mut object = root.object;
     let mut maps = vec![constants.root(&root)];
     let mut product = Product::new(root.frame.map.matrix2);
-    // What is left of the whole is less than any part of a pixel that is counted.
+    // Below this length, the rest of the address moves the point by less than the unit of the
+    // computation.
     #[expect(clippy::cast_precision_loss, reason = "a small number")]
     let enough = -(window.factor.log2() + window.scale.log2()).max(0.0) - GRAIN as f64;
     let mut evaluator = Evaluator::default();
@@ -112,7 +113,7 @@ pub(super) fn centre(
     Ok(maps.iter().rev().fold(start, image))
 }
 
-/// How much shorter things become on a way.
+/// Product of linear maps along an address, with the logarithm of its size.
 struct Product {
     matrix: DMat2,
     log2: f64,

@@ -1,4 +1,4 @@
-//! Outlines that are much larger than what is seen of them.
+//! Clipping of outlines that are much larger than the window.
 
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
@@ -10,25 +10,25 @@ use crate::rule::{BaseElement, Piece};
 use super::descent::pixel;
 use super::fixed::{Fixed, Vector, double};
 
-/// What is farther from the middle than this many radii is drawn nearer.
+/// Distance from the centre, in radii, to which all points farther away are moved.
 const FAR: f64 = 4.0;
 
-/// A piece: two points of a line, or the four of a curve.
+/// Points of a piece: two of a line, or four of a curve.
 type Points = Vec<Vector>;
 
-/// A part of an outline in pixels, as a base element and the frame that it stands in: an open one runs
-/// from end to end of the frame, as what may join others has to.
+/// Part of an outline in pixels, as a base element and its frame. An open one runs from end to end of the
+/// frame, which joining requires.
 pub(super) struct Clipped {
     pub(super) frame: Frame,
     pub(super) outline: BaseElement,
 }
 
-/// An outline under a map in parts of a pixel, in pixels: as it is within a radius about (0, 0), and
-/// leading around that as it does everywhere else. `None` where nothing of it comes near, and it
-/// does not enclose what is.
+/// Clips an outline under a map in parts of a pixel to a radius about (0, 0), in pixels: unchanged within
+/// the radius, and with the same winding around it. `None` if the outline neither comes near the disc nor
+/// encloses it.
 ///
-/// Pieces are halved until they are shorter than the radius, or farther away than they are long; the
-/// latter are drawn on a circle.
+/// Pieces are halved until they are shorter than the radius, or farther away than they are long; pieces
+/// that are far away are drawn on a circle.
 pub(super) fn clipped(
     outline: &BaseElement,
     map: &Fixed,
@@ -62,13 +62,13 @@ pub(super) fn clipped(
     }
 }
 
-/// A path in pixels.
+/// Path in pixels.
 pub(super) struct Path {
     radius: f64,
     start: DVec2,
     pieces: Vec<Piece>,
     last: DVec2,
-    /// Whether any of it is drawn as it is.
+    /// Whether any part of it is drawn unchanged.
     comes_near: bool,
 }
 
@@ -84,7 +84,7 @@ impl Path {
         }
     }
 
-    /// One open path, or two where it comes back to its start.
+    /// Returns the path as one open path, or as two if it returns to its start.
     pub(super) fn ways(mut self) -> Vec<Clipped> {
         let returns = self.start.distance(self.last) <= 1e-6 * self.radius;
         if !returns || self.pieces.len() < 2 {
@@ -103,13 +103,13 @@ impl Path {
         [self, second].into_iter().filter_map(Self::open).collect()
     }
 
-    /// An open path; `None` if it comes back to its start.
+    /// Returns the path as an open outline, or `None` if it returns to its start.
     pub(super) fn open(self) -> Option<Clipped> {
         let frame = Frame::between(self.start, self.last, Direction::Normal);
         let back = frame.map.inverse();
         let pieces = self.pieces.iter().map(|piece| piece.transformed(&back));
         let mut pieces: Vec<Piece> = pieces.collect();
-        // To the very end, which rounding must not miss.
+        // Rounding must not move the end.
         match pieces.last_mut()? {
             Piece::Line(end) | Piece::Cubic(_, _, end) => *end = DVec2::X,
         }
@@ -117,7 +117,7 @@ impl Path {
         Some(Clipped { frame, outline })
     }
 
-    /// Goes on by a line to the start of another path, and by that.
+    /// Appends a line to the start of another path, and that path.
     pub(super) fn append(&mut self, other: &Self) {
         self.go_to(other.start);
         for piece in &other.pieces {
@@ -133,7 +133,7 @@ impl Path {
         self.comes_near |= other.comes_near;
     }
 
-    /// Goes on by a line, if that leads anywhere.
+    /// Appends a line, unless its length is negligible.
     fn go_to(&mut self, end: DVec2) {
         if end.distance(self.last) > 1e-6 * self.radius {
             self.pieces.push(Piece::Line(end));
@@ -141,7 +141,7 @@ impl Path {
         }
     }
 
-    /// Goes on by a piece that begins where the one before ends.
+    /// Appends a piece that begins at the end of the previous one.
     pub(super) fn add(&mut self, whole: Points) {
         let mut stack = vec![whole];
         while let Some(points) = stack.pop() {
@@ -159,7 +159,7 @@ impl Path {
         }
     }
 
-    /// Whether a closed path that does not come near turns around (0, 0).
+    /// Returns whether the path, closed by a line, winds around (0, 0); it must not come near.
     pub(super) fn goes_around(&self) -> bool {
         let ends = self.pieces.iter().map(Piece::end);
         let from = std::iter::once(self.start).chain(ends.clone());
@@ -177,7 +177,7 @@ impl Path {
                 _ => Piece::Line(points[points.len() - 1]),
             };
             let (first, last) = (points[0], piece.end());
-            // It may begin a little off the circle.
+            // The piece may begin slightly off the circle.
             self.go_to(first);
             self.pieces.push(piece);
             self.last = last;
@@ -192,7 +192,7 @@ impl Path {
     }
 }
 
-/// Where a point is drawn: where it is, or on the circle.
+/// Returns the position at which a point is drawn: unchanged, or moved to the circle.
 fn drawn((near, unit): (Vec<DVec2>, f64), radius: f64) -> DVec2 {
     let point = near[0];
     let length = point.length();
@@ -203,7 +203,7 @@ fn drawn((near, unit): (Vec<DVec2>, f64), radius: f64) -> DVec2 {
     }
 }
 
-/// Points in doubles, and their unit in pixels.
+/// Converts points to doubles; returns their unit in pixels as well.
 fn near(points: &[Vector]) -> (Vec<DVec2>, f64) {
     const DIGITS: usize = 96;
     let lengths = points.iter().flatten().map(|it| it.bit_len());
@@ -213,7 +213,7 @@ fn near(points: &[Vector]) -> (Vec<DVec2>, f64) {
     (points.iter().map(point).collect(), pixel(exponent))
 }
 
-/// Both halves of a line or a curve (de Casteljau).
+/// Halves a line or a curve (de Casteljau).
 fn halves(points: &Points) -> [Points; 2] {
     let middle = |a: &Vector, b: &Vector| [(&a[0] + &b[0]) >> 1, (&a[1] + &b[1]) >> 1];
     let (mut first, mut second) = (Vec::new(), Vec::new());

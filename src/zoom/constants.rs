@@ -1,4 +1,4 @@
-//! The maps of a file, to any number of bits.
+//! Maps of a file, evaluated to an arbitrary number of bits.
 
 mod rule;
 mod structure;
@@ -20,25 +20,25 @@ use crate::resolve::order_of_parameters;
 use super::fixed::{Fixed, Vector};
 use super::{Source, ZoomError};
 
-/// No more maps than this are remembered.
+/// Limit of the number of cached maps.
 const MOST_KNOWN: usize = 1 << 12;
 
-/// An element that is replaced.
+/// Element that is replaced.
 #[derive(Clone, Copy)]
 pub(super) struct Parent<'a> {
     pub(super) standing: &'a Standing,
     pub(super) object: usize,
     pub(super) moment: Moment,
-    /// How many bits of what stands in it tell anything.
+    /// Number of significant bits in the maps of its children.
     pub(super) bits: usize,
 }
 
-/// Works out maps of instances, in multiples of 2^-`bits`.
+/// Evaluator of the maps of instances, in multiples of 2^-`bits`.
 pub(super) struct Constants<'a> {
     graph: &'a Graph,
     numbers: Numbers,
     kind: Kind<'a>,
-    /// Those of fixed instances, by the behaviour of their parent and their position.
+    /// Cached maps of fixed instances, by the behaviour of their parent and their position.
     known: HashMap<(usize, u32), Arc<Fixed>>,
 }
 
@@ -49,20 +49,22 @@ enum Kind<'a> {
     Turtle(turtle::OfTurtle),
 }
 
-/// Evaluates numbers as written.
+/// Evaluator of numbers as written.
 struct Numbers {
     precision: Precision,
-    /// The file's parameters.
+    /// Parameters of the file.
     params: BTreeMap<String, Precise>,
 }
 
-/// What expressions see beside parameters.
+/// Names that expressions see beside parameters, with their values.
 type Names<'n> = &'n [(&'n str, Precise)];
 
 impl<'a> Constants<'a> {
+    /// Creates an evaluator for a model and its file.
+    ///
     /// # Errors
     ///
-    /// If every step of an L-system starts anew.
+    /// If an L-system does not rewrite edges: each number of steps then has its own initiator.
     pub(super) fn new(
         source: &Source<'a>,
         graph: &'a Graph,
@@ -108,12 +110,12 @@ impl<'a> Constants<'a> {
         self.numbers.bits()
     }
 
-    /// A double as it is written, in multiples of 2^-`bits`.
+    /// Returns the shortest decimal that reads as a double, in multiples of 2^-`bits`.
     pub(super) fn written(&self, number: f64) -> IBig {
         self.numbers.precision.written(number).fixed(self.bits())
     }
 
-    /// The map of an instance in the initiator.
+    /// Returns the map of an instance in the initiator.
     pub(super) fn root(&mut self, instance: &Instance) -> Arc<Fixed> {
         Arc::new(match &mut self.kind {
             Kind::Rule(rule) => rule.root(instance),
@@ -123,7 +125,7 @@ impl<'a> Constants<'a> {
         })
     }
 
-    /// The maps of instances in what replaces an element.
+    /// Returns the maps of instances in the replacement of an element.
     pub(super) fn children(&mut self, parent: Parent<'_>, wanted: &[&Instance]) -> Vec<Arc<Fixed>> {
         let object = &self.graph.objects()[parent.object];
         let is_fixed = matches!(object.replacement, Replacement::Fixed(_));
@@ -134,7 +136,7 @@ impl<'a> Constants<'a> {
                 return known;
             }
         }
-        // What is remembered may be needed again where it has to be more exact.
+        // Cached maps have full precision, because they may be used again where more is required.
         let needed = if is_fixed { self.bits() } else { parent.bits };
         self.numbers.precision.make_do_with(needed);
         let made: Vec<Arc<Fixed>> = match &mut self.kind {
@@ -171,7 +173,7 @@ impl Numbers {
         self.precision.bits()
     }
 
-    /// The parameters, each after those that its value is computed from.
+    /// Evaluates the parameters, each after those on which its value depends.
     fn read_parameters(&mut self, heading: &HeadingDocument, settings: &[Setting]) {
         let (order, _) = order_of_parameters(&heading.params);
         for index in order {
@@ -200,7 +202,7 @@ impl Numbers {
         })
     }
 
-    /// The same in multiples of 2^-`bits`.
+    /// Evaluates a number in multiples of 2^-`bits`.
     fn fixed(&mut self, number: &Number, names: Names<'_>) -> IBig {
         let value = self.number(number, names);
         value.fixed(self.bits())
@@ -210,7 +212,7 @@ impl Numbers {
         [&point.x, &point.y].map(|number| self.fixed(number, names))
     }
 
-    /// Cosine and sine of an angle in degrees.
+    /// Returns the cosine and sine of an angle in degrees.
     fn turn(&mut self, angle: &Number, names: Names<'_>) -> Vector {
         let angle = self.number(angle, names);
         let [sine, cosine] = self.precision.sine_cosine(&angle);

@@ -1,4 +1,4 @@
-//! From the initiator down to the roots of a window.
+//! Descent from the initiator to the roots of a window.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -13,19 +13,19 @@ use super::fixed::{Fixed, Vector};
 use super::items::{Drawn, Found, Item, Line, Node};
 use super::{GRAIN, Growth, SPARE, Window, Zoom, ZoomError, merge, roots};
 
-/// Roots are no larger than this, in pixels.
+/// Largest extent of a root, in pixels.
 const LARGEST: f64 = (1 << 20) as f64;
 
-/// No more instances than this are carried along.
+/// Limit of the number of instances that are kept in a step.
 const MOST_INSTANCES: usize = 20_000;
 
-/// Products of words, all in all.
+/// Limit of the work: products of 64-bit words.
 const MOST_WORK: u64 = 400_000_000_000;
 
-/// Where doubles are used to leave something out, they are this much in doubt.
+/// Relative error of doubles that is allowed for when they decide that an instance is outside.
 const DOUBT: f64 = 1e-9;
 
-/// What a node is in the window.
+/// Relation of a node to the window.
 enum Look {
     Outside,
     Small(DAffine2),
@@ -38,9 +38,9 @@ pub(super) struct Descent<'a, 'c> {
     window: &'a Window,
     reaches: &'a [f64],
     constants: &'c mut Constants<'a>,
-    /// Half of what is seen, in pixels.
+    /// Half the extent of the window with its margin, in pixels.
     half: DVec2,
-    /// The fractals, each after the one that seeded it.
+    /// Fractals, each after the one that seeded it.
     lines: Vec<Line>,
     evaluator: Evaluator,
     work: u64,
@@ -68,7 +68,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
     }
 
-    /// Goes down until all that shows in the window is a root.
+    /// Descends until all that shows in the window is a root.
     pub(super) fn run(mut self, centre: &Vector) -> Result<Zoom, ZoomError> {
         let bits = self.constants.bits();
         let scale = self.window.factor.times(self.window.scale, GRAIN);
@@ -97,7 +97,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             is_ring: initiator.is_ring(),
             items,
         });
-        // Every round is a step: what is no root has been born in it.
+        // Every round is a step: nodes that are no roots were created in the previous round.
         for round in 0.. {
             check(self.growth, round)?;
             let is_done = |item: &Item| !matches!(item, Item::Node(_));
@@ -108,7 +108,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             for number in 0..self.lines.len() {
                 self.go_down(number)?;
             }
-            // Draws and tints tell apart what stands in one place, and areas need all of their chain.
+            // Draws and tints distinguish instances at one place, and areas require the complete chain.
             if !self.graph.draws() && !self.graph.tints() && !self.window.areas {
                 merge::merge(&mut self.lines);
             }
@@ -122,16 +122,16 @@ impl<'a, 'c> Descent<'a, 'c> {
         roots::zoom(self.graph, self.window, self.lines)
     }
 
-    /// Replaces all of a fractal that is no root, once.
+    /// Replaces all nodes of a fractal that are no roots, once.
     fn go_down(&mut self, number: usize) -> Result<(), ZoomError> {
         let old = std::mem::take(&mut self.lines[number].items);
         let mut line = Line {
             items: Vec::new(),
             ..self.lines[number]
         };
-        // What may lead around the window.
+        // Only a ring can lead around the window.
         let areas = self.window.areas && line.is_ring;
-        // Whether what comes next can go on where what came before has ended.
+        // Whether the next item can join the end of the one before.
         let mut pen = line.is_ring;
         for item in old {
             let node = match item {
@@ -188,7 +188,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         matches!(object.replacement, Replacement::Kept) || self.growth.steps == Some(node.level)
     }
 
-    /// What is seen of an element that stays as it is.
+    /// Returns the visible part of an element that is not replaced.
     fn clipped(&self, node: &Node, areas: bool, pen: bool) -> Option<Found> {
         let object = &self.graph.objects()[node.object];
         let outline = &self.graph.base_elements()[object.base_element];
@@ -208,7 +208,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
     }
 
-    /// A way from the start of an element that is not seen to its end.
+    /// Returns a path from the start of an element that is not seen to its end.
     fn around(&self, node: &Node, pen: bool) -> Found {
         let Fixed { axes, origin } = &node.map;
         let end = [&origin[0] + &axes[0][0], &origin[1] + &axes[0][1]];
@@ -235,8 +235,9 @@ impl<'a, 'c> Descent<'a, 'c> {
         Look::Large
     }
 
-    /// How large roots are at most, in pixels. Where ways lead around the window, they must come to the
-    /// very ends of the roots; and what is seeded in one place by many is told only above them.
+    /// Returns the largest extent of roots, in pixels. It is small if paths lead around the window,
+    /// because they must meet the ends of the roots exactly, and if there are seeds, because seeds of
+    /// many elements at one place are merged only above the roots.
     fn largest(&self) -> f64 {
         if self.window.areas || self.graph.seeds {
             self.half.length()
@@ -245,8 +246,8 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
     }
 
-    /// Whether all that becomes of an object lies outside the window, whose map is known in multiples
-    /// of 2^`exponent` parts of a pixel, give or take `doubt` of them.
+    /// Returns whether the subtree of an object lies outside the window; its map is known in multiples of
+    /// 2^`exponent` parts of a pixel, with an error of up to `doubt` multiples.
     fn is_outside(&self, map: &DAffine2, exponent: usize, object: usize, doubt: f64) -> bool {
         let middle = map.transform_point2(self.graph.middle());
         let half = self.half / pixel(exponent);
@@ -255,8 +256,8 @@ impl<'a, 'c> Descent<'a, 'c> {
         middle.distance(nearest) > reach * (1.0 + DOUBT) + doubt
     }
 
-    /// Puts what replaces a node into its place, and what it seeds behind all fractals; tells whether
-    /// what comes next can go on there.
+    /// Replaces a node by its children, and adds the fractals that it seeds after all others; returns
+    /// whether the next item can join the end of the children.
     fn replace(
         &mut self,
         node: &Node,
@@ -283,14 +284,14 @@ impl<'a, 'c> Descent<'a, 'c> {
         };
         let Production { body, seeds } = &*production;
         let (map, exponent) = node.map.near();
-        // Doubles subtract here what may be much larger than what is left.
+        // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);
         let is_seen = |instance: &Instance| {
             let child = map * instance.frame.map;
             !self.is_outside(&child, exponent, instance.object, doubt)
         };
         let chains = || std::iter::once(body).chain(seeds.iter().map(|seed| &seed.chain));
-        // A closed chain may lead around the window, wherever it is.
+        // A closed chain may lead around the window, wherever it lies.
         let is_whole = [areas].into_iter();
         let is_whole = is_whole.chain(chains().skip(1).map(|it| self.window.areas && it.is_ring()));
         let wanted: Vec<&Instance> = chains()
@@ -351,7 +352,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         Ok(pen && end && count > 0)
     }
 
-    /// Counts products of long numbers.
+    /// Adds the products of big integers to the work.
     fn spend(&mut self, map: &Fixed, children: usize) -> Result<(), ZoomError> {
         let words = (map.bits() / 64 + 8) as u64;
         self.work += words * words * 12 * children as u64;
@@ -362,7 +363,7 @@ impl<'a, 'c> Descent<'a, 'c> {
     }
 }
 
-/// Whether the work is to go on, asked now and then.
+/// Returns an error if the work has been cancelled; the flag is read every 16 rounds.
 pub(super) fn check(growth: &Growth<'_>, round: u32) -> Result<(), ZoomError> {
     let is_cancelled = |flag: &std::sync::atomic::AtomicBool| flag.load(Ordering::Relaxed);
     if round.is_multiple_of(16) && growth.cancel.is_some_and(is_cancelled) {
@@ -371,13 +372,13 @@ pub(super) fn check(growth: &Growth<'_>, round: u32) -> Result<(), ZoomError> {
     Ok(())
 }
 
-/// 2^`exponent` parts of a pixel, in pixels; infinite where that is more than doubles hold.
+/// Returns the length of 2^`exponent` parts of a pixel in pixels; infinite beyond the range of doubles.
 pub(super) fn pixel(exponent: usize) -> f64 {
     const PARTS: f64 = (1_u128 << GRAIN) as f64;
     libm::ldexp(1.0, i32::try_from(exponent).unwrap_or(i32::MAX)) / PARTS
 }
 
-/// The doubt about the places of what a map holds that stands somewhere near the window.
+/// Returns the error of positions under a map near the window.
 fn doubt(map: &DAffine2) -> f64 {
     DOUBT * (map.translation.length() + stretch(&map.matrix2))
 }

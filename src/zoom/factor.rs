@@ -1,3 +1,5 @@
+//! Magnification factors beyond the range of doubles.
+
 use std::fmt;
 use std::str::FromStr;
 
@@ -5,32 +7,32 @@ use dashu_float::round::mode::HalfEven;
 use dashu_float::{DBig, FBig};
 use dashu_int::IBig;
 
-/// How much larger than as a whole something is drawn: a positive number, to 192 bits.
+/// Magnification relative to the view of the whole: a positive number of 192 bits.
 ///
-/// It is written as a decimal, with an exponent or without, or as a power of one: `1e1000`, `3^5000`.
+/// The notation is a decimal, with or without exponent, or a power of a decimal: `1e1000`, `3^5000`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factor {
     value: FBig<HalfEven, 2>,
     text: String,
 }
 
-/// What is wrong with a factor.
+/// Error: a text is not a magnification factor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FactorError {
-    /// It is none.
+    /// The text is not a positive number.
     #[error("a zoom is a number above 0, such as 250, 1e1000 or 3^5000")]
     Unreadable,
-    /// It leads too far.
+    /// The factor is too large or too small.
     #[error("the zoom goes to 1e{MOST_DIGITS} at most, and to 1e-{LEAST_DIGITS} at least")]
     Beyond,
 }
 
 const BITS: usize = 192;
 
-/// Pictures below this take too long.
+/// Largest decimal exponent; larger factors take too long.
 const MOST_DIGITS: u32 = 10_000;
 
-/// Pictures above this show a point.
+/// Largest negative decimal exponent; with smaller factors a picture shows a point.
 const LEAST_DIGITS: u32 = 6;
 
 impl FromStr for Factor {
@@ -59,7 +61,7 @@ impl FromStr for Factor {
     }
 }
 
-/// As it is written.
+/// Formats the factor as it was written.
 impl fmt::Display for Factor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
@@ -67,10 +69,10 @@ impl fmt::Display for Factor {
 }
 
 impl Factor {
-    /// The least that there is.
+    /// Least factor.
     pub(crate) const LEAST: f64 = 1e-6;
 
-    /// Nothing is magnified.
+    /// Returns the factor 1: no magnification.
     #[must_use]
     pub fn one() -> Self {
         Self {
@@ -79,13 +81,13 @@ impl Factor {
         }
     }
 
-    /// The power of two that it is.
+    /// Returns the binary logarithm.
     #[must_use]
     pub fn log2(&self) -> f64 {
         log10(&self.value) * std::f64::consts::LOG2_10
     }
 
-    /// A number times the factor, to a whole number of parts of 2^-`bits`.
+    /// Returns the product of a number and the factor, in multiples of 2^-`bits`.
     pub(super) fn times(&self, number: f64, bits: usize) -> IBig {
         let number = FBig::<HalfEven, 2>::try_from(number).unwrap_or(FBig::ZERO);
         let product = number.with_precision(BITS).value() * &self.value;
@@ -102,13 +104,13 @@ fn check(digits: f64) -> Result<(), FactorError> {
     Ok(())
 }
 
-/// Reads a number above zero.
+/// Parses a positive decimal.
 fn decimal(text: &str) -> Result<FBig<HalfEven, 2>, FactorError> {
     let is_plain = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-');
     if !text.chars().all(is_plain) || !text.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
         return Err(FactorError::Unreadable);
     }
-    // An exponent of many digits is not worked out.
+    // A long exponent is rejected without evaluation.
     let exponent = text.split_once(['e', 'E']).map(|(_, exponent)| exponent);
     if exponent.is_some_and(|exponent| exponent.len() > 8) {
         let is_number = exponent.is_some_and(|text| text.parse::<f64>().is_ok());

@@ -1,24 +1,24 @@
-//! Affine maps in whole numbers: as exact as they are long.
+//! Affine maps in integers of arbitrary length.
 
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
 use crate::geometry::{DAffine2, DVec2, Direction};
 
-/// A point or a vector, in whole multiples of a unit that the context tells.
+/// Point or vector, in integer multiples of a unit that depends on the context.
 pub(super) type Vector = [IBig; 2];
 
-/// A map whose numbers are whole multiples of a power of two.
+/// Affine map whose numbers are integer multiples of a power of two.
 #[derive(Clone, Debug)]
 pub(super) struct Fixed {
-    /// Where (1, 0) and (0, 1) go, seen from where (0, 0) goes.
+    /// Images of the vectors (1, 0) and (0, 1) under the linear part.
     pub(super) axes: [Vector; 2],
-    /// Where (0, 0) goes.
+    /// Image of (0, 0).
     pub(super) origin: Vector,
 }
 
 impl Fixed {
-    /// The map that changes nothing, in multiples of 2^-`bits`.
+    /// Returns the identity, in multiples of 2^-`bits`.
     pub(super) fn identity(bits: usize) -> Self {
         let (zero, one) = (|| IBig::ZERO, || IBig::ONE << bits);
         Self {
@@ -27,7 +27,7 @@ impl Fixed {
         }
     }
 
-    /// A rotation by an angle whose cosine and sine are given.
+    /// Returns the rotation by an angle with the given cosine and sine.
     pub(super) fn rotation([cosine, sine]: Vector, bits: usize) -> Self {
         Self {
             axes: [[cosine.clone(), sine.clone()], [-sine, cosine]],
@@ -35,7 +35,7 @@ impl Fixed {
         }
     }
 
-    /// As [`Frame::between`](crate::geometry::Frame::between).
+    /// Returns the map of an element; see [`Frame::between`](crate::geometry::Frame::between).
     pub(super) fn between(from: &Vector, to: &Vector, direction: Direction) -> Self {
         let along = [&to[0] - &from[0], &to[1] - &from[1]];
         let across = [-&along[1], along[0].clone()];
@@ -52,26 +52,25 @@ impl Fixed {
         }
     }
 
-    /// What the linear part does to a vector in multiples of 2^-`bits`.
+    /// Returns the image of a vector in multiples of 2^-`bits` under the linear part.
     fn turned(&self, [x, y]: &Vector, bits: usize) -> Vector {
         let [right, up] = &self.axes;
         [0, 1].map(|row| product(&right[row], x, bits) + product(&up[row], y, bits))
     }
 
-    /// Where a point in multiples of 2^-`bits` goes.
+    /// Returns the image of a point in multiples of 2^-`bits`.
     pub(super) fn image(&self, point: &Vector, bits: usize) -> Vector {
         let [x, y] = self.turned(point, bits);
         [x + &self.origin[0], y + &self.origin[1]]
     }
 
-    /// This map after an inner one, whose numbers are multiples of 2^-`bits`. Similarities have half
-    /// the work.
+    /// Composes this map with an inner one, whose numbers are multiples of 2^-`bits`. For similarities
+    /// (`are_similar`) this takes half the work.
     pub(super) fn after(&self, inner: &Self, bits: usize, are_similar: bool) -> Self {
         let [right, up] = &inner.axes;
         let right = self.turned(right, bits);
         let up = if are_similar {
-            // The axes are as long as each other; whether they keep the sense of rotation is told by
-            // both maps.
+            // The axes have equal lengths, and both maps determine the orientation.
             let across = [-&right[1], right[0].clone()];
             if self.is_mirrored() == inner.is_mirrored() {
                 across
@@ -87,10 +86,10 @@ impl Fixed {
         }
     }
 
-    /// Whether a similarity reverses the sense of rotation.
+    /// Returns whether a similarity reverses orientation.
     fn is_mirrored(&self) -> bool {
         let [[a, b], [c, d]] = &self.axes;
-        // (c, d) is (−b, a) or its opposite, give or take rounding: the larger number tells.
+        // (c, d) is (−b, a) or its negative, up to rounding: the larger number decides.
         if a.bit_len() >= b.bit_len() {
             a.sign() != d.sign()
         } else {
@@ -98,13 +97,14 @@ impl Fixed {
         }
     }
 
-    /// How long the numbers of its linear part are.
+    /// Returns the number of bits of the linear part.
     pub(super) fn bits(&self) -> usize {
         let longest = self.axes.iter().flatten().map(|number| number.bit_len());
         longest.max().unwrap_or(0)
     }
 
-    /// About the map in doubles, as a multiple of 2^`exponent` of its unit.
+    /// Returns the map in doubles, approximately, as a multiple of 2^`exponent` of its unit, and that
+    /// exponent.
     pub(super) fn near(&self) -> (DAffine2, usize) {
         let [[a, b], [c, d]] = &self.axes;
         let [e, f] = &self.origin;
@@ -117,17 +117,17 @@ impl Fixed {
     }
 }
 
-/// Bits that are looked at for a double.
+/// Number of leading bits that are converted to doubles.
 const DIGITS: usize = 96;
 
-/// A number that is no longer than doubles reach.
+/// Converts an integer within the range of doubles.
 pub(super) fn double(number: &IBig) -> f64 {
     number.to_f64().value()
 }
 
-/// A number times one in multiples of 2^-`bits`.
+/// Returns the product of an integer and a number in multiples of 2^-`bits`.
 pub(super) fn product(number: &IBig, fraction: &IBig, bits: usize) -> IBig {
-    // What is below the last digit of the product need not be worked out.
+    // Digits below the last one of the product need not be computed.
     const SPARE: usize = 64;
     let dropped = bits.saturating_sub(number.bit_len() + SPARE);
     if dropped > SPARE {

@@ -1,4 +1,4 @@
-//! What a descent carries along, and what it finds.
+//! State and results of a descent.
 
 use crate::geometry::Frame;
 use crate::graph::{Chain, Root};
@@ -8,31 +8,31 @@ use crate::rule::BaseElement;
 use super::clip::Path;
 use super::fixed::Fixed;
 
-/// An instance that may show in the window.
+/// Instance that may show in the window.
 #[derive(Clone)]
 pub(super) struct Node {
     pub(super) standing: Standing,
     pub(super) object: usize,
     pub(super) level: u32,
-    /// The step in which its fractal was born.
+    /// Step of its fractal's birth.
     pub(super) born: u32,
-    /// Its map, in parts of a pixel from the middle of the window.
+    /// Map in parts of a pixel from the centre of the window.
     pub(super) map: Fixed,
-    /// Whether it joins the one before it.
+    /// Whether it joins the item before.
     pub(super) joined: bool,
 }
 
-/// What has come of it.
+/// Item of a fractal.
 pub(super) enum Item {
-    /// Nothing yet.
+    /// Instance that is still to be replaced or to become a root.
     Node(Box<Node>),
     Root(Box<Found>),
-    /// Here it was that an element seeded a fractal, by number.
+    /// Place at which an element seeded a fractal, with the number of the fractal.
     Seed(usize),
 }
 
 impl Item {
-    /// Whether it joins the one before it, if it is of the fractal itself.
+    /// Returns whether it joins the item before; `None` for a seed.
     pub(super) fn joined(&mut self) -> Option<&mut bool> {
         match self {
             Self::Node(node) => Some(&mut node.joined),
@@ -42,19 +42,19 @@ impl Item {
     }
 }
 
-/// What of a fractal may show in the window.
+/// Part of a fractal that may show in the window.
 pub(super) struct Line {
-    /// The step of its birth.
+    /// Step of its birth.
     pub(super) born: u32,
-    /// Whether it is a closed chain still.
+    /// Whether it is still a closed chain.
     pub(super) is_ring: bool,
-    /// In the order of traversal.
+    /// Items in the order of traversal.
     pub(super) items: Vec<Item>,
 }
 
 impl Line {
-    /// Adds the instances of a chain that may show, in the order of traversal; tells whether what comes
-    /// next can go on where the last one ends.
+    /// Adds the instances of a chain that may show, in the order of traversal; returns whether the next
+    /// item can join the end of the last one.
     pub(super) fn string(
         &mut self,
         chain: &Chain,
@@ -81,7 +81,7 @@ impl Line {
         pen
     }
 
-    /// Nothing joins the first item any more.
+    /// Opens the chain: its first item joins no other.
     pub(super) fn open(&mut self) {
         self.is_ring = false;
         if let Some(first) = self.items.iter_mut().find_map(Item::joined) {
@@ -89,7 +89,7 @@ impl Line {
         }
     }
 
-    /// Adds a root; ways around the window that follow each other are one.
+    /// Adds a root; consecutive paths around the window are joined to one.
     pub(super) fn add(&mut self, found: Found) {
         let mut before = self.items.iter_mut().rev();
         let last = before.find(|item| !matches!(item, Item::Seed(_)));
@@ -103,7 +103,7 @@ impl Line {
         self.items.push(Item::Root(Box::new(found)));
     }
 
-    /// Whether it has come to a closed way that does not lead around the window, with nothing on it.
+    /// Returns whether the fractal is only a closed path that does not lead around the window.
     pub(super) fn is_elsewhere(&self) -> bool {
         match &self.items[..] {
             [Item::Root(only)] => match &only.drawn {
@@ -115,7 +115,7 @@ impl Line {
     }
 }
 
-/// A root.
+/// Root: an instance from which the graph of the window starts.
 pub(super) struct Found {
     pub(super) object: usize,
     pub(super) frame: Frame,
@@ -124,13 +124,13 @@ pub(super) struct Found {
     pub(super) drawn: Drawn,
 }
 
-/// What is drawn of a root.
+/// Drawing of a root.
 pub(super) enum Drawn {
-    /// What comes of its object.
+    /// Subtree of its object.
     Object,
-    /// This, in its frame.
+    /// Clipped outline, in its frame.
     Clipped(BaseElement),
-    /// A way around the window, in pixels.
+    /// Path around the window, in pixels.
     Around(Path),
 }
 

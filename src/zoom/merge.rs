@@ -1,4 +1,4 @@
-//! Instances that stand in each other's place.
+//! Merging of instances at equal places.
 
 use std::collections::HashSet;
 
@@ -7,15 +7,16 @@ use dashu_int::IBig;
 use super::fixed::Fixed;
 use super::items::{Item, Line};
 
-/// As long as there are no more instances than this, they are drawn as they come.
+/// Number of instances up to which none are merged.
 const FEW: usize = 256;
 
-/// Maps whose numbers differ by less than about this many bits are the same; rounding errors are less,
-/// by far, and a pixel is more.
+/// Number of low bits in which the maps of merged instances may differ: far more than rounding errors,
+/// and less than a pixel.
 const SAME: usize = 36;
 
-/// Leaves out, of instances of one object in one place, all but the first, if there are many: that of the
-/// oldest fractal, which hides those of younger ones where ages tell colours.
+/// Of several instances of one object at one place, drops all but the first, if there are many instances
+/// in total. The first is that of the oldest fractal, which hides those of younger ones where ages
+/// determine colours.
 pub(super) fn merge(lines: &mut [Line]) {
     let count: usize = lines.iter().map(|line| line.items.len()).sum();
     if count <= FEW {
@@ -33,7 +34,7 @@ pub(super) fn merge(lines: &mut [Line]) {
                 Item::Root(_) => true,
                 Item::Seed(_) => return true,
             };
-            // Nothing goes on from where something is left out.
+            // An item does not join one that was dropped.
             let was_gap = std::mem::replace(&mut is_gap, !stays);
             if let Some(joined) = item.joined() {
                 *joined &= !was_gap;

@@ -1,39 +1,38 @@
-//! Zooming without end: what lies about a point of a limit set, as much larger as one likes.
+//! Zooming at arbitrary magnification: the neighbourhood of a point of a limit set.
 //!
-//! A picture of a small part is that of the part's own roots: the instances that meet the window,
-//! none of them larger than some thousand windows. A [`Zoom`] is found in two stages. A descent from
-//! the initiator, in numbers as long as the zoom asks for, keeps of every step the instances that meet the
-//! window, of which there are few, for copies of a set that overlap no more than they do anywhere
-//! have few neighbours. Those that have become small enough are the roots; a graph that starts from
-//! them, in pixels and in doubles, is drawn as any other. So the cost of a picture is that of its
-//! pixels, and of some products of long numbers a step.
+//! A picture of a small part of a set is grown from the part's own roots: the instances that meet the
+//! window, none of them larger than some thousand windows. A [`Zoom`] is computed in two stages. A
+//! descent from the initiator, in numbers of the length that the magnification requires, keeps at every
+//! step the instances that meet the window. These are few, because copies of a set have few neighbours
+//! unless they overlap. Instances that have become small enough are the roots; a graph that starts from
+//! them, in pixels and in doubles, is drawn as any other. The cost of a picture is therefore that of its
+//! pixels, and of some products of big integers for each step.
 //!
 //! # Numbers
 //!
-//! The maps of a file are evaluated from its expressions as they are written
-//! ([`Precision`](crate::expression)), for a third is not the double next to it: maps that were
-//! rounded would not fit together beyond a zoom of some 1e15. Decimals are what they say, draws are
-//! the doubles that were drawn, and what conditions decide is decided in doubles, as everywhere. Maps
-//! of instances are whole multiples of 2⁻⁶⁴ pixels, and constants have as many bits as it takes to
-//! keep products that exact; errors of rounding add up to some such multiples a step, far below a
-//! thousandth of a pixel. Lines of an L-system that rewrites edges are sums of exact turns; the factors of
-//! its steps are the doubles that they come to.
+//! The maps of a file are evaluated from its expressions as written ([`Precision`](crate::expression)): a
+//! third is not the double next to it, and rounded maps would not fit together beyond a magnification of
+//! some 1e15. Decimals are exact, random draws are the doubles that were drawn, and conditions are
+//! evaluated in doubles, as everywhere. Maps of instances are integer multiples of 2⁻⁶⁴ pixels, and
+//! constants have the number of bits that keeps products to that precision; rounding errors add up to
+//! some multiples for each step, far below a thousandth of a pixel. Lines of an L-system that rewrites
+//! edges are sums of exact turns; the factors of its steps are doubles.
 //!
-//! # What is left out
+//! # Culling
 //!
-//! An instance is left out where all that becomes of it keeps away from the window: surely so, or where
-//! draws have no limits, such as normal ones, with a chance of error below 2⁻⁶⁴ each.
+//! An instance is culled if its subtree is outside the window: with certainty or, where draws are
+//! unbounded (such as normal ones), with a probability of error below 2⁻⁶⁴ for each instance.
 //!
-//! # What is the same as everywhere
+//! # Consistency
 //!
-//! A root carries the step of its birth, its path, its length and its tints, and a fractal the step of
-//! its own birth: draws, conditions and colours see what they would see if everything were drawn. Seeds
-//! are followed as children are, each in a fractal of its own; the graph keeps which of them was seeded
-//! by which, when and where, so that fractals come in the order of everywhere. Only their numbers are not
-//! told, for those far from the window are not counted. Where many instances of one object stand in
-//! one place, that of the oldest fractal stands for all. What stays infertile and is larger than
-//! all that is seen, a trunk or a condensation set, is clipped in long numbers; where it is clipped, it
-//! runs along a circle about the window, so that what it encloses stays encircled.
+//! A root has the step of its birth, its path, its length and its tints, and a fractal the step of its
+//! own birth: draws, conditions and colours have the values that they would have if everything were
+//! drawn. Seeds are followed as children are, each in a fractal of its own; the graph records by which
+//! fractal, when and where each was seeded, so that fractals have their usual order. Their numbers are
+//! not reported, because fractals far from the window are not counted. Of several instances of one object
+//! at one place, that of the oldest fractal represents all. An infertile element larger than the window,
+//! such as a trunk or a condensation set, is clipped in big integers; the clipped outline runs along a
+//! circle about the window, so that the region it encloses stays enclosed.
 
 mod address;
 mod centre;
@@ -60,102 +59,103 @@ use crate::graph::{CompileError, Graph, NoLimit, Object};
 use crate::model::Model;
 use crate::whole::whole;
 
-/// A model, and the file that says its numbers.
+/// Model with the file from which its numbers are evaluated.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    /// The file.
+    /// File.
     pub document: &'a Document,
-    /// What the file's parameters are set to.
+    /// Settings of the file's parameters.
     pub settings: &'a [Setting],
-    /// What came of both.
+    /// Model to which the file and the settings resolve.
     pub model: &'a Model,
-    /// The maps of a system that have been left out, by their numbers from 1.
+    /// Maps of a system that are omitted, by their numbers from 1.
     pub omitted: &'a [u32],
 }
 
-/// What is looked at.
+/// Part of the plane that is drawn.
 #[derive(Clone, Debug)]
 pub struct Window {
-    /// The picture's width and height in pixels.
+    /// Width and height of the picture in pixels.
     pub size: [u32; 2],
-    /// Pixels a unit of the plane where nothing is magnified.
+    /// Pixels for each unit of the plane, without magnification.
     pub scale: f64,
-    /// How far outside the picture something may lie that shows in it, in pixels: half a stroke's
-    /// width, and more.
+    /// Distance outside the picture, in pixels, at which objects may show in it: at least half the width
+    /// of a stroke.
     pub margin: f64,
-    /// How far strokes reach beyond outlines whose width grows with their elements, in the unit frame;
-    /// 0 if none does.
+    /// Distance, in the unit frame, by which strokes extend beyond outlines, for stroke widths relative
+    /// to their elements; 0 for other strokes.
     pub relative_stroke: f64,
-    /// Whether what closed chains enclose is seen, so that what of them lies elsewhere has to lead around
-    /// the window.
+    /// Whether the regions enclosed by closed chains are visible: the parts of such chains outside the
+    /// window must then lead around it.
     pub areas: bool,
-    /// Elements shorter than so many pixels are not replaced, and seed nothing.
+    /// Length in pixels below which elements are not replaced and seed nothing.
     pub shortest: f64,
-    /// How much larger everything is.
+    /// Magnification.
     pub factor: Factor,
-    /// What lies in the middle.
+    /// Centre.
     pub at: Address,
 }
 
-/// How a zoom is grown.
+/// Conditions of growth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Growth<'a> {
-    /// What random draws depend on.
+    /// Seed of random draws.
     pub seed: u64,
-    /// The step after which nothing is replaced any more, if there is one.
+    /// Number of steps after which no element is replaced; `None` if unlimited.
     pub steps: Option<u32>,
-    /// The work ends soon after this is set.
+    /// Flag that cancels the computation soon after it is set.
     pub cancel: Option<&'a AtomicBool>,
 }
 
-/// A window's part of a graph: a graph of its own, in pixels from the middle of the window, y up.
+/// Part of a graph in a window: a graph of its own, in pixels from the centre of the window, with the y
+/// axis upwards.
 #[derive(Clone, Debug)]
 pub struct Zoom {
-    /// The graph.
+    /// Graph.
     pub graph: Graph,
-    /// The deepest step in which a root was born.
+    /// Last step in which a root was created.
     pub deepest: u32,
 }
 
-/// Why there is no picture.
+/// Error: a window cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ZoomError {
-    /// There is no limit set, and so no point to zoom into.
+    /// There is no limit set, and therefore no point to zoom into.
     #[error(
         "there is nothing to zoom into without end: {0}; --view X,Y,W,H draws a part of a step"
     )]
     NoLimit(NoLimit),
-    /// What becomes of an element depends on what stands before it.
+    /// The subtree of an element depends on the elements before it.
     #[error(
         "what becomes of an element depends on the number of all those before it, and those far from \
          the window are not grown; --view X,Y,W,H draws a part of a step"
     )]
     CountsIndex,
-    /// Every number of steps of an L-system is grown out of an initiator of its own.
+    /// The L-system does not rewrite edges: each number of steps has its own initiator.
     #[error(
         "there is nothing to zoom into without end: it does not rewrite edges, so that every step of it \
          starts anew; --view X,Y,W,H draws a part of a step"
     )]
     StartsAnew,
-    /// The graph does not tell how far what becomes of elements reaches.
+    /// The graph gives no bound on the extent of subtrees.
     #[error(
         "it is not known how far what becomes of its elements reaches; --view X,Y,W,H draws a part of a \
          step"
     )]
     NoReach,
-    /// An address leads to an element that is not there.
+    /// An address leads to a position that does not exist.
     #[error(
         "{address}: there is no position {position} at depth {depth}, where there are {count}, \
          numbered from 0"
     )]
     NoSuchPosition {
-        /// The address.
+        /// Address.
         address: Address,
-        /// The position.
+        /// Position.
         position: u32,
-        /// Its place in the address, from 0.
+        /// Index of the position in the address, from 0.
         depth: u32,
-        /// How many positions there are.
+        /// Number of existing positions.
         count: usize,
     },
     /// An address leads through an element that is not replaced.
@@ -164,69 +164,69 @@ pub enum ZoomError {
          replaced, and no point is named"
     )]
     Infertile {
-        /// The address.
+        /// Address.
         address: Address,
-        /// The place of the element's position in the address, from 0.
+        /// Index of the element's position in the address, from 0.
         depth: u32,
     },
     /// The elements of an address do not shrink to a point.
     #[error("{address}: the elements on this way do not shrink to a point")]
     NoPoint {
-        /// The address.
+        /// Address.
         address: Address,
     },
-    /// A point is told by doubles.
+    /// The coordinates of a point are doubles, which do not resolve the pixels.
     #[error(
         "a point x,y is told to some 16 digits, which do for zooms up to {most:.0e} here; an address \
          such as 0.(1) names a point to the last digit"
     )]
     TooFine {
-        /// The largest zoom.
+        /// Largest magnification.
         most: f64,
     },
-    /// Too much overlaps.
+    /// Too many instances overlap in the window.
     #[error("more than {limit} parts of it overlap in the window; less zoom may do")]
     TooMany {
-        /// How many may.
+        /// Limit of their number.
         limit: usize,
     },
-    /// The numbers are too long for so many.
+    /// The computation would take too long.
     #[error(
         "it would take too long: too many parts of it overlap on the way into the window; less zoom may do"
     )]
     TooLong,
-    /// Strokes are wider than the window.
+    /// An element is clipped whose stroke width is relative to it.
     #[error(
         "an infertile element is larger than the window, and so is its stroke, whose width is relative \
          to it; a width in pixels can be drawn"
     )]
     WideStroke,
-    /// A graph is resolved for fewer steps than it takes.
+    /// The graph is resolved for too few steps.
     #[error("{depth} steps are not enough")]
     TooShallow {
-        /// The number of steps.
+        /// Number of steps.
         depth: u32,
     },
     /// A generator has a point that is not finite.
     #[error(transparent)]
     NotFinite(#[from] CompileError),
-    /// The work was cancelled.
+    /// The computation was cancelled.
     #[error("interrupted")]
     Cancelled,
 }
 
-/// Parts of a pixel that are counted: 2⁶⁴.
+/// Precision of positions: the binary logarithm of the number of parts of a pixel.
 const GRAIN: usize = 64;
 
-/// Bits beyond those that tell a part of a pixel.
+/// Additional bits of constants.
 const SPARE: usize = 128;
 
-/// Finds what lies in a window.
+/// Computes the part of a graph that shows in a window.
 ///
 /// # Errors
 ///
-/// If there is no point to zoom into, if too much lies there, or if the graph is not resolved for as
-/// many steps as it takes.
+/// If there is no point to zoom into, if the window contains too much, or if the graph is not resolved
+/// for the required number of steps.
 pub fn zoom(
     source: &Source<'_>,
     graph: &Graph,
@@ -253,11 +253,11 @@ pub fn zoom(
     descent::Descent::new(graph, growth, window, &reaches, &mut constants).run(&centre)
 }
 
-/// Refuses a model that has no points to zoom into, before a graph is made of it.
+/// Checks that a model has points to zoom into, before it is compiled to a graph.
 ///
 /// # Errors
 ///
-/// If every step of an L-system starts anew: its words may be long.
+/// If an L-system does not rewrite edges: compiling it may require long words.
 pub fn check_model(model: &Model) -> Result<(), ZoomError> {
     match model {
         Model::LSystem(system) if !Graph::rewrites_edges(system) => Err(ZoomError::StartsAnew),
@@ -265,7 +265,7 @@ pub fn check_model(model: &Model) -> Result<(), ZoomError> {
     }
 }
 
-/// Whether there may be points to zoom into.
+/// Checks that a graph may have points to zoom into.
 pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError> {
     check_model(source.model)?;
     if graph.counts_index() {
@@ -280,7 +280,7 @@ pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError>
     Ok(())
 }
 
-/// Refuses pixels that doubles cannot tell apart.
+/// Checks that doubles resolve the pixels about a point.
 fn check_point(point: DVec2, window: &Window) -> Result<(), ZoomError> {
     let far = point.abs().max_element();
     let step = far.next_up() - far;

@@ -1,4 +1,4 @@
-//! How far a point is from a limit set.
+//! Distance of a point from a limit set.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -7,17 +7,17 @@ use crate::geometry::{DAffine2, DVec2, distance_to_segment, stretch};
 use crate::graph::{Graph, Object, Replacement};
 use crate::rule::{BaseElement, Piece};
 
-/// Images that are looked into at most.
+/// Limit of the number of images that are expanded.
 const MOST: usize = 100_000;
 
-/// The distance is known to this part of it.
+/// Relative error of the distance.
 const ENOUGH: f64 = 1e-3;
 
-/// How far a point is from the nearest of a limit set, to a thousandth; what is kept counts with
-/// its outlines. `None` where the graph does not tell, or it takes too many images.
+/// Returns the distance of a point from a limit set, to a thousandth; kept elements count with their
+/// outlines. `None` if the graph does not determine it, or if it takes too many images.
 ///
-/// Images are looked into in the order of the discs that hold them, the nearest first, until no disc
-/// comes nearer than some point is known to be.
+/// Images are expanded in the order of the distances of the discs that contain them, until no disc is
+/// nearer than a point that is known.
 pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
     if !graph.is_plain() || graph.depth().is_some() {
         return None;
@@ -65,15 +65,15 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
     None
 }
 
-/// The image of an object's limit set.
+/// Image of an object's limit set.
 struct Image {
-    /// No point of it is nearer.
+    /// Lower bound of its distance.
     least: f64,
     object: usize,
     map: DAffine2,
 }
 
-/// The nearest is the greatest.
+/// Orders images such that the nearest is the greatest.
 impl Ord for Image {
     fn cmp(&self, other: &Self) -> Ordering {
         other.least.total_cmp(&self.least)
@@ -94,7 +94,8 @@ impl PartialEq for Image {
 
 impl Eq for Image {}
 
-/// How far a point is from the image of an outline, curves being taken as chords.
+/// Returns the distance of a point from the image of an outline; curves are approximated by 32 chords
+/// each.
 fn distance_to_outline(point: DVec2, outline: &BaseElement, map: &DAffine2) -> f64 {
     const CHORDS: u32 = 32;
     let mut from = map.transform_point2(outline.start());

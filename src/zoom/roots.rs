@@ -1,4 +1,4 @@
-//! The graph that starts from what a descent has found.
+//! Construction of the graph that starts from the results of a descent.
 
 use std::collections::VecDeque;
 
@@ -8,17 +8,18 @@ use crate::rule::BaseElement;
 use super::items::{Drawn, Found, Item, Line};
 use super::{Window, Zoom, ZoomError};
 
-/// A graph in the making.
+/// Graph under construction.
 struct Rooted {
     graph: Graph,
     base_elements: Vec<BaseElement>,
-    /// How many behaviours there are.
+    /// Number of behaviours.
     behaviours: usize,
     roots: Roots,
     deepest: u32,
 }
 
-/// What comes of the roots in fractals, each of which stands after the one that seeded it.
+/// Builds the graph of the roots in the fractals `lines`, each of which is listed after the one that
+/// seeded it.
 pub(super) fn zoom(
     graph: &Graph,
     window: &Window,
@@ -40,7 +41,8 @@ pub(super) fn zoom(
         });
     }
     let mut chains = Vec::new();
-    // Fractals, the place of that which has seeded them, and how many roots come before them.
+    // Queue of fractals, each with the number of the one that seeded it and the number of roots before
+    // it.
     let mut open = VecDeque::from([(0, 0, 0)]);
     while let Some((number, by, before)) = open.pop_front() {
         let Line { born, items, .. } = &mut lines[number];
@@ -55,7 +57,7 @@ pub(super) fn zoom(
             }
         }
         let born = *born;
-        // Those of one step are in order.
+        // A stable sort keeps the order of the seeds of one step.
         seeds.sort_by_key(|(seed, _)| lines[*seed].born);
         let place = chains.len();
         open.extend(
@@ -82,7 +84,7 @@ pub(super) fn zoom(
 }
 
 impl Rooted {
-    /// The position of the next root.
+    /// Returns the position of the next root.
     fn position(&self) -> u32 {
         u32::try_from(self.roots.elements.len()).unwrap_or(u32::MAX)
     }
@@ -118,7 +120,7 @@ impl Rooted {
         Ok(())
     }
 
-    /// An object that is drawn otherwise, and stays as it is.
+    /// Creates an infertile copy of an object with another outline.
     fn drawn(&mut self, object: usize, outline: BaseElement) -> usize {
         let mut of = self.graph.objects()[object].clone();
         of.base_element = self.base_elements.len();

@@ -1,3 +1,5 @@
+//! Maps of a production rule.
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -10,13 +12,13 @@ use crate::zoom::fixed::{Fixed, Vector, product};
 
 use super::{Names, Numbers, Parent};
 
-/// The maps of a production rule.
+/// Maps of a production rule.
 pub(super) struct OfRule<'a> {
     document: &'a RuleDocument,
     rule: &'a Rule,
-    /// The points of the initiator.
+    /// Points of the initiator.
     points: Vec<Vector>,
-    /// The elements of every generator, by position.
+    /// Elements of every generator, by position.
     listed: Vec<Vec<&'a ListedElement>>,
 }
 
@@ -89,7 +91,7 @@ impl<'a> OfRule<'a> {
 }
 
 impl Numbers {
-    /// As [`rule::Move`] moves points.
+    /// Evaluates the map of a [`rule::Move`].
     fn moving(&mut self, document: &MoveDocument, names: Names<'_>) -> Fixed {
         let bits = self.bits();
         let mut whole = Fixed::identity(bits);

@@ -1,3 +1,5 @@
+//! Maps of a structure of objects.
+
 use crate::document::{InstancingDocument, LevelDocument, TransformDocument, UnionDocument};
 use crate::expression::Precise;
 use crate::graph::{Graph, Instance};
@@ -6,11 +8,11 @@ use crate::zoom::fixed::Fixed;
 
 use super::{Names, Numbers};
 
-/// The maps of a structure.
+/// Maps of a structure of objects.
 pub(super) struct OfStructure<'a> {
     document: &'a InstancingDocument,
     structure: &'a Instancing,
-    /// What the graph's objects are.
+    /// Canonical objects of the graph's objects.
     canonical: Vec<Option<usize>>,
 }
 
@@ -23,7 +25,7 @@ impl<'a> OfStructure<'a> {
         }
     }
 
-    /// The map of an instance in an object, or in the scene.
+    /// Evaluates the map of an instance in an object, or in the scene if there is no parent.
     pub(super) fn child(
         &self,
         parent: Option<usize>,
@@ -59,7 +61,7 @@ impl<'a> OfStructure<'a> {
         }
     }
 
-    /// What an object is made of, and what its level is called.
+    /// Returns the union of which an object consists, and the name of its level with the value.
     fn union(&self, object: usize) -> (&'a UnionDocument, Option<(&'a str, Precise)>) {
         let (number, level) = self.structure.objects()[object].origin;
         let written = &self.document.objects[number];
@@ -72,7 +74,7 @@ impl<'a> OfStructure<'a> {
 }
 
 impl Numbers {
-    /// Transforms in their order: what is written first is done first.
+    /// Evaluates the product of transforms, of which the first in the list is applied first.
     fn product(&mut self, transforms: &[TransformDocument], names: Names<'_>) -> Fixed {
         let bits = self.bits();
         let mut product = Fixed::identity(bits);

@@ -1,3 +1,5 @@
+//! Maps of an iterated function system.
+
 use std::sync::Arc;
 
 use crate::document::{
@@ -10,7 +12,7 @@ use crate::zoom::fixed::{Fixed, Vector, product};
 
 use super::Numbers;
 
-/// The maps of a system.
+/// Maps of an iterated function system.
 pub(super) struct OfSystem<'a> {
     system: &'a System,
     maps: Vec<Arc<Fixed>>,
@@ -48,7 +50,7 @@ impl<'a> OfSystem<'a> {
     pub(super) fn child(&self, graph: &Graph, instance: &Instance, bits: usize) -> Arc<Fixed> {
         let origin = graph.objects()[instance.object].origin;
         let maps = self.system.ifs().maps();
-        // A condensation set may stand in the very place of what is replaced.
+        // The instance of a condensation set may have the origin of a map without being under it.
         let map = origin.filter(|&map| maps[map].affine == instance.frame.map);
         map.map_or_else(
             || Arc::new(Fixed::identity(bits)),
@@ -57,7 +59,7 @@ impl<'a> OfSystem<'a> {
     }
 }
 
-/// A linear map about a point that stays where it is.
+/// Returns a linear map about a point, which it fixes.
 fn about(map: Fixed, point: &Vector, bits: usize) -> Fixed {
     let [x, y] = map.image(point, bits);
     Fixed {
@@ -115,8 +117,8 @@ impl Numbers {
         }
     }
 
-    /// As [`interpolate`](crate::ifs::interpolate). A factor that follows from a dimension is the
-    /// double that was found.
+    /// Evaluates the maps of [`interpolate`](crate::ifs::interpolate). A factor derived from a dimension
+    /// keeps its value as a double.
     fn interpolated(&mut self, document: &InterpolationDocument, system: &System) -> Vec<Fixed> {
         let bits = self.bits();
         let points = document.points.iter();
