@@ -1,4 +1,4 @@
-//! Sines and cosines of degrees, to many bits.
+//! Sine and cosine of angles in degrees, to arbitrary precision.
 
 use dashu_float::round::mode::HalfEven;
 use dashu_float::{ConstCache, Context, FBig};
@@ -7,28 +7,30 @@ use dashu_int::ops::SquareRoot;
 
 type Float = FBig<HalfEven, 2>;
 
-/// Bits beyond those that are asked for: what rounding may cost.
+/// Guard bits for rounding errors.
 const SPARE: usize = 64;
 
-/// Angles, about, that are left to others: whole turns of larger ones and digits of smaller ones that
-/// are no quarter turns need more bits.
+/// Largest magnitude of angles in degrees: the reduction of larger ones needs more bits.
 const LARGEST: f64 = 1e9;
+/// Smallest magnitude of nonzero distances from a multiple of 90 degrees: the relative precision of
+/// smaller ones needs more bits.
 const SMALLEST: f64 = 1e-9;
 
-/// Works out sines and cosines, both at once, and remembers the last ones.
+/// Computes sines and cosines, both at once, and caches the last pair.
 ///
-/// An angle is halved until a few terms of a series will do, and what comes of it is doubled as often
+/// An angle is halved until few terms of a series suffice, and the result is doubled equally often
 /// (Brent 1976, "Fast multiple-precision evaluation of elementary functions").
 #[derive(Default)]
 pub(super) struct Circle {
-    /// Half a turn in radians, to so many bits.
+    /// The cached value of π, in multiples of 2^-n, with n.
     half: Option<(usize, IBig)>,
     last: Option<(usize, Float, [Float; 2])>,
 }
 
 impl Circle {
-    /// Sine and cosine of an angle in degrees, which is nearly the double, give or take some multiples of
-    /// 2^-`bits`; `None` if that would be too few for so small or so large an angle.
+    /// Computes sine and cosine of an angle in degrees with errors of some multiples of 2^-`bits`.
+    /// `near` is the double next to the angle. Returns `None` for angles outside the limits of this
+    /// module.
     pub(super) fn sine_cosine(
         &mut self,
         near: f64,
@@ -74,7 +76,7 @@ impl Circle {
         Some(pair)
     }
 
-    /// π in multiples of 2^-`bits`.
+    /// Returns π in multiples of 2^-`bits`.
     fn half_turn(&mut self, bits: usize, cache: &mut ConstCache) -> IBig {
         let known = self.half.take().filter(|(known, _)| *known >= bits);
         let (known, pi) = known.unwrap_or_else(|| {
@@ -89,12 +91,12 @@ impl Circle {
     }
 }
 
-/// Sine and cosine of an angle between 0 and a little more than an eighth of a turn, all in multiples
-/// of 2^-`bits`.
+/// Computes sine and cosine of an angle from 0 to slightly more than 45 degrees; all values are in
+/// multiples of 2^-`bits`.
 fn of_small(radians: IBig, bits: usize, halvings: usize) -> [IBig; 2] {
     let angle = radians >> halvings;
     let square = (&angle * &angle) >> bits;
-    // 1 − cos x, which keeps its digits where the cosine would lose them.
+    // The series is that of 1 − cos x, which avoids the cancellation of the cosine near 1.
     let mut term = &square >> 1;
     let mut versine = term.clone();
     for number in 1_u32.. {
@@ -129,7 +131,7 @@ mod tests {
     #[test]
     fn sines_and_cosines_are_those_of_another_hand() {
         let (mut circle, mut cache) = (Circle::default(), ConstCache::new());
-        // Fewer bits after more make do with what is known.
+        // Lower precisions after higher ones use the cached value.
         for bits in [3_700_usize, 700, 200, 1_500, 65] {
             for near in [
                 0.0,

@@ -1,4 +1,4 @@
-//! Compiling: names and types are checked, then constants are folded into a postfix program.
+//! Compilation: names and types are checked, and constants are folded into a postfix program.
 
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ impl Expression {
                 return Err(ExpressionError::new(self.range(), message).hint(hint));
             }
             Node::Unknown => {}
-            // Its branches are what must have the type.
+            // The type applies to the branches.
             Node::Call(function, _) if function.meaning == Meaning::If => {}
             _ => self.check_type(needed)?,
         }
@@ -81,12 +81,12 @@ fn check_all(parts: &[Expression], needed: Type, scope: &Scope) -> Checked {
 
 struct Compiler<'s> {
     scope: &'s Scope,
-    /// The program so far. What is constant in it is a single step.
+    /// The program so far. A constant part of it is a single operation.
     ops: Vec<Op>,
 }
 
 impl Compiler<'_> {
-    /// Appends the steps of an expression whose names and types are right.
+    /// Appends the operations of an expression whose names and types have been checked.
     fn emit(&mut self, expression: &Expression) -> Checked {
         let range = expression.range();
         match &expression.node {
@@ -125,7 +125,7 @@ impl Compiler<'_> {
                 (Meaning::If, [condition, then, otherwise]) => {
                     self.select(condition, then, otherwise)
                 }
-                // The parser lets no other number of arguments pass, `check` no distribution.
+                // The parser refuses wrong numbers of arguments, and `check` refuses distributions.
                 _ => Err(ExpressionError::new(range, "this call has no value")),
             },
         }
@@ -167,7 +167,8 @@ impl Compiler<'_> {
         let start = self.ops.len();
         self.emit(left)?;
         let middle = self.ops.len();
-        // What a constant condition guards is not folded: `n != 0 and 1/n < 2` is no mistake.
+        // An operand that a constant condition excludes is not folded: `n != 0 and 1/n < 2` is valid
+        // for n = 0.
         match (operation, &self.ops[start..]) {
             (Two::And, [Op::Constant(0.0)]) | (Two::Or, [Op::Constant(1.0)]) => return Ok(()),
             _ => {}
@@ -183,7 +184,7 @@ impl Compiler<'_> {
         self.join(operation, start, middle, &range)
     }
 
-    /// Applies an operation to what the steps from `start` and from `middle` leave.
+    /// Appends an operation on the results of the operations from `start` and from `middle`.
     fn join(
         &mut self,
         operation: Two,
@@ -224,7 +225,7 @@ impl Compiler<'_> {
     ) -> Checked {
         let start = self.ops.len();
         self.emit(condition)?;
-        // As with `and`: `if(n == 0, 1, 1/n)` is no mistake.
+        // As with `and`: `if(n == 0, 1, 1/n)` is valid for n = 0.
         if let &[Op::Constant(value)] = &self.ops[start..] {
             self.ops.truncate(start);
             return self.emit(if value == 0.0 { otherwise } else { then });
@@ -248,7 +249,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The error of a function that has no value at `x`.
+/// Returns the error of a function that is not defined at `x`.
 fn not_real(call: &Expression, x: f64) -> ExpressionError {
     let name = match &call.node {
         Node::Call(function, _) => function.name,
@@ -262,9 +263,9 @@ fn not_real(call: &Expression, x: f64) -> ExpressionError {
     ExpressionError::new(call.range(), message).hint(hint)
 }
 
-/// The value as an integer, if it is one above zero.
+/// Returns the value as an integer if it is a positive one.
 fn positive_whole(value: f64) -> Option<u32> {
-    // By way of its digits, because there is no checked conversion.
+    // Parsed from its digits, because the standard library has no checked conversion.
     let whole = value.to_string().parse().ok()?;
     (whole > 0).then_some(whole)
 }

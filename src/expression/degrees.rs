@@ -1,14 +1,15 @@
-//! Trigonometry in degrees, exact where the value is, and the same on every machine.
+//! Trigonometric functions in degrees, exact where the value is representable, and equal on every
+//! machine.
 //!
-//! Angles are reduced without error modulo 360 and then to an octant before they become radians.
+//! Angles are reduced without error modulo 360 and then to an octant before the conversion to radians.
 //! Hence multiples of 90 degrees give exactly 0 and ±1, `sin(30)` is 0.5, `sin(45) == cos(45)`,
 //! `tan(45)` is 1, and `sin(x) == cos(90 - x)` to the bit wherever `90 - x` is exact. Elsewhere the
-//! error is below two units in the last place. The inverse functions undo every whole degree that
-//! they can reach: `asin(sin(17))` is 17.
+//! error is below two units in the last place. The inverse functions invert every integral number of
+//! degrees in their range: `asin(sin(17))` is 17.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Sine of `x` degrees.
+/// Computes the sine of `x` degrees.
 pub(crate) fn sin(x: f64) -> f64 {
     let turn = x % 360.0;
     let (angle, sign) = half_turn(turn.abs());
@@ -17,7 +18,7 @@ pub(crate) fn sin(x: f64) -> f64 {
     sign * quarter(angle).0 + 0.0
 }
 
-/// Cosine of `x` degrees.
+/// Computes the cosine of `x` degrees.
 pub(crate) fn cos(x: f64) -> f64 {
     let (angle, sign) = half_turn((x % 360.0).abs());
     if angle > 90.0 {
@@ -27,28 +28,28 @@ pub(crate) fn cos(x: f64) -> f64 {
     }
 }
 
-/// Tangent of `x` degrees; infinite at odd multiples of 90.
+/// Computes the tangent of `x` degrees; infinite at odd multiples of 90.
 pub(crate) fn tan(x: f64) -> f64 {
     sin(x) / cos(x) + 0.0
 }
 
-/// Arc sine in degrees, from -90 to 90; NaN outside -1 to 1.
+/// Computes the arc sine in degrees, from -90 to 90; NaN outside -1 to 1.
 pub(crate) fn asin(x: f64) -> f64 {
     whole(libm::asin(x).to_degrees(), x, sin)
 }
 
-/// Arc cosine in degrees, from 0 to 180; NaN outside -1 to 1.
+/// Computes the arc cosine in degrees, from 0 to 180; NaN outside -1 to 1.
 pub(crate) fn acos(x: f64) -> f64 {
     whole(libm::acos(x).to_degrees(), x, cos)
 }
 
-/// Arc tangent in degrees, from -90 to 90.
+/// Computes the arc tangent in degrees, from -90 to 90.
 pub(crate) fn atan(x: f64) -> f64 {
     whole(libm::atan(x).to_degrees(), x, tan)
 }
 
-/// The direction of the point (`x`, `y`) in degrees counterclockwise from the x axis, above -180
-/// and up to 180; 0 for the origin.
+/// Computes the argument of the point (`x`, `y`) in degrees, counter-clockwise from the x axis, above
+/// -180 and up to 180; 0 for the origin.
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     if x.is_nan() || y.is_nan() {
         return f64::NAN;
@@ -58,7 +59,7 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     if y < 0.0 { -upper } else { upper }
 }
 
-/// An angle from 0 up to 360 as one below 180 and the sign that sine and cosine take from it.
+/// Reduces an angle from 0 up to 360 to one below 180, with the sign that sine and cosine get.
 fn half_turn(angle: f64) -> (f64, f64) {
     if angle >= 180.0 {
         (angle - 180.0, -1.0)
@@ -67,7 +68,7 @@ fn half_turn(angle: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of an angle from 0 to 90.
+/// Computes sine and cosine of an angle from 0 to 90.
 fn quarter(angle: f64) -> (f64, f64) {
     if angle > 45.0 {
         let (sin, cos) = octant(90.0 - angle);
@@ -77,7 +78,7 @@ fn quarter(angle: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of an angle from 0 to 45.
+/// Computes sine and cosine of an angle from 0 to 45.
 fn octant(angle: f64) -> (f64, f64) {
     if angle == 45.0 {
         (FRAC_1_SQRT_2, FRAC_1_SQRT_2)
@@ -88,7 +89,8 @@ fn octant(angle: f64) -> (f64, f64) {
     }
 }
 
-/// The whole degree next to `angle` if `function` takes it to `value` exactly, else `angle`.
+/// Returns the integer nearest to `angle` if `function` maps it exactly to `value`, and `angle`
+/// otherwise.
 fn whole(angle: f64, value: f64, function: impl Fn(f64) -> f64) -> f64 {
     let nearest = angle.round();
     if function(nearest) == value {

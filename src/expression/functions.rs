@@ -1,22 +1,22 @@
-//! The table of functions.
+//! Table of the functions of the expression language.
 
 use super::operator::{One, Two};
 
-/// A function of the language.
+/// A function of the expression language.
 #[derive(Debug)]
 pub(super) struct Function {
     pub(super) name: &'static str,
-    /// The arguments, as they are named in hints.
+    /// Names of the arguments, for help texts.
     pub(super) arguments: &'static str,
     pub(super) meaning: Meaning,
 }
 
-/// What a call becomes.
+/// Operation that a call denotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     One(One),
     Two(Two),
-    /// One or more arguments, put together from the left.
+    /// A left fold over one or more arguments.
     Fold(Two),
     If,
     Distribution,
@@ -70,12 +70,12 @@ impl Function {
         FUNCTIONS.iter().find(|function| function.name == name)
     }
 
-    /// How a call of it looks.
+    /// Returns the notation of a call.
     pub(super) fn signature(&self) -> String {
         format!("{}({})", self.name, self.arguments)
     }
 
-    /// Whether it can have this many arguments.
+    /// Returns whether the function accepts this number of arguments.
     pub(super) fn accepts(&self, count: usize) -> bool {
         if self.is_variadic() {
             count >= 1
@@ -84,7 +84,7 @@ impl Function {
         }
     }
 
-    /// What is wrong with this many arguments.
+    /// Returns the message for a wrong number of arguments.
     pub(super) fn arity_message(&self, count: usize) -> String {
         let (least, arity) = if self.is_variadic() {
             ("at least ", 1)

@@ -1,4 +1,4 @@
-//! What an expression can yield where only the limits of its slots are known (Moore 1966).
+//! Interval arithmetic (Moore 1966): bounds of the values of a program from bounds of its slots.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -6,23 +6,24 @@ use super::degrees;
 use super::operator::{One, Two, modulo};
 use super::program::{Op, Program};
 
-/// All numbers from `low` to `high`, either of which may be infinite.
+/// The closed interval from `low` to `high`, either of which may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The least number.
+    /// Lower bound.
     pub low: f64,
-    /// The largest number.
+    /// Upper bound.
     pub high: f64,
 }
 
 impl Interval {
-    /// All numbers.
+    /// The real line.
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
     };
 
-    /// The numbers between two; all of them if one is no number.
+    /// Creates an interval from its bounds. Returns [`Interval::ALL`] if they are not in order or one
+    /// is NaN.
     #[must_use]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high {
@@ -32,13 +33,14 @@ impl Interval {
         }
     }
 
-    /// One number.
+    /// Creates the interval of a single number.
     #[must_use]
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// The least interval that holds these values; all numbers if one of them is none.
+    /// Returns the smallest interval that contains the values; [`Interval::ALL`] if one is NaN or there
+    /// are none.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let all = Self {
@@ -55,19 +57,20 @@ impl Interval {
         Self::new(hull.low, hull.high)
     }
 
-    /// The least interval that holds both.
+    /// Returns the smallest interval that contains both intervals.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self::new(self.low.min(other.low), self.high.max(other.high))
     }
 
-    /// Part `number` of so many that are equally wide.
+    /// Returns part `number` of `count` parts of equal width.
     #[must_use]
     pub fn part(self, number: usize, count: usize) -> Self {
         Self::along(self.low, self.high, number, count)
     }
 
-    /// The same of the way from one number to another, whichever is larger.
+    /// Returns the interval between the ends of part `number` of `count` equal parts of the way from
+    /// `from` to `to`, which may be in either order.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "numbers of parts are small")]
     pub fn along(from: f64, to: f64, number: usize, count: usize) -> Self {
@@ -79,7 +82,7 @@ impl Interval {
         Self::of(&[at(number), at(number + 1)])
     }
 
-    /// The largest distance from 0.
+    /// Returns the largest absolute value.
     #[must_use]
     pub fn magnitude(self) -> f64 {
         self.low.abs().max(self.high.abs())
@@ -94,7 +97,7 @@ impl Interval {
         self.low <= 0.0 && self.high >= 0.0
     }
 
-    /// The values of a function that does not fall, where it has any: `least` is where it begins.
+    /// Returns the range of a monotonically increasing function that is defined from `least` on.
     fn rising(self, least: f64, function: impl Fn(f64) -> f64) -> Self {
         let [low, high] = [self.low, self.high].map(|end| function(end.max(least)));
         Self::new(low, high)
@@ -109,8 +112,8 @@ impl Interval {
         Self::new(least, self.magnitude())
     }
 
-    /// The values at the four corners, which hold all others where a function of two numbers rises
-    /// or falls along each.
+    /// Returns the hull of the values at the four corners: the range of a function of two variables
+    /// that is monotonic in each.
     fn corners(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
         let [a, b] = [self.low, self.high];
         let [c, d] = [other.low, other.high];
@@ -122,13 +125,13 @@ impl Interval {
         ])
     }
 
-    /// The values of the sine of these angles, in degrees.
+    /// Returns the range of the sine over angles in degrees.
     #[must_use]
     pub fn sine(self) -> Self {
         Self::new(self.low - 90.0, self.high - 90.0).cosine()
     }
 
-    /// The values of the cosine of these angles, in degrees.
+    /// Returns the range of the cosine over angles in degrees.
     #[must_use]
     pub fn cosine(self) -> Self {
         let peak = |offset: f64| {
@@ -145,7 +148,7 @@ impl Interval {
         }
     }
 
-    /// Of a condition: whether it holds, if that is known.
+    /// Interprets the interval as a condition: returns whether it holds, if that is known.
     fn truth(self) -> Option<bool> {
         match self.as_point() {
             Some(value) => Some(value != 0.0),
@@ -171,7 +174,7 @@ impl Interval {
     fn power(self, exponent: Self) -> Self {
         let apply = |x, y| Two::Power.apply(x, y);
         let Some(y) = exponent.as_point().filter(|y| y.fract() == 0.0) else {
-            // Only of numbers from 0 on has a power any value then.
+            // Without an integral exponent, only numbers from 0 on have powers.
             let base = self.rising(0.0, |x| x);
             return base.corners(exponent, apply);
         };
@@ -205,13 +208,13 @@ impl Mul for Interval {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        // No number is so large that nothing of it is something.
+        // The bound of a product of 0 with an infinite bound is 0: the values themselves are finite.
         self.corners(other, |a, b| if a == 0.0 || b == 0.0 { 0.0 } else { a * b })
     }
 }
 
 impl One {
-    /// Values where the operation has none, as the root of a number below 0, are left out.
+    /// Computes the range of the operation. Arguments for which it is not defined are ignored.
     fn range(self, x: Interval) -> Interval {
         if let Some(x) = x.as_point() {
             return Interval::point(self.apply(x));
@@ -276,8 +279,9 @@ impl Two {
 }
 
 impl Program {
-    /// An interval that holds all values that the program has for slots within these, give or take
-    /// rounding. It may hold others, and fewer of them the narrower the slots are.
+    /// Computes an interval that contains all values of the program, up to rounding, for slots within
+    /// the given intervals. Missing slots may have any value. The interval may be too wide, less so the
+    /// narrower the slots are.
     #[must_use]
     pub fn range(&self, slots: &[Interval]) -> Interval {
         let read = |slot: usize| slots.get(slot).copied().unwrap_or(Interval::ALL);

@@ -1,11 +1,11 @@
-//! The words and signs of an expression, and what to say about those that are not in the grammar.
+//! Lexical analysis: tokens, and errors for characters and signs outside of the grammar.
 
 use std::ops::Range;
 
 use super::ExpressionError;
 use super::operator::Two;
 
-/// A word or a sign.
+/// A token.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Token {
     Number(f64),
@@ -19,7 +19,8 @@ pub(super) enum Token {
     End,
 }
 
-/// The token at or after byte `at`, and where it stands; [`Token::End`] stands at the end.
+/// Returns the token at or after byte `at`, with its range. [`Token::End`] has an empty range at the
+/// end.
 pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), ExpressionError> {
     let blank = |c: char| c.is_ascii_whitespace();
     let rest = text[at..].trim_start_matches(blank);
@@ -33,7 +34,7 @@ pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), Expr
     if first.is_ascii_alphabetic() || first == '_' {
         let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let mut length = prefix(rest, is_part);
-        // A part of a complex number.
+        // The suffix for a part of a complex number.
         if let Some(after) = PARTS.iter().find_map(|it| rest[length..].strip_prefix(it))
             && !after.starts_with(is_part)
         {
@@ -57,16 +58,17 @@ pub(super) fn token(text: &str, at: usize) -> Result<(Token, Range<usize>), Expr
     Err(foreign_character(first, range))
 }
 
-/// Whether a text can be the name of a parameter.
+/// Returns whether a text is valid as the name of a parameter: letters, digits and `_`, beginning with
+/// a letter.
 pub(crate) fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
-/// What stands behind the name of a complex number for its real part, and for its imaginary part.
+/// Suffixes of the name of a complex number for its real part and its imaginary part.
 pub(crate) const PARTS: [&str; 2] = [".re", ".im"];
 
-/// The signs of the grammar; of two with the same beginning the longer comes first.
+/// Signs of the grammar. A sign precedes every shorter one that it starts with.
 const SIGNS: [(&str, Token); 18] = [
     ("||", Token::Infix(Two::Or)),
     ("&&", Token::Infix(Two::And)),
@@ -88,7 +90,7 @@ const SIGNS: [(&str, Token); 18] = [
     (",", Token::Comma),
 ];
 
-/// Signs of other languages that begin like one of ours, and what to write instead.
+/// Signs of other languages that start with a sign of the grammar, with help texts.
 const FOREIGN: [(&str, &str); 9] = [
     ("**", "write ^ for powers"),
     ("//", "write floor(a / b)"),
@@ -147,7 +149,7 @@ fn word(word: &str) -> Token {
     }
 }
 
-/// The number that begins at `start`: digits, a point with digits, a power of ten.
+/// Reads the number at `start`: digits, an optional fraction and an optional power of ten.
 fn number(text: &str, start: usize) -> Result<(Token, Range<usize>), ExpressionError> {
     let rest = &text[start..];
     let mut length = prefix(rest, is_digit);
@@ -162,7 +164,7 @@ fn number(text: &str, start: usize) -> Result<(Token, Range<usize>), ExpressionE
     }
     if let Some(exponent) = rest[length..].strip_prefix(['e', 'E']) {
         let digits = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
-        // Otherwise this is the constant e, after a missing operator.
+        // Otherwise this is the constant e after a missing operator.
         if digits.starts_with(is_digit) {
             length = rest.len() - digits.len() + prefix(digits, is_digit);
         }
@@ -194,7 +196,7 @@ pub(super) fn is_digit(character: char) -> bool {
     character.is_ascii_digit()
 }
 
-/// The length of the longest beginning whose characters are all such.
+/// Returns the length in bytes of the longest prefix whose characters all satisfy a predicate.
 fn prefix(text: &str, such: impl Fn(char) -> bool) -> usize {
     text.find(|c| !such(c)).unwrap_or(text.len())
 }

@@ -1,18 +1,18 @@
 //! The expression language of rule files: `sqrt(3)/6`, `age % 2 == 0`, `uniform(-20, 20)`.
 //!
-//! A text is parsed once into an [`Expression`], which remembers where everything stood, and
-//! compiled against a [`Scope`] into a [`Program`], which has no names, no types and no constant
-//! parts left and is evaluated without allocating.
+//! A text is parsed into an [`Expression`], which keeps source ranges. An expression is compiled in a
+//! [`Scope`] to a [`Program`], in which names are resolved, types are checked and constants are folded,
+//! and which is evaluated without allocation.
 //!
-//! From loosest to tightest: `or`, `and`, `not`, comparisons (which do not chain), `+ -`, `* / %`,
-//! the minus sign, `^` (to the right: `-2^2` is -4, `2^3^2` is 512). `||`, `&&` and `!` are other
-//! spellings of the first three. Every name is a number, those of the parts of a complex one, `s.re`
-//! and `s.im`, as well; conditions come from comparisons, `odd`, `even`, `true` and `false`, and the
-//! two never mix. Trigonometry takes and gives degrees and is exact where the value is (see `degrees`).
+//! Operators in order of increasing precedence: `or`, `and`, `not`, comparisons (which do not chain),
+//! `+ -`, `* / %`, negation, `^` (right-associative: `-2^2` is -4, `2^3^2` is 512). `||`, `&&` and `!`
+//! are alternative spellings of `or`, `and` and `not`. Every name denotes a number; the parts of a
+//! complex number `s` have the names `s.re` and `s.im`. Conditions result from comparisons, `odd`,
+//! `even`, `true` and `false`, and numbers and conditions never convert to each other. Trigonometric
+//! functions take and return degrees and are exact where the value is representable (see `degrees`).
 //!
-//! What is guaranteed: nothing here panics or overflows the stack, whatever the text; a program
-//! reads only the slots of its scope; the same expression has the same value, bit for bit, on
-//! every machine.
+//! Guarantees: for any text, no function of this module panics or overflows the stack; a program reads
+//! only the slots of its scope; an expression has the same value, bit for bit, on every machine.
 
 mod circle;
 mod compile;
@@ -42,7 +42,7 @@ pub use scope::{Scope, is_reserved};
 use functions::{Function, Meaning};
 use operator::{One, Two};
 
-/// What an expression yields.
+/// Type of the value of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Type {
     /// A real number.
@@ -51,15 +51,15 @@ pub enum Type {
     Condition,
 }
 
-/// A mistake in an expression, or a warning about one.
+/// A mistake in an expression, or a warning.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// Where it is: bytes of the expression's text, on character boundaries.
+    /// Byte range in the text of the expression, on character boundaries.
     pub range: Range<usize>,
-    /// What is wrong.
+    /// Message.
     pub message: String,
-    /// What would be right.
+    /// Help text.
     pub hint: Option<String>,
 }
 
@@ -82,9 +82,10 @@ impl ExpressionError {
 
 /// An expression as written.
 ///
-/// Two are equal if they are written the same up to white space, the spelling of numbers and
-/// operators (`0.5` and `.5`, `and` and `&&`), and parentheses that change nothing. Printing gives
-/// text that parses to an equal expression, if its numbers are finite and the text is not too long.
+/// Two expressions are equal if they differ only in white space, in the spelling of numbers and
+/// operators (`0.5` and `.5`, `and` and `&&`), and in redundant parentheses. `Display` writes a text
+/// that parses to an equal expression, provided that its numbers are finite and the text does not
+/// exceed the limits of [`parse`](Self::parse).
 #[derive(Clone, Debug)]
 pub struct Expression {
     node: Node,
@@ -93,14 +94,14 @@ pub struct Expression {
 
 #[derive(Clone, Debug)]
 enum Node {
-    /// Without a sign if it comes from a text.
+    /// A number, which has no sign if it was parsed.
     Number(f64),
     Truth(bool),
     Name(String),
     Prefix(One, Box<Expression>),
     Infix(Two, Box<[Expression; 2]>),
     Call(&'static Function, Vec<Expression>),
-    /// Stands for a text that could not be read.
+    /// A placeholder for a text that could not be parsed.
     Unknown,
 }
 
@@ -119,21 +120,21 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Reads an expression.
+    /// Parses an expression.
     ///
     /// # Errors
     ///
-    /// The first place that is not in the grammar: an unknown function, a wrong number of
-    /// arguments, more than 4096 bytes, 64 levels of nesting or 256 operators, and the like.
-    /// Names and types are left to [`compile`](Self::compile).
+    /// Returns the first mistake of syntax: an unknown function, a wrong number of arguments, more than
+    /// 4096 bytes, 64 levels of nesting or 256 operators, and so on. Names and types are checked by
+    /// [`compile`](Self::compile).
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
         parse::parse(text)
     }
 
-    /// The expression that is this number. One that is not finite fails to compile.
+    /// Creates the expression of a number. Compilation fails if the number is not finite.
     #[must_use]
     pub fn number(value: f64) -> Self {
-        // A text has no negative numbers, only a minus sign before one.
+        // In parsed texts a negative number is a negation.
         let node = if value.is_sign_negative() && !value.is_nan() {
             Node::Prefix(One::Negate, Box::new(Self::number(-value)))
         } else {
@@ -144,8 +145,9 @@ impl Expression {
         number
     }
 
-    /// Stands in for an expression that could not be read, so that nothing more is said of it: it
-    /// compiles to a program without a value and is equal to no other.
+    /// Returns a placeholder for an expression that could not be parsed, which causes no further
+    /// diagnostics. The placeholder compiles to a program without a value and is not equal to any
+    /// expression.
     #[must_use]
     pub fn unknown() -> Self {
         Self {
@@ -154,13 +156,13 @@ impl Expression {
         }
     }
 
-    /// Whether it is [`Expression::unknown`].
+    /// Returns whether this is [`Expression::unknown`].
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         matches!(self.node, Node::Unknown)
     }
 
-    /// The name, if it is nothing but a name.
+    /// Returns the name if the expression is a single name.
     #[must_use]
     pub fn as_name(&self) -> Option<&str> {
         match &self.node {
@@ -169,8 +171,9 @@ impl Expression {
         }
     }
 
-    /// The name and arguments of the outermost call, if it is a distribution: `uniform`, `normal`
-    /// or `choice`. Their number is right: two, two, at least one.
+    /// Returns the name and the arguments of a distribution, `uniform`, `normal` or `choice`, if the
+    /// expression is a call of one. The parser has checked the number of arguments: two, two, at least
+    /// one.
     #[must_use]
     pub fn as_call(&self) -> Option<(&str, &[Self])> {
         match &self.node {
@@ -181,13 +184,14 @@ impl Expression {
         }
     }
 
-    /// Where it stands in the text that was parsed, its parentheses included.
+    /// Returns the byte range in the parsed text, including parentheses.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.range.clone()
     }
 
-    /// What it yields if its parts have the right types, which [`compile`](Self::compile) checks.
+    /// Returns the type of the value, provided that the types of the parts are right, which
+    /// [`compile`](Self::compile) checks.
     #[must_use]
     pub fn yields(&self) -> Type {
         match &self.node {
@@ -204,8 +208,8 @@ impl Expression {
         }
     }
 
-    /// Every name in it, with its range, in the order of the text: parameters, variables and the
-    /// constants `pi`, `phi`, `e`, but not functions.
+    /// Returns all names with their ranges, in the order of the text: parameters, variables and the
+    /// constants `pi`, `phi` and `e`, but not functions.
     #[must_use]
     pub fn names(&self) -> Vec<(&str, Range<usize>)> {
         let mut names = Vec::new();
@@ -217,7 +221,8 @@ impl Expression {
         names
     }
 
-    /// What is allowed but probably not meant: radians given to trigonometry.
+    /// Returns warnings of trigonometric functions whose arguments contain `pi` and hence are probably
+    /// in radians.
     #[must_use]
     pub fn warnings(&self) -> Vec<ExpressionError> {
         let mut warnings = Vec::new();
@@ -242,33 +247,35 @@ impl Expression {
         warnings
     }
 
-    /// The angle in degrees if this is an angle in radians without variables, to nine decimals.
+    /// Converts a constant angle in radians to degrees, rounded to nine decimals. Returns `None` if the
+    /// expression is not constant.
     fn in_degrees(&self) -> Option<f64> {
         let radians = self.compile(&Scope::new()).ok()?.as_constant()?;
         Some((radians.to_degrees() * 1e9).round() / 1e9)
     }
 
-    /// Checks names and types and folds what is constant, for an expression that is a number.
+    /// Compiles an expression of type number: checks names and types and folds constants.
     ///
     /// # Errors
     ///
-    /// An unknown name, a condition in a number's place or the reverse, a distribution, a constant
-    /// part that is not finite, a division by a constant zero, or more than 64 intermediate values.
+    /// Returns an error for an unknown name, a condition in place of a number or the reverse, a
+    /// distribution, a constant part that is not finite, a division by a constant zero, or more than 64
+    /// intermediate values.
     pub fn compile(&self, scope: &Scope) -> Result<Program, ExpressionError> {
         compile::compile(self, Type::Number, scope)
     }
 
-    /// Checks names and types and folds what is constant, for an expression that is a condition.
+    /// Compiles an expression of type condition: checks names and types and folds constants.
     ///
     /// # Errors
     ///
-    /// As [`compile`](Self::compile).
+    /// Returns the same errors as [`compile`](Self::compile).
     pub fn compile_condition(&self, scope: &Scope) -> Result<Program, ExpressionError> {
         compile::compile(self, Type::Condition, scope)
     }
 
-    /// All that is wrong with it in a scope: each of its unknown names, or the one mistake that
-    /// [`compile`](Self::compile) or [`compile_condition`](Self::compile_condition) reports.
+    /// Returns all mistakes in a scope: each unknown name once, or, if there is none, the mistake that
+    /// [`compile`](Self::compile) or [`compile_condition`](Self::compile_condition) returns.
     #[must_use]
     pub fn mistakes(&self, result: Type, scope: &Scope) -> Vec<ExpressionError> {
         let mut unknown: Vec<(&str, ExpressionError)> = Vec::new();
@@ -286,7 +293,7 @@ impl Expression {
         unknown.into_iter().map(|(_, error)| error).collect()
     }
 
-    /// Calls `f` for this expression and all its parts, in the order of the text.
+    /// Calls `f` for the expression and all its parts, in the order of the text.
     fn visit<'a>(&'a self, f: &mut impl FnMut(&'a Self)) {
         f(self);
         match &self.node {

@@ -1,20 +1,20 @@
-//! What the operators and functions of one and two arguments do, bind and yield.
+//! Semantics, types and precedence of the operators and functions of one and two arguments.
 //!
-//! One definition serves constant folding and evaluation alike. Conditions are 1.0 and 0.0.
+//! Constant folding and evaluation use the same definitions. Conditions are represented by 1.0 and 0.0.
 
 use super::Type;
 use super::degrees;
 
-/// Precedence of the loosest operator: what stands alone or between brackets.
+/// Lowest precedence, that of whole expressions and of parenthesized ones.
 pub(super) const LOOSEST: u8 = 1;
 pub(super) const NOT: u8 = 3;
 const COMPARISON: u8 = 4;
 pub(super) const NEGATE: u8 = 7;
 pub(super) const POWER: u8 = 8;
-/// Precedence of what needs no parentheses anywhere.
+/// Highest precedence, of expressions that never need parentheses.
 pub(super) const ATOM: u8 = 9;
 
-/// An operation on one value.
+/// A unary operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum One {
     Negate,
@@ -83,7 +83,7 @@ impl One {
         }
     }
 
-    /// Precedence of the prefix operators; the others are written as calls.
+    /// Returns the precedence of a prefix operator, or [`ATOM`] for a function.
     pub(super) fn precedence(self) -> u8 {
         match self {
             Self::Not => NOT,
@@ -93,7 +93,7 @@ impl One {
     }
 }
 
-/// An operation on two values.
+/// A binary operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Two {
     Or,
@@ -134,7 +134,7 @@ impl Two {
             Self::Divide => a / b,
             Self::Modulo => modulo(a, b),
             Self::Power => power(a, b),
-            // Unlike `f64::min`, these do not hide a NaN from whoever checks the result.
+            // Unlike `f64::min`, these propagate a NaN, which the caller checks for.
             Self::Min if a < b || a.is_nan() => a,
             Self::Max if a > b || a.is_nan() => a,
             Self::Min | Self::Max => b,
@@ -162,7 +162,7 @@ impl Two {
         self.precedence() == COMPARISON
     }
 
-    /// Precedence of the infix operators; the others are written as calls.
+    /// Returns the precedence of an infix operator, or [`ATOM`] for a function.
     pub(super) fn precedence(self) -> u8 {
         match self {
             Self::Or => LOOSEST,
@@ -180,7 +180,7 @@ impl Two {
         }
     }
 
-    /// How it is written between its operands, with the space around it.
+    /// Returns the notation between the operands, with white space.
     pub(super) fn symbol(self) -> &'static str {
         match self {
             Self::Or => " or ",
@@ -206,41 +206,44 @@ fn truth(condition: bool) -> f64 {
     if condition { 1.0 } else { 0.0 }
 }
 
-/// The remainder of `x` by `c` with the sign of `c`: `x - c*floor(x/c)`, but rounded at most once.
+/// Computes the remainder of `x` modulo `c` with the sign of `c`: `x - c*floor(x/c)`, but rounded at
+/// most once.
 #[inline]
 pub(super) fn modulo(x: f64, c: f64) -> f64 {
     let remainder = if is_small_whole(x) && is_small_whole(c) && c != 0.0 {
-        // All but the quotient is exact, and that may be off by one; several times as fast as `%`.
+        // Exact except for the quotient, which may be off by one; several times as fast as `%`.
         x - nearest_whole(x / c) * c
     } else {
-        // The remainder of IEEE numbers is exact, hence the same on every machine.
+        // The remainder of IEEE numbers is exact, hence equal on every machine.
         x % c
     };
     if remainder != 0.0 && (remainder < 0.0) != (c < 0.0) {
         remainder + c
     } else {
-        // Not -0, which a multiple of `c` below zero would give.
+        // Avoids the -0 that negative multiples of `c` would give.
         remainder + 0.0
     }
 }
 
-/// Whether `x` is a whole number below 2^50, up to its sign.
+/// Returns whether `x` is an integer of magnitude below 2^50.
 fn is_small_whole(x: f64) -> bool {
     x.abs() < 1_125_899_906_842_624.0 && nearest_whole(x) == x
 }
 
-/// A whole number next to `x`, for `x` below 2^51 up to its sign; no call, unlike `f64::round`.
+/// Rounds `x`, of magnitude below 2^51, to a nearest integer, without a function call, unlike
+/// `f64::round`.
 fn nearest_whole(x: f64) -> f64 {
-    // From 2^52 to 2^53 the numbers are the whole ones. This is between the two.
+    // Doubles from 2^52 to 2^53 are integers. This is the middle of that range.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     (x + WHOLE) - WHOLE
 }
 
-/// `x` to the power `y`.
+/// Computes `x` to the power `y`.
 ///
-/// Whole exponents up to 64 are products in a fixed order (squaring), so that `x^2` is `x*x` to
-/// the bit and `x^-n` is `1/x^n`; `x^0.5` is the square root; all else is `libm::pow`.
-// Inlined, it would take registers from the loop that evaluates programs.
+/// Integral exponents of magnitude up to 64 use repeated squaring in a fixed order, so that `x^2` is
+/// `x*x` to the bit and `x^-n` is `1/x^n`. `x^0.5` is the square root. All other powers are
+/// `libm::pow`.
+// Inlining would take registers from the loop that evaluates programs.
 #[inline(never)]
 fn power(x: f64, y: f64) -> f64 {
     if y == 0.5 {

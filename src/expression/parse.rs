@@ -1,4 +1,4 @@
-//! The parser: operator precedence after Pratt ("Top down operator precedence", 1973).
+//! Operator-precedence parser (Pratt 1973, "Top down operator precedence").
 
 use std::ops::Range;
 
@@ -10,9 +10,11 @@ use super::{Expression, ExpressionError, Node};
 use crate::diagnostic::nearest;
 
 const MOST_BYTES: usize = 4096;
-/// Of brackets, prefix operators and powers, each of which costs the parser a call of itself.
+/// Maximum nesting depth of parentheses, prefix operators and powers, which the parser handles by
+/// recursion.
 const MOST_LEVELS: usize = 64;
-/// Chains of operators make trees as deep as they are long, and trees are walked recursively.
+/// Maximum number of operators: a chain of operators is a tree of the same depth, which is visited
+/// recursively.
 const MOST_OPERATORS: usize = 256;
 
 const FLOW_STYLE: &str = "in YAML's flow style a comma ends the value: quote it, or write it on \
@@ -44,26 +46,28 @@ pub(super) fn parse(text: &str) -> Parsed {
     match parser.token {
         Token::End => Ok(expression),
         Token::Comma => Err(parser.stray_comma()),
-        // Only a closing bracket ends an expression here; all else is an operator missing.
+        // Only a closing parenthesis ends an expression here; other tokens are reported as a missing
+        // operator.
         _ => Err(ExpressionError::new(parser.range, "no bracket is open here").hint(FLOW_STYLE)),
     }
 }
 
 struct Parser<'t> {
     text: &'t str,
-    /// The next token and where it stands.
+    /// The next token; its range follows.
     token: Token,
     range: Range<usize>,
-    /// Where the token before it stands.
+    /// Range of the previous token.
     previous: Range<usize>,
-    /// The brackets that are open, and whether they hold arguments.
+    /// The open parentheses, and whether each encloses arguments.
     open: Vec<(Range<usize>, bool)>,
     levels: usize,
     operators: usize,
 }
 
 impl Parser<'_> {
-    /// An expression whose infix operators outside of brackets have at least this precedence.
+    /// Parses an expression whose infix operators outside of parentheses have at least the precedence
+    /// `floor`.
     fn expression(&mut self, floor: u8) -> Parsed {
         let mut left = self.operand(floor)?;
         let mut compared = false;
@@ -176,7 +180,7 @@ impl Parser<'_> {
         Ok(Expression { node, range })
     }
 
-    /// What is between the brackets of a call.
+    /// Parses the arguments of a call.
     fn arguments(&mut self) -> Parsed<Vec<Expression>> {
         let mut arguments = Vec::new();
         self.advance()?;
@@ -192,7 +196,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Leaves the innermost bracket.
+    /// Consumes the closing parenthesis.
     fn close(&mut self) -> Parsed<()> {
         match self.token {
             Token::Close => {
@@ -211,7 +215,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Does something one level further down; the level begins at the next token.
+    /// Parses one nesting level deeper, and reports excessive depth at the next token.
     fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.levels == MOST_LEVELS {
             let error = ExpressionError::new(self.range.clone(), "this is nested too deeply");
@@ -232,7 +236,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The text ends too early.
+    /// Returns the error for an unexpected end of the text.
     fn ended(&self, message: &str) -> ExpressionError {
         let Some((bracket, _)) = self.open.last() else {
             return ExpressionError::new(self.previous.clone(), message).hint(self.after_hint());
@@ -255,7 +259,7 @@ impl Parser<'_> {
         ExpressionError::new(self.range.clone(), message).hint(hint)
     }
 
-    /// What could follow the last token.
+    /// Returns the help text for a missing value after the previous token.
     fn after_hint(&self) -> String {
         match &self.text[self.previous.clone()] {
             "%" => "% is the remainder of a division; for 50 percent write 0.5".to_owned(),
@@ -288,7 +292,7 @@ impl Parser<'_> {
         ExpressionError::new(range, "an operator is missing here").hint(hint)
     }
 
-    /// A second comparison after `left`, which is one.
+    /// Returns the error for a second comparison after the comparison `left`.
     fn chained(&self, left: &Expression, second: Two) -> ExpressionError {
         let error = ExpressionError::new(self.range.clone(), "comparisons do not chain");
         let middle = match &left.node {
@@ -315,7 +319,7 @@ impl Parser<'_> {
         ExpressionError::new(self.range.clone(), "a comma does not belong here").hint(hint)
     }
 
-    /// A hint if two of the arguments look like one number with a decimal comma.
+    /// Returns a help text if two adjacent arguments look like one number with a decimal comma.
     fn decimal_comma(&self, arguments: &[Expression]) -> Option<String> {
         arguments.windows(2).find_map(|pair| {
             let [units, tenths] = [&pair[0].range, &pair[1].range].map(|r| &self.text[r.clone()]);
@@ -333,7 +337,7 @@ fn unknown_function(name: &str, range: Range<usize>) -> ExpressionError {
         return ExpressionError::new(range, message).hint(format!("write {name} * (...)"));
     }
     let functions = FUNCTIONS.each_ref().map(|function| function.name);
-    // `cosine` is `cos`.
+    // Suggests `cos` for `cosine`.
     let beginning = || {
         let begins = |function: &&str| function.len() > 2 && name.starts_with(function);
         functions.into_iter().find(begins)

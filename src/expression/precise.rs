@@ -1,4 +1,4 @@
-//! Values of expressions to any number of bits, for what doubles cannot tell apart.
+//! Evaluation of expressions to arbitrary precision, where doubles do not suffice.
 
 use std::str::FromStr;
 
@@ -15,10 +15,10 @@ use super::{Expression, Node};
 type Float = FBig<HalfEven, 2>;
 type Computed = Result<dashu_float::round::Rounded<Float>, FpError>;
 
-/// A number, and the double that stands for it everywhere else.
+/// A number to arbitrary precision, with the double that represents it elsewhere.
 ///
-/// What a condition, a rounding or a remainder decides, the double decides, so that it is decided
-/// alike everywhere.
+/// Conditions, roundings and remainders are decided by the double, hence in the same way as in
+/// programs.
 #[derive(Clone, Debug)]
 pub(crate) struct Precise {
     near: f64,
@@ -26,20 +26,20 @@ pub(crate) struct Precise {
 }
 
 impl Precise {
-    /// A double, which is what it is.
+    /// Returns the exact value of a double; 0 if it is not finite.
     pub(crate) fn of(near: f64) -> Self {
         let exact = Float::try_from(near).unwrap_or(Float::ZERO);
         Self { near, exact }
     }
 
-    /// The number times a power of two, to a whole number.
+    /// Returns the number times 2^`bits`, rounded to an integer.
     pub(crate) fn fixed(&self, bits: usize) -> IBig {
         let shift = isize::try_from(bits).unwrap_or(isize::MAX);
         (self.exact.clone() << shift).to_int().value()
     }
 }
 
-/// Evaluates expressions to a number of bits.
+/// Evaluates expressions to a fixed number of bits.
 pub(crate) struct Precision {
     bits: usize,
     context: Context<HalfEven>,
@@ -47,7 +47,7 @@ pub(crate) struct Precision {
     circle: Circle,
 }
 
-/// Bits beyond those that are asked for, which differences of nearly equal numbers may cost.
+/// Guard bits for the cancellation in differences of nearly equal numbers.
 const GUARD: usize = 64;
 
 impl Precision {
@@ -60,17 +60,18 @@ impl Precision {
         }
     }
 
-    /// Makes do with so many bits from here on, if they are fewer than have been asked for.
+    /// Reduces the precision of the following evaluations to `bits`, if that is less than the original
+    /// precision.
     pub(crate) fn make_do_with(&mut self, bits: usize) {
         self.context = Context::new(bits.min(self.bits) + GUARD);
     }
 
-    /// The bits that have been asked for.
+    /// Returns the original precision in bits.
     pub(crate) fn bits(&self) -> usize {
         self.bits
     }
 
-    /// A double as the shortest decimal that it stands for: 0.1 is a tenth.
+    /// Interprets a double as the shortest decimal that rounds to it: 0.1 is exactly one tenth.
     pub(crate) fn written(&self, near: f64) -> Precise {
         let decimal = DBig::from_str(&near.to_string());
         let precision = self.context.precision();
@@ -84,8 +85,7 @@ impl Precision {
         }
     }
 
-    /// The value of an expression that is right in its scope, of which `names` knows all names but
-    /// those of constants.
+    /// Evaluates an expression that compiles in its scope. `names` resolves all names except constants.
     pub(crate) fn value(
         &mut self,
         expression: &Expression,
@@ -152,7 +152,8 @@ impl Precision {
         Some(Precise { near, exact })
     }
 
-    /// What comes of a computation; the double where it has no value, as next to the end of a range.
+    /// Returns the result of a computation, or the exact value of the double if the computation fails,
+    /// as at the end of the exponent range.
     fn known(
         &mut self,
         near: f64,
@@ -167,7 +168,7 @@ impl Precision {
         }
     }
 
-    /// Cosine and sine of a fraction of a turn, in multiples of 2^-bits.
+    /// Computes cosine and sine of a fraction of a turn, in multiples of 2^-bits.
     pub(crate) fn direction(&mut self, [numerator, denominator]: [u128; 2]) -> [IBig; 2] {
         let [above, below] = [numerator * 360, denominator].map(Float::from);
         let angle = self.context.div(above.repr(), below.repr());
@@ -178,7 +179,7 @@ impl Precision {
         [cosine, sine].map(|number| number.fixed(self.bits))
     }
 
-    /// Sine and cosine of an angle in degrees.
+    /// Computes sine and cosine of an angle in degrees.
     pub(crate) fn sine_cosine(&mut self, angle: &Precise) -> [Precise; 2] {
         [One::Sin, One::Cos].map(|function| self.one(function, angle))
     }
@@ -323,7 +324,7 @@ mod tests {
             let left = value(text).fixed(300).bit_len();
             assert!(left < 24, "{text}: {left} bits");
         }
-        // A double is the double, not the decimal that it is written as.
+        // A bound name has the exact value of its double, not that of its decimal notation.
         assert!(value("x - 0.1").fixed(300).bit_len() > 200);
     }
 

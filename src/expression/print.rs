@@ -1,4 +1,4 @@
-//! Printing, with the parentheses that are needed.
+//! Formatting of expressions with the necessary parentheses only.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -41,7 +41,7 @@ impl Display for Expression {
 }
 
 impl Expression {
-    /// Writes it with parentheses if it binds less tightly than `precedence`.
+    /// Writes the expression, in parentheses if its precedence is lower than `precedence`.
     fn write_bound(&self, f: &mut Formatter<'_>, precedence: u8) -> fmt::Result {
         let own = match &self.node {
             Node::Prefix(operator, _) => operator.precedence(),
@@ -58,7 +58,7 @@ impl Expression {
     }
 }
 
-/// The shortest decimal that reads back as the same number.
+/// Writes the shortest decimal that parses to the same number.
 fn write_number(f: &mut Formatter<'_>, value: f64) -> fmt::Result {
     if value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
         write!(f, "{value}")

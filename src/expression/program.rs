@@ -3,43 +3,43 @@
 use super::operator::{One, Two, modulo};
 use super::scope::UNKNOWN;
 
-/// The most intermediate values that a program may hold at a time.
+/// Maximum number of values on the stack of a program.
 pub(super) const STACK: usize = 64;
 
-/// A compiled expression: a postfix program. Evaluation allocates nothing.
+/// A compiled expression, as a postfix program. Evaluation does not allocate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     ops: Vec<Op>,
-    /// Values held at a time, from 1 to [`STACK`].
+    /// Maximum number of values on the stack, from 1 to [`STACK`].
     depth: usize,
 }
 
-/// A step of a program. Operands are taken from the stack and the result is put back.
+/// An operation of a program, which replaces its operands on the stack by its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Op {
     Constant(f64),
     Slot(usize),
-    /// `slot % divisor`, a step of its own because it is what [`Program::dependence`] looks for.
+    /// `slot % divisor`, a separate operation so that [`Program::dependence`] can recognize it.
     SlotModulo(usize, u32),
     One(One),
     Two(Two),
-    /// Of condition, a and b: a if the condition holds, else b.
+    /// Of a condition, a and b: a if the condition holds, else b.
     Select,
 }
 
-/// How the value of a [`Program`] depends on a slot.
+/// Dependence of the value of a [`Program`] on a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dependence {
-    /// Not at all.
+    /// No dependence.
     None,
-    /// For whole numbers in the slot, only on their remainder by this number, which is at least 1.
+    /// For integers in the slot, dependence only on the remainder by this number, which is at least 1.
     Modulo(u32),
-    /// In a way that is not known.
+    /// Unknown dependence.
     Free,
 }
 
 impl Program {
-    /// The program that yields this value.
+    /// Creates a program with a constant value.
     #[must_use]
     pub fn constant(value: f64) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl Program {
         }
     }
 
-    /// The program that stands in for one that is wrong: nothing is known of its value.
+    /// Creates the placeholder for an invalid program, whose value is unknown.
     #[must_use]
     pub fn unknown() -> Self {
         Self {
@@ -57,8 +57,8 @@ impl Program {
         }
     }
 
-    /// A program of these steps, which leave one value; nothing if they hold more than [`STACK`]
-    /// values at a time.
+    /// Creates a program from operations that leave one value. Returns `None` if they need more than
+    /// [`STACK`] values on the stack.
     pub(super) fn new(ops: Vec<Op>) -> Option<Self> {
         let (mut held, mut depth) = (0_usize, 0);
         for op in &ops {
@@ -73,7 +73,7 @@ impl Program {
         (depth <= STACK).then_some(Self { ops, depth })
     }
 
-    /// The value, if it is the same for all slots.
+    /// Returns the value if the program is a constant.
     #[must_use]
     pub fn as_constant(&self) -> Option<f64> {
         match self.ops.as_slice() {
@@ -82,9 +82,9 @@ impl Program {
         }
     }
 
-    /// The value for these slots; 1 or 0 for a condition.
+    /// Evaluates the program for the given slots; a condition gives 1 or 0.
     ///
-    /// It may be infinite or NaN: callers check. A slot beyond the end is NaN.
+    /// The result may be infinite or NaN, which the caller checks for. A missing slot is NaN.
     #[must_use]
     pub fn eval(&self, slots: &[f64]) -> f64 {
         match self.ops.as_slice() {
@@ -95,15 +95,15 @@ impl Program {
         }
     }
 
-    /// Whether the condition holds for these slots.
+    /// Returns whether the condition holds for the given slots.
     #[must_use]
     pub fn holds(&self, slots: &[f64]) -> bool {
         self.eval(slots) != 0.0
     }
 
-    /// How the value depends on a slot: `Modulo` with the least common multiple of the `c` if the
-    /// slot occurs only as `slot % c` with positive whole constants `c`, or in `odd(slot)` and
-    /// `even(slot)`, which count as 2.
+    /// Returns the dependence of the value on a slot: `Modulo` with the least common multiple of all
+    /// `c` if the slot occurs only as `slot % c` with positive integers `c`, or in `odd(slot)` and
+    /// `even(slot)`, which count as c = 2.
     #[must_use]
     pub fn dependence(&self, slot: usize) -> Dependence {
         self.ops
@@ -115,7 +115,7 @@ impl Program {
             })
     }
 
-    /// The steps, in postfix order.
+    /// Returns the operations, in postfix order.
     pub(super) fn ops(&self) -> &[Op] {
         &self.ops
     }
@@ -123,7 +123,8 @@ impl Program {
     fn run<const N: usize>(&self, slots: &[f64]) -> f64 {
         let mut stack = [0.0; N];
         let mut below = 0;
-        // The top of the stack; what is below it, and one value of no meaning, is in the array.
+        // The top of the stack is kept apart; the array has the values below it and an unused first
+        // value.
         let mut top = 0.0;
         for op in &self.ops {
             let pushed = match *op {
@@ -156,7 +157,7 @@ impl Program {
 }
 
 impl Dependence {
-    /// This dependence and one on the remainder by `divisor`.
+    /// Combines the dependence with one on the remainder by `divisor`.
     fn and(self, divisor: u32) -> Self {
         match self {
             Self::None => Self::Modulo(divisor),

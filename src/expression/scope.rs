@@ -1,4 +1,4 @@
-//! Names: which may be used, which are reserved, and what to say about the rest.
+//! Scopes: the names that an expression may use, and errors for unknown names.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -16,35 +16,35 @@ const CONSTANTS: [(&str, f64); 3] = [
 
 const KEYWORDS: [&str; 5] = ["and", "or", "not", "true", "false"];
 
-/// Whether a name belongs to the language, so that nothing else may be called that: a constant, a
-/// function, a distribution or a keyword.
+/// Returns whether a name is reserved by the language: a constant, a function, a distribution or a
+/// keyword.
 #[must_use]
 pub fn is_reserved(name: &str) -> bool {
     KEYWORDS.contains(&name) || constant(name).is_some() || Function::find(name).is_some()
 }
 
-/// The value of `pi`, `phi` (the golden ratio, 1.618…) or `e`.
+/// Returns the value of the constant `pi`, `phi` (the golden ratio, 1.618…) or `e`.
 pub(super) fn constant(name: &str) -> Option<f64> {
     let found = CONSTANTS.iter().find(|(constant, _)| *constant == name);
     found.map(|(_, value)| *value)
 }
 
-/// The names that an expression may use beside the language's own.
+/// The names that an expression may use in addition to those of the language.
 ///
 /// A [reserved](is_reserved) name keeps its meaning even if it is added here.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scope {
     names: BTreeMap<String, Named>,
-    /// Where else names are looked for.
+    /// Scope in which names that are absent here are looked up.
     enclosing: Option<Arc<Scope>>,
-    /// Whether other names stand for values that are not known.
+    /// Whether all other names denote unknown values.
     open: bool,
 }
 
-/// The slot of values that are not known. No list of slots is that long, so they read as NaN.
+/// Slot of unknown values. No list of slots is that long, hence the slot reads as NaN.
 pub(super) const UNKNOWN: usize = usize::MAX;
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Named {
     Constant(f64),
@@ -52,13 +52,13 @@ pub(super) enum Named {
 }
 
 impl Scope {
-    /// A scope without names.
+    /// Creates a scope without names.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A scope with all the names of another one, to which names can be added at no cost to it.
+    /// Creates a scope with all names of another one, which is shared and not copied.
     #[must_use]
     pub fn inside(enclosing: &Arc<Self>) -> Self {
         Self {
@@ -68,29 +68,28 @@ impl Scope {
         }
     }
 
-    /// Adds a name for a value, in place of what had this name before.
+    /// Adds a name for a value, replacing a previous meaning.
     pub fn constant(&mut self, name: &str, value: f64) {
         self.names.insert(name.to_owned(), Named::Constant(value));
     }
 
-    /// Adds a name for the value that [`Program::eval`](super::Program::eval) finds at index
-    /// `slot`, in place of what had this name before.
+    /// Adds a name for the value at index `slot` of the argument of
+    /// [`Program::eval`](super::Program::eval), replacing a previous meaning.
     pub fn variable(&mut self, name: &str, slot: usize) {
         self.names.insert(name.to_owned(), Named::Slot(slot));
     }
 
-    /// Adds a name whose value could not be told, so that nothing more is said of what depends on
-    /// it.
+    /// Adds a name whose value is unknown, so that values that depend on it cause no diagnostics.
     pub fn unknown_value(&mut self, name: &str) {
         self.variable(name, UNKNOWN);
     }
 
-    /// Takes every other name for one whose value is not known.
+    /// Lets every other name denote an unknown value.
     pub fn accept_any_name(&mut self) {
         self.open = true;
     }
 
-    /// Whether this name has been added.
+    /// Returns whether the name has been added, here or in an enclosing scope.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
         self.own(name).is_some()
@@ -108,7 +107,7 @@ impl Scope {
             .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }
 
-    /// Whether a name means something, or may do so.
+    /// Returns whether the name has a meaning, or may have one.
     pub(crate) fn knows(&self, name: &str) -> bool {
         self.get(name).is_some()
     }

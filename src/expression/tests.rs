@@ -1,9 +1,12 @@
+//! Tests of the values of expressions and of compiled programs.
+
 use super::{Dependence, Expression, ExpressionError, Program, Scope, Type, is_reserved};
 
 mod errors;
 mod laws;
 
-/// `angle` is 60, `zero` is 0; `age`, `index` and `number` are slots 0, 1 and 2.
+/// Returns a scope with the constants `angle` = 60 and `zero` = 0, and with `age`, `index` and `number`
+/// in slots 0, 1 and 2.
 fn scope() -> Scope {
     let mut scope = Scope::new();
     scope.constant("angle", 60.0);

@@ -1,6 +1,9 @@
+//! Tests of the errors of parsing and compiling, with ranges and help texts.
+
 use super::{Expression, ExpressionError, compile, scope};
 
-/// Asserts that `text` with its first `«…»` taken as the range fails with this message and hint.
+/// Asserts that `text` without its guillemets fails with this message and hint at the range of the
+/// first `«…»`.
 #[track_caller]
 fn fails(marked: &str, message: &str, hint: &str) {
     let (before, rest) = marked.split_once('«').unwrap();
@@ -341,7 +344,7 @@ fn limits() {
 
 #[test]
 fn the_deepest_expression_needs_little_stack() {
-    // Brackets cost the parser most where all the operators stand before them.
+    // The parser needs most stack for parentheses that follow all the operators.
     let text = "1 or 1 and 1 < 1 + 1*(".repeat(51) + &"(".repeat(13) + "1" + &")".repeat(64);
     let thread = std::thread::Builder::new().stack_size(1 << 20);
     let parsed = thread.spawn(move || {

@@ -1,8 +1,10 @@
+//! Tests of laws on random expressions and numbers: printing, folding, remainders, trigonometry.
+
 use crate::expression::functions::FUNCTIONS;
 use crate::expression::operator::{One, Two, modulo};
 use crate::expression::{Expression, Node, degrees};
 
-/// A generator of test data (Marsaglia's xorshift, 2003).
+/// Generator of test data: Marsaglia's xorshift (2003).
 struct Random(u64);
 
 impl Random {
@@ -133,7 +135,7 @@ fn the_remainder_is_exact() {
     for _ in 0..200_000 {
         let (x, c) = (bits(&mut random), bits(&mut random));
         if c != 0 {
-            // Euclid's remainder has the sign of the divisor once it is brought there.
+            // `rem_euclid` is not negative; it is shifted to the sign of the divisor.
             let remainder = x.rem_euclid(c);
             let remainder = if c < 0 && remainder != 0 {
                 remainder + c
@@ -143,7 +145,7 @@ fn the_remainder_is_exact() {
             let [x, c, remainder] = [x, c, remainder].map(|whole| whole as f64);
             let found = modulo(x, c);
             assert_eq!(found.to_bits(), remainder.to_bits(), "{x} % {c}");
-            // By powers of two nothing is rounded, but the numbers are no longer whole.
+            // Scaling by powers of two is exact, but the numbers are no longer integers.
             let scaled = modulo(x * 2.0_f64.powi(-60), c * 2.0_f64.powi(-60));
             assert_eq!(scaled, remainder * 2.0_f64.powi(-60), "{x} % {c}");
         }
