@@ -26,8 +26,8 @@ const MOST_LEVELS: u32 = 20_000;
 /// Relative size of terms that do not change a double.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// Relative size of terms that are neglected where maps are affine: vectors of equal states differ by
-/// rounding there, so fewer states merge.
+/// Relative size of terms that are neglected where polygons bound the subtrees: maps may be affine there,
+/// and vectors of equal states differ by rounding, so fewer states merge.
 const ROUNDING: f64 = 1e-15;
 
 struct State {
@@ -48,7 +48,7 @@ struct Reach {
     alive: Vec<bool>,
     /// Padding around every object, as a multiple of its length.
     pads: Vec<f64>,
-    /// Length that the box may fall short of.
+    /// Length by which the box may fall short.
     spared: f64,
 }
 

@@ -16,7 +16,7 @@ pub(super) struct Fineness {
     most_work: usize,
     /// Number of corners beyond which polygons are thinned more.
     most_corners: usize,
-    /// Length that a box may fall short of, relative to its extent; rounding adds to it in any case.
+    /// Length by which a box may fall short, relative to its extent; rounding adds to it in any case.
     spared: f64,
 }
 
@@ -82,7 +82,7 @@ impl Hulls {
         far.fold(0.0, f64::max) + self.within[self.of[object]]
     }
 
-    /// Returns the length that a box of instances may fall short of.
+    /// Returns the length by which a box of instances may fall short.
     pub(super) fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
         let extents = instances.iter().map(|instance| {
             let mut bounds = Bounds::EMPTY;

@@ -5,7 +5,8 @@ use super::{Count, Graph};
 /// Error: an approximant has more elements than are allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// Number of elements; `None` if it was not computed because it has several thousand digits.
+    /// Number of elements; `None` if it was not computed, because it has several thousand digits or takes
+    /// too much work.
     pub elements: Option<Count>,
     /// Deepest step within the limit; `None` if step 0 exceeds it.
     pub deepest: Option<u32>,

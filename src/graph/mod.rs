@@ -66,8 +66,8 @@ pub struct Object {
     pub base_element: usize,
     /// Whether it is drawn.
     pub visible: bool,
-    /// Number of the generator that lists it, or of the map that is applied to it first; `None` for the
-    /// initiator, and for the condensation sets of a system.
+    /// Number of the generator that lists it, or of the system's map that is applied to it first; `None` for
+    /// elements of the initiator, outside all maps, and in graphs of structures and L-systems.
     pub origin: Option<usize>,
     /// Number of the system's map that is applied to it last, if the graph records it.
     pub last_map: Option<usize>,
@@ -215,7 +215,8 @@ impl Graph {
         }
     }
 
-    /// Returns the number of origins that objects may have: for a rule, the number of generators.
+    /// Returns the number of origins that objects may have: the number of generators of a rule, or of maps
+    /// of a system; otherwise 0.
     #[must_use]
     pub fn origins(&self) -> usize {
         self.origins

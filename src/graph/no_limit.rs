@@ -11,7 +11,7 @@ pub enum NoLimit {
     /// The replacement of an element depends on the number of elements before it.
     #[error("what becomes of its elements hangs on their index, which no map tells")]
     CountsIndex,
-    /// The number of objects is unbounded.
+    /// The graph is resolved for a limited number of steps only.
     #[error("what replaces an element changes from step to step without end")]
     Endless,
     /// Seeds are placed as the initiator.

@@ -27,8 +27,8 @@ impl Generator {
     /// Returns bounds that hold for each element, by position, over all draws and all moments within the
     /// given limits, up to rounding.
     ///
-    /// The bounds result from interval arithmetic on parts of the variables' ranges: within a part, the
-    /// correlation of coordinates that depend on one variable loses little.
+    /// The bounds result from interval arithmetic on parts of the variables' ranges: smaller parts lose less
+    /// by treating coordinates that depend on one variable as independent.
     pub(crate) fn extents(&self, moment: &[Interval; 4]) -> Vec<Extent> {
         let extent = |element| self.cover(element, f64::INFINITY, moment);
         self.elements().map(extent).collect()
