@@ -21,9 +21,9 @@ pub(crate) use suggest::{listed, nearest};
 /// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// Makes the file unusable.
+    /// A mistake that makes the file unusable.
     Error,
-    /// Leaves the file usable, but marks a probable mistake.
+    /// A probable mistake in a file that can be used.
     Warning,
 }
 

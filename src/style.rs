@@ -85,9 +85,9 @@ pub enum Cap {
     /// A half disk around the end point.
     #[default]
     Round,
-    /// Ends at the end point.
+    /// A straight edge at the end point.
     Butt,
-    /// Extends half the stroke's width beyond the end point.
+    /// A straight edge half the stroke's width beyond the end point.
     Square,
 }
 
@@ -97,9 +97,9 @@ pub enum Join {
     /// A disk around the corner.
     #[default]
     Round,
-    /// Cut off.
+    /// A straight edge across the corner.
     Bevel,
-    /// Pointed, up to a miter limit of four times the stroke's width.
+    /// A sharp corner, up to a miter limit of four times the stroke's width.
     Miter,
 }
 

@@ -11,7 +11,7 @@ use super::node::{Node, Value};
 use super::shape::{Form, Member, Shape};
 use super::{Number, Point, Written};
 
-/// Reads values and collects diagnostics.
+/// A reader of values, which collects diagnostics.
 #[derive(Default)]
 pub(super) struct Reader {
     pub(super) diagnostics: Diagnostics,

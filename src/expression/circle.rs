@@ -16,7 +16,7 @@ const LARGEST: f64 = 1e9;
 /// smaller ones needs more bits.
 const SMALLEST: f64 = 1e-9;
 
-/// Computes sines and cosines, both at once, and caches the last pair.
+/// A calculator of sines and cosines, which computes both at once and caches the last pair.
 ///
 /// An angle is halved until few terms of a series suffice, and the result is doubled equally often
 /// (Brent 1976, "Fast multiple-precision evaluation of elementary functions").

@@ -233,7 +233,7 @@ fn is_small_whole(x: f64) -> bool {
 /// Rounds `x`, of magnitude below 2^51, to a nearest integer, without a function call, unlike
 /// `f64::round`.
 fn nearest_whole(x: f64) -> f64 {
-    // Doubles from 2^52 to 2^53 are integers. This is the middle of that range.
+    // Doubles from 2^52 to 2^53 are integers; this constant is the middle of that range.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     (x + WHOLE) - WHOLE
 }

@@ -39,7 +39,7 @@ impl Precise {
     }
 }
 
-/// Evaluates expressions to a fixed number of bits.
+/// An evaluator of expressions to a fixed number of bits.
 pub(crate) struct Precision {
     bits: usize,
     context: Context<HalfEven>,

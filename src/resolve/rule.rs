@@ -26,8 +26,8 @@ pub(super) struct OfRule {
     base_element_places: Vec<(Place, usize)>,
     generator_names: Vec<String>,
     generator_numbers: HashMap<String, usize>,
-    /// Warnings of elements that are not shorter than those they replace. They are dropped if every
-    /// cycle of generators shrinks nonetheless.
+    /// Warnings of elements that are not shorter than those they replace. The warnings are dropped if
+    /// every cycle of generators shrinks nonetheless.
     growing: Vec<Diagnostic>,
 }
 

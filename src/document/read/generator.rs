@@ -149,7 +149,7 @@ pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<N
                 "`generator` and `generators` cannot stand together",
                 "`generators` takes any number of generators by name",
             );
-            // It is unknown which of them the selection refers to.
+            // The selection may refer to either.
             reader.names_are_missing = true;
         }
         (None, None) => reader.error_with_hint(

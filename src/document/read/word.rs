@@ -32,7 +32,7 @@ pub(super) struct Head {
     pub(super) condition: Option<Number>,
 }
 
-/// Reads the words of a file and counts their modules.
+/// A reader of the words of a file, which counts their modules.
 pub(super) struct Words<'r> {
     pub(super) reader: &'r mut Reader,
     modules: usize,
