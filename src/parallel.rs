@@ -1,4 +1,4 @@
-//! Work on many threads whose results come in order.
+//! Parallel execution with results in the order of submission.
 
 #[cfg(test)]
 pub(crate) mod adversary;
@@ -10,14 +10,13 @@ use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// The number of threads that the machine runs at once.
+/// Returns the number of threads that the machine runs at once; 1 if that is unknown.
 #[must_use]
 pub fn all_cores() -> NonZero<usize> {
     thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
 }
 
-/// Threads that do what is handed to them, and the one that hands it out, which helps while it
-/// waits.
+/// A pool of threads that execute submitted jobs. The thread that submits them helps while it waits.
 pub(crate) struct Team<'w> {
     queue: Mutex<Queue<'w>>,
     called: Condvar,
@@ -32,7 +31,7 @@ struct Queue<'w> {
 
 type Job<'w> = Box<dyn FnOnce() + Send + 'w>;
 
-/// Runs `body` with a team of `threads`, the thread that it runs on included.
+/// Runs `body` with a team of `threads`, including the calling thread.
 pub(crate) fn with_team<'w, T>(threads: NonZero<usize>, body: impl FnOnce(&Team<'w>) -> T) -> T {
     let team = Team {
         queue: Mutex::default(),
@@ -40,7 +39,7 @@ pub(crate) fn with_team<'w, T>(threads: NonZero<usize>, body: impl FnOnce(&Team<
         threads,
     };
     thread::scope(|scope| {
-        // However the body ends, nothing more is handed out: the threads end.
+        // However the body ends, no more jobs follow, and the threads end.
         let _over = Over(&team);
         for _ in 1..team.others() {
             scope.spawn(|| team.serve());
@@ -68,7 +67,7 @@ impl<'w> Team<'w> {
         self.called.notify_one();
     }
 
-    /// Does what is handed out, as long as anything may be.
+    /// Executes jobs until the team ends.
     fn serve(&self) {
         loop {
             let idle = |queue: &mut Queue<'w>| queue.jobs.is_empty() && !queue.is_over;
@@ -83,8 +82,8 @@ impl<'w> Team<'w> {
         }
     }
 
-    /// The threads that are run, with the one that hands out: where an adversary plays the others, that
-    /// does all in their place.
+    /// Returns the number of threads of the team, including the calling one. With an adversary the calling
+    /// thread executes all jobs.
     fn others(&self) -> usize {
         #[cfg(test)]
         if adversary::is_here() {
@@ -93,7 +92,7 @@ impl<'w> Team<'w> {
         self.threads.get()
     }
 
-    /// Does one job that no thread has taken yet, if there is one.
+    /// Executes one job that no thread has taken yet. Returns `true` if there was one.
     fn help(&self) -> bool {
         let mut queue = self.queue();
         let first = pick(queue.jobs.len());
@@ -102,12 +101,12 @@ impl<'w> Team<'w> {
         job.map(|job| job()).is_some()
     }
 
-    /// The number of threads.
+    /// Returns the number of threads.
     pub(crate) fn threads(&self) -> NonZero<usize> {
         self.threads
     }
 
-    /// A line of pieces to which `work` is done.
+    /// Creates a pipeline that applies `work` to pieces.
     pub(crate) fn line<J: Send + 'w>(&self, work: fn(&mut J)) -> Line<'_, 'w, J> {
         let (finished, done) = mpsc::channel();
         Line {
@@ -123,22 +122,22 @@ impl<'w> Team<'w> {
     }
 }
 
-/// Which of so many pieces of work, or of places for it, is taken, where any may be: the first.
+/// Returns the index of the piece of work, or place for one, to take where any may be taken: the first.
 #[cfg(not(test))]
 #[inline]
 pub(crate) fn pick(_: usize) -> usize {
     0
 }
 
-/// Whether what other threads have done is not known yet, though it is there: where an adversary has it
-/// so.
+/// Returns `true` if the finished work of other threads is to be treated as unknown, which only an adversary
+/// does.
 #[cfg(not(test))]
 #[inline]
 pub(crate) fn is_too_early() -> bool {
     false
 }
 
-/// Whether a piece of work is handed on that is still small: where an adversary has it so.
+/// Returns `true` if a piece of work is to be submitted while still small, which only an adversary does.
 #[cfg(not(test))]
 #[inline]
 pub(crate) fn is_cut_short() -> bool {
@@ -148,35 +147,35 @@ pub(crate) fn is_cut_short() -> bool {
 #[cfg(test)]
 pub(crate) use adversary::{is_cut_short, is_too_early, pick};
 
-/// Pieces of work that are on their way, and those that are done and wait for earlier ones.
+/// A pipeline: pieces of work that are in progress, and finished ones that wait for earlier ones.
 pub(crate) struct Line<'t, 'w, J> {
     team: &'t Team<'w>,
     work: fn(&mut J),
-    /// What is done; nothing where the work has panicked.
+    /// Finished pieces; `None` where the work has panicked.
     finished: Sender<Option<(u64, J)>>,
     done: Receiver<Option<(u64, J)>>,
     waiting: BTreeMap<u64, J>,
     handed_out: u64,
     taken: u64,
-    /// Pieces to be used again.
+    /// Pieces to be reused.
     spare: Vec<J>,
 }
 
-/// So many pieces a thread are on their way at most.
+/// Maximum number of pieces in progress per thread.
 const PIECES_A_THREAD: u64 = 2;
 
 impl<'w, J: Send + 'w> Line<'_, 'w, J> {
-    /// A piece that has been used, if there is one.
+    /// Returns a piece that can be reused, if there is one.
     pub(crate) fn spare(&mut self) -> Option<J> {
         self.spare.pop()
     }
 
-    /// Whether no pieces are on their way.
+    /// Returns `true` if no pieces are in progress.
     pub(crate) fn is_idle(&self) -> bool {
         self.handed_out == self.taken
     }
 
-    /// Hands a piece to the threads. `take` gets what is done, in the order in which it came.
+    /// Submits a piece. Finished pieces are passed to `take`, in the order in which they were submitted.
     pub(crate) fn hand_on<E>(
         &mut self,
         mut piece: J,
@@ -193,19 +192,20 @@ impl<'w, J: Send + 'w> Line<'_, 'w, J> {
         let (number, finished) = (self.handed_out, self.finished.clone());
         self.team.call(Box::new(move || {
             let worked = panic::catch_unwind(AssertUnwindSafe(|| work(&mut piece)));
-            // Who waits must not wait for what will not come; nobody may be waiting any more.
+            // The receiver must not wait for a piece that has panicked. It may be gone already, which is no
+            // error.
             let _ = finished.send(worked.is_ok().then_some((number, piece)));
             if let Err(cause) = worked {
                 panic::resume_unwind(cause);
             }
         }));
         self.handed_out += 1;
-        // One of the others may be at it at once.
+        // With an adversary, jobs may be executed at once, as by other threads.
         while pick(3) > 0 && self.team.help() {}
         self.take_until(PIECES_A_THREAD * threads, take)
     }
 
-    /// Waits for all pieces.
+    /// Waits for all pieces, and passes them to `take`.
     pub(crate) fn finish<E>(
         &mut self,
         take: &mut dyn FnMut(&mut J) -> Result<(), E>,
@@ -213,7 +213,7 @@ impl<'w, J: Send + 'w> Line<'_, 'w, J> {
         self.take_until(0, take)
     }
 
-    /// Takes what is done, and helps or waits while more than `most` pieces are on their way.
+    /// Passes finished pieces to `take`, and helps or waits while more than `most` pieces are in progress.
     fn take_until<E>(
         &mut self,
         most: u64,
@@ -232,7 +232,7 @@ impl<'w, J: Send + 'w> Line<'_, 'w, J> {
                 Ok(done) => done,
             };
             let Some((number, piece)) = done else {
-                // The scope hands the panic on once the other threads have ended.
+                // The scope propagates the panic once the other threads have ended.
                 panic::resume_unwind(Box::new("a thread has panicked"));
             };
             self.waiting.insert(number, piece);
@@ -275,7 +275,7 @@ mod tests {
         }
     }
 
-    /// What comes of one line goes on in another: both are served by the same threads.
+    /// The results of one pipeline are submitted to another, served by the same threads.
     #[test]
     fn lines_may_feed_lines() {
         for threads in [1, 2, 5] {

@@ -1,28 +1,29 @@
-//! Choice by weight from one random word.
+//! Weighted random choice from one random word, by the alias method.
 
-/// A table to choose from by weight in constant time, without a branch (Walker 1977, built as Vose
-/// 1991 has it).
+/// An alias table: chooses by weight in constant time, without a branch (Walker 1977, in the construction of
+/// Vose 1991).
 #[derive(Clone, Debug)]
 pub(super) struct AliasTable {
-    /// The upper bits of a word that choose an entry.
+    /// Number of upper bits of a word that choose an entry.
     bits: u32,
     entries: Vec<Entry>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// The entry stands for itself where the rest of the word lies below this, 2³² being all of it;
+    /// Threshold: where the rest of the word, as a fraction of 2³², lies below it, the entry's own index is
+    /// chosen.
     rest: u32,
-    /// else for this one.
+    /// Index that is chosen otherwise.
     alias: u32,
 }
 
 impl AliasTable {
-    /// Tables for rows of weights, all of one length and none all zero, one after the other. Chances
-    /// are exact to 2⁻³² times the number of weights.
+    /// Creates tables for rows of weights, all of one length and none all zero, one after the other.
+    /// Probabilities are exact to 2⁻³² times the number of weights.
     pub(super) fn of_rows(rows: &[Vec<f64>]) -> Self {
         let count = rows.first().map_or(0, Vec::len);
-        // Two entries at least: a shift by all bits of a word is none.
+        // At least two entries, for a word cannot be shifted by all of its bits.
         let bits = count.next_power_of_two().trailing_zeros().max(1);
         let entries = rows.iter().flat_map(|row| entries(row, 1 << bits));
         Self {
@@ -44,7 +45,7 @@ impl AliasTable {
     }
 }
 
-/// The entries of a row of weights, filled up to a number of them.
+/// Returns the entries of a row of weights, padded to `count` entries.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -74,8 +75,8 @@ fn entries(weights: &[f64], count: usize) -> Vec<Entry> {
             poor.push(giver);
         }
     }
-    // Those that are left are full but for rounding, and stand for themselves either way. One that
-    // has no chance at all would be left by rounding only.
+    // The remaining entries are full up to rounding, and keep themselves as alias. One without a weight
+    // remains by rounding only, and gets the heaviest as alias.
     let heaviest = (0..weights.len()).fold(0, |heaviest, own| {
         if weights[own] > weights[heaviest] {
             own
@@ -95,7 +96,7 @@ fn entries(weights: &[f64], count: usize) -> Vec<Entry> {
 mod tests {
     use super::*;
 
-    /// The chance of every choice, counted over the words that tell entries apart.
+    /// Returns the probability of every choice, summed over the table's entries.
     fn chances(table: &AliasTable, row: usize, count: usize) -> Vec<f64> {
         let mut chances = vec![0.0; count];
         for entry in 0..1usize << table.bits {

@@ -1,4 +1,4 @@
-//! The walks of random iteration, divided among threads.
+//! The walks of a chaos game, divided into waves for threads.
 
 use crate::geometry::{DAffine2, DVec2};
 
@@ -7,37 +7,37 @@ use super::random::{LANES, Scalar};
 use super::system::{Map, System};
 use super::{ClassBy, Game, Start, Window};
 
-/// Steps of a walker that starts on the attractor, before another one starts: enough walks for all
-/// threads, and long enough that the warm-up takes little.
+/// Steps of a walker that starts on the attractor, before another one starts: few enough for all threads to
+/// have walks, and enough that the warm-up takes little.
 const STEPS: u64 = 1 << 15;
 
-/// Steps that such a walker takes before its points count: the walkers all start at one point, and
-/// must forget it, and know all their past that may be asked for.
+/// Steps of a walker that starts on the attractor before its points count. All walkers start at one point:
+/// they must forget it, and must have the longest history of maps that classes may require.
 pub(super) const WARM_UP: u32 = 256;
 
-/// Steps of the walk that tells how large rounding errors become.
+/// Steps of the walk that estimates rounding errors.
 const PILOT: u32 = 10_000;
 
-/// Rounding errors of so many pixels do no harm.
+/// Rounding error, in pixels, up to which single precision is used.
 const FINE: f64 = 1.0 / 64.0;
 
-/// All walks of a game, in pixels. A *wave* is what [`LANES`] walkers walk side by side; it has its
-/// own random numbers, so waves can be walked in any order.
+/// All walks of a game, in pixels. A *wave* consists of [`LANES`] walkers side by side; it has its own random
+/// numbers, and waves can be walked in any order.
 pub(super) struct Course<'a> {
     pub(super) system: &'a System,
     pub(super) choice: AliasTable,
-    /// The affine maps as maps from pixels to pixels.
+    /// Affine maps as maps from pixels to pixels.
     pub(super) maps: Vec<Option<DAffine2>>,
     pub(super) window: &'a Window,
-    /// The bins of a class: its pixels, and one for what lies outside.
+    /// Number of bins of a class: its pixels, and one for points outside.
     pub(super) stride: u32,
     pub(super) classes: ClassBy,
     pub(super) seed: u64,
     start: &'a Start,
-    /// Steps of a walker that count.
+    /// Number of steps of a walker that count.
     steps: u64,
     points: u64,
-    /// Whether single precision would show.
+    /// Whether the errors of single precision would be visible.
     pub(super) is_double: bool,
 }
 
@@ -69,12 +69,12 @@ impl<'a> Course<'a> {
         course
     }
 
-    /// The number of waves.
+    /// Returns the number of waves.
     pub(super) fn waves(&self) -> u64 {
         self.points.div_ceil(self.points_a_wave())
     }
 
-    /// The number of points of a wave.
+    /// Returns the number of points of a wave.
     pub(super) fn points_of(&self, wave: u64) -> u64 {
         let all = self.points_a_wave();
         all.min(self.points.saturating_sub(wave.saturating_mul(all)))
@@ -84,7 +84,7 @@ impl<'a> Course<'a> {
         self.steps * LANES as u64
     }
 
-    /// The steps of a wave that do not count.
+    /// Returns the number of steps of a wave that do not count.
     pub(super) fn warm_up(&self) -> u32 {
         match self.start {
             Start::Attractor => WARM_UP,
@@ -92,8 +92,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Where a walker of a wave starts, in pixels, and after which map: the number of maps where
-    /// there has been none.
+    /// Returns the start of a walker of a wave, in pixels, and the map that led to it: the number of maps
+    /// where there was none.
     pub(super) fn start(&self, wave: u64, lane: usize) -> (DVec2, usize) {
         let walk = wave.wrapping_mul(LANES as u64).wrapping_add(lane as u64);
         let (point, last) = match self.start.walk(walk) {
@@ -106,7 +106,7 @@ impl<'a> Course<'a> {
         (self.window.to_pixels.transform_point2(point), last)
     }
 
-    /// A bound for the error of a point in pixels, by single precision, along a walk.
+    /// Returns a bound of the error of a point by single precision, in pixels, estimated along a walk.
     fn rounding(&self) -> f64 {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let mut random = Scalar::new(0, 0);
@@ -122,7 +122,7 @@ impl<'a> Course<'a> {
             match (&self.maps[last], &self.system.maps()[last]) {
                 (Some(map), _) => {
                     let matrix = map.matrix2.abs();
-                    // Two products, two sums, and the coefficients themselves.
+                    // Two products, two sums, and the rounding of the coefficients.
                     let terms = matrix * point.abs() + map.translation.abs();
                     error = matrix * error + 4.0 * unit * terms;
                     point = map.transform_point2(point);
@@ -138,7 +138,7 @@ impl<'a> Course<'a> {
             }
             worst = worst.max(error.max_element());
         }
-        // Not a number counts as worst.
+        // NaN counts as the largest error.
         if error.is_finite() {
             worst
         } else {

@@ -5,20 +5,19 @@ use crate::geometry::DAffine2;
 /// A part of the plane, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// The map from the plane to pixels, which run right and down from the upper left corner.
+    /// Map from the plane to pixels, which run right and down from the upper left corner.
     pub to_pixels: DAffine2,
     /// Width and height in pixels, 1 to 2²² each.
     pub size: [u32; 2],
 }
 
-/// How many points of walks lie in each pixel of a window, for each class of points. A count does not
-/// go beyond 2³² − 1.
+/// Number of points of walks in each pixel of a window, for each class of points. Counts saturate at 2³² − 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Histogram {
     size: [u32; 2],
     classes: usize,
     points: u64,
-    /// The pixels of every class, each class followed by a bin for what lies outside.
+    /// Pixels of every class, each class followed by a bin for points outside.
     counts: Vec<u32>,
 }
 
@@ -32,19 +31,19 @@ impl Histogram {
         }
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The number of classes.
+    /// Returns the number of classes.
     #[must_use]
     pub fn classes(&self) -> usize {
         self.classes
     }
 
-    /// The counts of a class, row by row from the upper left corner; none if there is no such class.
+    /// Returns the counts of a class, row by row from the upper left corner; empty if there is no such class.
     #[must_use]
     pub fn counts(&self, class: usize) -> &[u32] {
         let stride = self.counts.len() / self.classes;
@@ -52,13 +51,13 @@ impl Histogram {
         bins.map_or(&[], |bins| &bins[..stride - 1])
     }
 
-    /// The number of points, those outside included.
+    /// Returns the number of points, including those outside.
     #[must_use]
     pub fn points(&self) -> u64 {
         self.points
     }
 
-    /// The number of points that lie in the window.
+    /// Returns the number of points in the window; a count that has saturated counts as 2³² − 1.
     #[must_use]
     pub fn inside(&self) -> u64 {
         let classes = (0..self.classes).map(|class| self.counts(class));

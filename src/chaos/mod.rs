@@ -1,15 +1,15 @@
-//! Random iteration, the *chaos game*: the attractor of an iterated function system, and the
-//! P-balanced measure on it, from random walks (Barnsley & Demko 1985; Demko, Hodges & Naylor 1985).
+//! Random iteration, the *chaos game*: the attractor of an iterated function system, and the P-balanced
+//! measure on it, from random walks (Barnsley & Demko 1985; Demko, Hodges & Naylor 1985).
 //!
-//! A [`System`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of
-//! its maps, chosen at random, or set down in a condensation set; the fraction of its steps that end
-//! in a part of the plane tends to the measure of that part. [`play`] counts them, pixel by pixel, as
-//! a [`Histogram`]; [`Points`] lists them.
+//! A [`System`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of its
+//! maps, chosen at random, or placed at a random point of a condensation set; the fraction of its steps that
+//! end in a part of the plane converges to the measure of that part. The function [`play`] counts the points
+//! of walks, pixel by pixel, as a [`Histogram`]; [`Points`] lists them.
 //!
-//! Walkers walk side by side, in waves that have their own random numbers each, so neither the
-//! order of waves nor the number of threads tells in the result; it is the same on every machine.
-//! They walk in single precision as long as that displaces no point by more than 1/64 pixel, which is
-//! estimated along a walk; else in double precision.
+//! Walkers walk side by side, in waves that each have their own random numbers. The result therefore depends
+//! neither on the order of waves nor on the number of threads, and is the same on every machine. Walks are
+//! computed in single precision as long as that displaces no point by more than 1/64 pixel, which is
+//! estimated along a walk; otherwise in double precision.
 
 mod alias;
 mod course;
@@ -38,24 +38,25 @@ use crate::parallel::all_cores;
 use self::course::Course;
 use self::tally::{Cancelled, Tally};
 
-/// Where walks start.
+/// Start of walks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Start {
     /// On the attractor, and spread over it: all points that are counted lie on it.
     #[default]
     Attractor,
-    /// At points of one's own, in turn. What a walker passes on its way to the attractor is counted,
-    /// though not the point itself (Demko, Hodges & Naylor 1985, figure 4.5).
+    /// At given points, in turn. The points that a walker passes on its way to the attractor are counted,
+    /// except the start itself (Demko, Hodges & Naylor 1985, figure 4.5).
     Points {
-        /// The points; where there are none, walks start on the attractor.
+        /// Points at which walks start; if empty, walks start on the attractor.
         points: Vec<DVec2>,
-        /// The steps of a walk. The fewer, the more of them are on the way.
+        /// Number of steps of a walk. The fewer, the larger is the fraction of points on the way to the
+        /// attractor.
         steps: NonZero<u32>,
     },
 }
 
 impl Start {
-    /// Where a walk starts, if not on the attractor.
+    /// Returns the start of a walk, or `None` if walks start on the attractor.
     fn walk(&self, number: u64) -> Option<DVec2> {
         let Self::Points { points, .. } = self else {
             return None;
@@ -65,39 +66,38 @@ impl Start {
     }
 }
 
-/// What points are told apart by.
+/// Classification of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ClassBy {
-    /// Nothing: one class.
+    /// No distinction: one class.
     #[default]
     One,
-    /// The map that was applied some steps ago, a class a map. The last one, 0 steps ago, tells in
-    /// which of the tiles f_i(A) of the attractor A a point lies; the one before, in which of the
-    /// f_j(f_i(A)) within its tile; and so on. The map that an approximant of n steps applies first
-    /// is the one n − 1 steps ago. A walk that is younger has the map that it began with.
+    /// By the map that was applied some steps ago, one class per map. The last map, 0 steps ago, determines
+    /// in which of the tiles f_i(A) of the attractor A a point lies; the one before, in which of the
+    /// f_j(f_i(A)) within its tile; and so on. The map that an approximant of n steps applies first is the
+    /// one n − 1 steps ago. A walk with fewer steps counts as having applied its first map before.
     Map {
-        /// How many steps ago.
+        /// Number of steps ago.
         ago: u8,
     },
 }
 
-/// How the game is played.
+/// Parameters of a chaos game.
 #[derive(Clone, Debug)]
 pub struct Game<'a> {
-    /// The number of points; ten million unless said otherwise.
+    /// Number of points; by default ten million.
     pub points: u64,
-    /// What the walk's choices depend on; 0 unless said otherwise.
+    /// Seed of the random choices; by default 0.
     pub seed: u64,
-    /// Where walks start; on the attractor unless said otherwise.
+    /// Start of walks; by default on the attractor.
     pub start: Start,
-    /// What points are told apart by; nothing unless said otherwise.
+    /// Classification of points; by default one class.
     pub classes: ClassBy,
-    /// The threads that play, as many as the machine has cores unless said otherwise. The result
-    /// does not depend on them.
+    /// Number of threads; by default that of the machine's cores. The result does not depend on it.
     pub threads: NonZero<usize>,
-    /// The game ends soon after this is set.
+    /// Flag that ends the game soon after it is set.
     pub cancel: Option<&'a AtomicBool>,
-    /// Where the game tells how far it is, in points.
+    /// Progress of the game, in points.
     pub progress: Option<&'a Progress>,
 }
 
@@ -115,10 +115,10 @@ impl Default for Game<'_> {
     }
 }
 
-/// Why a game has no result.
+/// Reason why a game has no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GameError {
-    /// The histogram is larger than memory should be asked to hold.
+    /// The histogram is larger than the limit of memory.
     #[error(
         "{0} x {1} pixels take more than {most} counters, with one for each class ({classes})",
         size[0], size[1], most = MOST_BINS
@@ -126,16 +126,16 @@ pub enum GameError {
     TooManyBins {
         /// Width and height in pixels.
         size: [u32; 2],
-        /// The number of classes.
+        /// Number of classes.
         classes: usize,
     },
-    /// The window has no pixel, more than 2²² on a side, or a map that has no inverse.
+    /// The window has no pixel, more than 2²² on a side, or a map without a finite inverse.
     #[error("the window is empty or flat, or what it shows is too large or too small for numbers")]
     Window,
     /// A start is not finite.
     #[error("start {start} is not finite")]
     Start {
-        /// Its number, from 0.
+        /// Index of the start, from 0.
         start: usize,
     },
     /// The game was cancelled.
@@ -143,20 +143,20 @@ pub enum GameError {
     Cancelled,
 }
 
-/// The most counters, those for what lies outside left out: a gibibyte a thread.
+/// Maximum number of counters, without those for points outside: one gibibyte per thread.
 const MOST_BINS: u64 = 1 << 28;
 
-/// The most counters of all threads together.
+/// Maximum number of counters of all threads together.
 const MOST_BINS_OF_THREADS: u64 = 1 << 29;
 
-/// The largest side of a window.
+/// Maximum side of a window.
 const MOST_PIXELS: u32 = 1 << 22;
 
 /// Plays the chaos game.
 ///
 /// # Errors
 ///
-/// If the window, its map, the histogram or a start is not what it can be, or if the game is
+/// Returns an error if the window, its map, the histogram or a start is out of range, or if the game is
 /// cancelled.
 pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogram, GameError> {
     check(window, game)?;
@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// One wave, in single or in double precision.
+    /// Counts one wave, in single or in double precision.
     fn counts(window: &Window, classes: ClassBy, is_double: bool) -> Vec<u32> {
         let (system, all) = (fern(), Mutex::new(None));
         let game = Game {
@@ -270,7 +270,7 @@ mod tests {
         all.into_inner().unwrap().unwrap()
     }
 
-    /// In the same walk few points come to another pixel: those within the error of an edge.
+    /// In the same walk few points differ in their pixel: those within the error of an edge.
     #[test]
     fn single_precision_is_enough_where_it_is_used() {
         for (side, most) in [(256, 0.000_5), (1024, 0.002)] {
@@ -295,7 +295,7 @@ mod tests {
             (4096, 400.0, false),
             (8192, 800.0, false),
             (16_384, 1600.0, true),
-            // A part, much enlarged.
+            // A small part, much enlarged.
             (512, 1e5, true),
         ] {
             let window = window(side, scale);
@@ -305,7 +305,7 @@ mod tests {
         }
     }
 
-    /// Whether all maps are applied and one is taken, or looked up: the measure is the same.
+    /// Applying all maps and selecting one gives the same measure as looking maps up.
     #[test]
     fn both_ways_to_walk_have_one_measure() {
         let window = window(16, 1.6);
@@ -315,7 +315,7 @@ mod tests {
         for pixel in 0..256 {
             let any: u32 = classes.iter().map(|counts| counts[pixel]).sum();
             let expected = f64::from(few[pixel]);
-            // Both vary, and points come in runs.
+            // Both counts vary, and points come in runs.
             let error = 16.0 * (expected + 10.0).sqrt();
             assert!(
                 (f64::from(any) - expected).abs() < error,

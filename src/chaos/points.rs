@@ -1,4 +1,4 @@
-//! The points of one walk, one after the other.
+//! The points of a random walk as an iterator.
 
 use crate::geometry::DVec2;
 
@@ -11,17 +11,17 @@ use super::system::{Map, System};
 /// A point of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Where it lies.
+    /// Position of the point.
     pub place: DVec2,
-    /// The map that has led to it, from 0; the condensation sets follow the maps.
+    /// Index of the map that led to it, from 0; the condensation sets follow the maps.
     pub map: usize,
 }
 
-/// The points of one walk in double precision, without end: where [`play`](super::play) counts,
-/// this lists.
+/// The points of a walk in double precision, without end. [`play`](super::play) counts points; this iterator
+/// lists them.
 ///
-/// A walk that starts on the attractor has forgotten the start before its first point. Walks from
-/// given starts end after their steps, and the next one begins.
+/// A walk that starts on the attractor has forgotten the start before its first point. Walks from given
+/// starts end after their number of steps, and the next one begins.
 #[derive(Clone, Debug)]
 pub struct Points<'a> {
     system: &'a System,
@@ -29,12 +29,12 @@ pub struct Points<'a> {
     random: Scalar,
     start: &'a Start,
     at: Point,
-    /// The steps that have been taken, of all walks.
+    /// Number of steps taken, over all walks.
     taken: u64,
 }
 
 impl<'a> Points<'a> {
-    /// The points of a system's walk by a seed.
+    /// Creates the walk of a system with a seed.
     #[must_use]
     pub fn new(system: &'a System, start: &'a Start, seed: u64) -> Self {
         let first = system.start();

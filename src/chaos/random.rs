@@ -3,7 +3,7 @@
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
-/// The walkers that go side by side.
+/// Number of walkers side by side.
 pub(super) const LANES: usize = 32;
 
 /// 2⁶⁴ divided by the golden ratio, odd: the increment of SplitMix64.
@@ -16,12 +16,12 @@ fn mix(z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// SplitMix64 from a place that a seed and the number of a stream make.
+/// SplitMix64 with a state derived from a seed and the number of a stream.
 struct Seeds(u64);
 
 impl Seeds {
     fn new(seed: u64, stream: u64) -> Self {
-        // Streams lie scattered on the cycle of 2⁶⁴.
+        // The states of streams are scattered on the cycle of 2⁶⁴.
         let seed = mix(seed.wrapping_add(GOLDEN));
         Self(mix(seed ^ stream.wrapping_mul(GOLDEN)))
     }
@@ -32,8 +32,8 @@ impl Seeds {
     }
 }
 
-/// A generator for every walker, all stepped at once: xoshiro128+ (Blackman & Vigna 2021), of which
-/// the upper bits matter most.
+/// A generator for every walker, all advanced together: xoshiro128+ (Blackman & Vigna 2021), whose upper bits
+/// have the best quality.
 pub(super) struct Lanes([[u32; LANES]; 4]);
 
 impl Lanes {
@@ -47,13 +47,13 @@ impl Lanes {
             for (words_of_lanes, word) in state.iter_mut().zip(words) {
                 words_of_lanes[lane] = word as u32;
             }
-            // The one state that a generator never leaves.
+            // The zero state is a fixed point of the generator.
             state[0][lane] |= u32::from(low == 0 && high == 0);
         }
         Self(state)
     }
 
-    /// A word for every walker.
+    /// Draws a word for every walker.
     #[inline(always)]
     pub(super) fn draw(&mut self, words: &mut [u32; LANES]) {
         let [s0, s1, s2, s3] = &mut self.0;
@@ -69,24 +69,24 @@ impl Lanes {
     }
 }
 
-/// A generator for what is drawn now and then.
+/// A generator for occasional draws.
 #[derive(Clone, Debug)]
 pub(super) struct Scalar(Pcg64Mcg);
 
 impl Scalar {
     pub(super) fn new(seed: u64, stream: u64) -> Self {
-        // Not the stream that walkers choose their maps by.
+        // The complement gives a stream different from the one by which walkers choose their maps.
         let mut seeds = Seeds::new(!seed, stream);
         let (low, high) = (seeds.next(), seeds.next());
         Self(Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)))
     }
 
-    /// A random word.
+    /// Returns a random word.
     pub(super) fn word(&mut self) -> u32 {
         self.0.next_u32()
     }
 
-    /// A number from [0, 1) with 53 random bits.
+    /// Returns a number in [0, 1) with 53 random bits.
     #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
     pub(super) fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
@@ -97,7 +97,7 @@ impl Scalar {
 mod tests {
     use super::*;
 
-    /// What is drawn is part of every picture: these values may never change.
+    /// Every picture depends on these values, which must never change.
     #[test]
     fn words_are_pinned() {
         let mut lanes = Lanes::new(7, 3);
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!([scalar.word(), scalar.word()], [404_801_860, 1_193_763_026]);
     }
 
-    /// One step from the state 1, 2, 3, 4, as the authors' own code has it.
+    /// Steps from the state 1, 2, 3, 4, as in the authors' reference code.
     #[test]
     fn the_generator_is_xoshiro() {
         let mut lanes = Lanes([[1; LANES], [2; LANES], [3; LANES], [4; LANES]]);
@@ -141,7 +141,7 @@ mod tests {
                 }
             }
         }
-        // Of 6,400 words of 32 bits some 0.005 pairs are equal by chance.
+        // Among 6,400 words of 32 bits, 0.005 pairs are equal by chance on average.
         assert_eq!(seen.len(), 6_400);
     }
 }

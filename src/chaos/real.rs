@@ -1,25 +1,25 @@
-//! The arithmetic of walkers.
+//! The arithmetic of walkers, in single and double precision.
 
 use std::ops::{Add, Mul, Sub};
 
-/// The numbers that walkers walk in. Sums and products are those of IEEE 754, each rounded on its
-/// own, so they are the same on every machine.
+/// Floating-point numbers of walkers. Sums and products are those of IEEE 754, each rounded separately, and
+/// are the same on every machine.
 pub(super) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + PartialOrd
 {
     const ZERO: Self;
 
-    /// From here on, up to twice as much, numbers are exactly the whole ones.
+    /// Smallest number from which, up to twice as much, the representable numbers are exactly the integers.
     const WHOLE: Self;
 
     fn of(value: f64) -> Self;
 
-    /// The lower bits of the mantissa: of a number from [`WHOLE`](Self::WHOLE) on, how far it is
-    /// above.
+    /// Returns the lower bits of the mantissa: for a number from [`WHOLE`](Self::WHOLE) on, the difference to
+    /// it.
     fn mantissa(self) -> u32;
 
-    /// The whole part of a number from 0 to 2²². A cast would do, but has to look after all other
-    /// numbers, which keeps it from being done for many walkers at once.
+    /// Returns the integer part of a number from 0 to 2²². Unlike a saturating cast, the computation has no
+    /// special cases, and can be vectorised over walkers.
     #[inline(always)]
     fn floor(self) -> u32 {
         let rounded = self + Self::WHOLE;

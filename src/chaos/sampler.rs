@@ -1,4 +1,4 @@
-//! Points drawn from shapes, all of their points being equally likely.
+//! Uniform sampling of points from shapes.
 
 use crate::geometry::DVec2;
 use crate::ifs::Shape;
@@ -6,13 +6,14 @@ use crate::rule::{self, BaseElement};
 
 use super::random::Scalar;
 
-/// What points are drawn from: lines by length, what closed outlines wind around by area.
+/// Samples points from a shape: from lines by length, from the region that closed outlines wind around by
+/// area.
 ///
-/// Curves are drawn from as chords, so many that none is farther from its curve than 1e-4 of the
-/// shape's size where the outline has no sharp bends.
+/// Curves are replaced by chords, enough that none is farther from its curve than 1e-4 of the shape's size
+/// where the outline has no sharp bends.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sampler {
-    /// The pieces, each with the measure of all pieces up to its end.
+    /// Pieces, each with the total measure of all pieces up to its end.
     pieces: Vec<(f64, Piece)>,
 }
 
@@ -23,21 +24,21 @@ enum Piece {
     Triangle([DVec2; 3]),
 }
 
-/// Chords of a curve.
+/// Number of chords of a curve.
 const CHORDS: u32 = 64;
 
-/// The most heights at which the sides of an outline end or cross, and the most triangles.
+/// Maximum number of heights at which the sides of an outline end or cross, and of triangles.
 const MOST_PARTS: usize = 1 << 16;
 
-/// The most sides of a closed outline: each is looked at beside each.
+/// Maximum number of sides of a closed outline: all pairs of sides are examined.
 const MOST_SIDES: usize = 1 << 13;
 
-/// The most pieces of a union.
+/// Maximum number of pieces of a union.
 const MOST_PIECES: usize = 1 << 21;
 
 impl Sampler {
-    /// The sampler of a shape; `None` if it has no extent, or if its outline has so many corners and
-    /// crossings that it takes too much to part it into triangles.
+    /// Creates the sampler of a shape. Returns `None` if the shape has no extent, is not finite, or has an
+    /// outline with too many corners and crossings to be divided into triangles.
     pub(super) fn of(shape: &Shape) -> Option<Self> {
         let outline = match shape {
             Shape::Point(point) => {
@@ -50,7 +51,7 @@ impl Sampler {
         Self::of_outline(outline)
     }
 
-    /// The sampler of a union, whose outlines have their shares.
+    /// Creates the sampler of a union, whose outlines are weighted by their shares.
     fn of_union(shape: &Shape) -> Option<Self> {
         let mut pieces = Vec::new();
         let mut before = 0.0;
@@ -112,7 +113,7 @@ impl Sampler {
         let total = self.pieces.last().map_or(0.0, |(total, _)| *total);
         let at = random.unit() * total;
         let piece = self.pieces.partition_point(|(end, _)| *end <= at);
-        // Rounding may reach the very end.
+        // Rounding may give the end itself.
         let (_, piece) = self.pieces[piece.min(self.pieces.len() - 1)];
         match piece {
             Piece::Point(point) => point,
@@ -128,7 +129,7 @@ impl Sampler {
     }
 }
 
-/// Adds the corners of a piece, but for its start, which is there.
+/// Appends the corners of a piece, except its start, which is the last corner.
 fn add_chords(corners: &mut Vec<DVec2>, piece: &rule::Piece) {
     let from = corners[corners.len() - 1];
     match *piece {
@@ -141,9 +142,9 @@ fn add_chords(corners: &mut Vec<DVec2>, piece: &rule::Piece) {
     }
 }
 
-/// Triangles that together are what a polygon winds around: between the heights at which it has
-/// corners or crosses itself, its sides part a strip into trapezoids. Parts that it winds around more
-/// than once count once. `None` if there are too many.
+/// Divides the region that a polygon winds around into triangles: between the heights at which it has corners
+/// or crosses itself, its sides divide a strip into trapezoids. Parts that it winds around more than once
+/// count once. Returns `None` if there are too many triangles.
 fn triangles(vertices: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
     let next = vertices.iter().cycle().skip(1);
     let sides: Vec<_> = vertices.iter().copied().zip(next.copied()).collect();
@@ -184,7 +185,7 @@ fn triangles(vertices: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
     Some(triangles)
 }
 
-/// The height at which two sides cross.
+/// Returns the height at which two sides cross.
 fn crossing((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Option<f64> {
     let denominator = (b - a).perp_dot(d - c);
     let along = (c - a).perp_dot(d - c) / denominator;
@@ -216,7 +217,7 @@ mod tests {
         points.iter().filter(|point| is_in(point)).count() as f64 / points.len() as f64
     }
 
-    /// Of 40,000 draws a share is known to four standard errors of 0.0025 at most.
+    /// The standard error of a share of 40,000 draws is at most 0.0025; the tolerance is four times that.
     const COUNT: usize = 40_000;
     const ERROR: f64 = 0.01;
 
@@ -231,7 +232,7 @@ mod tests {
 
     #[test]
     fn polygons_are_drawn_from_by_area() {
-        // An L of three unit squares, in either sense.
+        // An L of three unit squares, with either orientation.
         let mut corners = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
             .map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)));
         for _ in 0..2 {
@@ -245,7 +246,7 @@ mod tests {
         }
     }
 
-    /// A pentagram winds around the pentagon in its middle twice.
+    /// A pentagram winds around its central pentagon twice.
     #[test]
     fn a_polygon_that_crosses_itself_is_drawn_from_once() {
         let vertex = |k: u32| {
@@ -254,7 +255,8 @@ mod tests {
         };
         let star: Vec<_> = (0..5).map(vertex).collect();
         let area = polygon(&star).pieces.last().unwrap().0;
-        // Ten triangles from the centre with sides 1 and r, the radius of the pentagon, and 36° between.
+        // Ten triangles from the centre with sides 1 and r, the circumradius of the pentagon, and an angle of
+        // 36° between them.
         let inner = (3.0 - 5f64.sqrt()) / 2.0;
         let expected = 5.0 * libm::sin(TAU / 10.0) * inner;
         assert!((area - expected).abs() < 1e-12, "{area} {expected}");
@@ -269,7 +271,7 @@ mod tests {
         assert!(points.iter().all(|p| radius(p) <= 1.0 + 1e-6));
         assert!((share(&points, |p| radius(p) < 0.5) - 0.25).abs() < ERROR);
         assert!((share(&points, |p| p.x < 1.0 && p.y < 2.0) - 0.25).abs() < ERROR);
-        // Beyond this circle lies what chords leave out.
+        // The chords cut off area beyond this circle.
         assert!((share(&points, |p| radius(p) > 0.995) - 0.01).abs() < 0.002);
     }
 

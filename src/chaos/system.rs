@@ -1,4 +1,4 @@
-//! The systems that a walk follows.
+//! Systems of maps and condensation sets, prepared for random walks.
 
 use crate::digraph::components;
 use crate::geometry::{DAffine2, DVec2};
@@ -8,25 +8,25 @@ use super::alias::AliasTable;
 use super::random::Scalar;
 use super::sampler::Sampler;
 
-/// What a step of the walk may do.
+/// A step of the walk.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Map {
-    /// The point is moved by an affine map.
+    /// Moves the point by an affine map.
     Affine(DAffine2),
-    /// The point is forgotten, and a new one drawn from a *condensation set*: the set-valued map
-    /// whose image of any point is that set (Demko, Hodges & Naylor 1985, section 3.5).
+    /// Replaces the point by one drawn from a *condensation set*: the set-valued map whose image of any point
+    /// is that set (Demko, Hodges & Naylor 1985, section 3.5).
     Condensation(Sampler),
 }
 
-/// The [walk](ifs::Walk) of an iterated function system, made ready to be walked often.
+/// The [walk](ifs::Walk) of an iterated function system, prepared for many walkers.
 ///
-/// The maps of the system come first, then its condensation sets, each of which is a map as well.
-/// From every map every other one can follow, be it by others in between, so that walks draw all of
-/// the attractor; and there is a point of the attractor to start from.
+/// The maps of the system come first, then its condensation sets, each of which is a map as well. Every map
+/// can follow every other one, possibly with others in between, and walks therefore draw all of the
+/// attractor. There is a point of the attractor to start from.
 #[derive(Clone, Debug)]
 pub struct System {
     maps: Vec<Map>,
-    /// How likely every map is, a row a state of the walk.
+    /// Probability of every map, one row per state of the walk.
     rows: Vec<Vec<f64>>,
     start: Start,
 }
@@ -35,11 +35,11 @@ pub struct System {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub(super) point: DVec2,
-    /// The map that has led to it.
+    /// Index of the map that led to it.
     pub(super) last: usize,
 }
 
-/// Why a system cannot be walked. Numbers in values count from 0, in messages from 1.
+/// Reason why a system cannot be walked. Indices in values count from 0, in messages from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SystemError {
     /// The walk can lead from one map to another, but never back.
@@ -48,38 +48,39 @@ pub enum SystemError {
         .to + 1, .from + 1
     )]
     OneWay {
-        /// The map that the walk may come to,
+        /// Map that the walk can reach.
         from: usize,
-        /// and the one that it does not come to from there.
+        /// Map that the walk cannot reach from there.
         to: usize,
     },
-    /// No map, applied again and again, brings points together.
+    /// No map has a shortest cycle back to itself that contracts.
     #[error("no map contracts")]
     Expands,
     /// A condensation set has too many corners and crossings.
     #[error("points cannot be drawn from condensation set {}: it has too many corners", .condensation + 1)]
     Corners {
-        /// The condensation set.
+        /// Index of the condensation set.
         condensation: usize,
     },
-    /// The table of what may follow what is too large.
+    /// The table of transition probabilities is too large.
     #[error("{maps} maps with a digraph are too many to be chosen from at random")]
     TooMany {
-        /// The number of maps and condensation sets.
+        /// Number of maps and condensation sets.
         maps: usize,
     },
 }
 
-/// The most entries of the table of what may follow what.
+/// Maximum number of entries of the table of transition probabilities.
 const MOST_ENTRIES: usize = 1 << 24;
 
 impl System {
-    /// The walk of a system.
+    /// Prepares the walk of a system.
     ///
     /// # Errors
     ///
-    /// If some map does not come after another, if no cycle of maps contracts, or if the system is
-    /// larger than can be chosen from.
+    /// Returns an error if a map cannot follow another, if no shortest cycle from a map back to itself
+    /// contracts, if a condensation set has too many corners, or if the table of transition probabilities is
+    /// too large.
     pub fn of(ifs: &Ifs) -> Result<Self, SystemError> {
         let affine = ifs.maps().len();
         let walk = ifs.walk();
@@ -91,7 +92,7 @@ impl System {
         let targets = states.iter();
         let targets = targets.map(|steps| steps.iter().map(|step| step.to).collect());
         let parts = components(&targets.collect::<Vec<_>>());
-        // Edges never lead to parts of higher numbers.
+        // Edges never lead to components of higher numbers.
         let [from, to] = [false, true].map(|is_higher| {
             let mut parts = parts.iter();
             parts.position(|&part| (part > 0) == is_higher)
@@ -118,7 +119,7 @@ impl System {
             }
         }
         if ifs.is_recurrent() && ifs.condensation().is_empty() {
-            // The first step of a walk from elsewhere.
+            // Weights for the first step of a walk from a given start.
             rows.push(ifs.weights().to_vec());
         }
         let start =
@@ -126,52 +127,53 @@ impl System {
         Ok(Self { maps, rows, start })
     }
 
-    /// The maps, the condensation sets last.
+    /// Returns the maps, followed by the condensation sets.
     pub(super) fn maps(&self) -> &[Map] {
         &self.maps
     }
 
-    /// The number of maps, condensation sets included.
+    /// Returns the number of maps, including condensation sets.
     #[must_use]
     pub fn classes(&self) -> usize {
         self.maps.len()
     }
 
-    /// How likely every map is in the first state of the walk.
+    /// Returns the probability of every map in the first state of the walk.
     pub(super) fn probabilities(&self) -> &[f64] {
         &self.rows[0]
     }
 
-    /// Whether what may follow depends on the map before.
+    /// Returns `true` if the probabilities depend on the previous map.
     pub(super) fn is_recurrent(&self) -> bool {
         self.rows.len() > 1
     }
 
-    /// The state of the walk after a map, or before the first one, which has the number of maps.
+    /// Returns the state of the walk after a map, or before the first one, for which `last` is the number of
+    /// maps.
     #[inline]
     pub(super) fn state_after(&self, last: usize) -> usize {
         last.min(self.rows.len() - 1)
     }
 
-    /// The choice of the next map, a row a state.
+    /// Returns the table for the choice of the next map, one row per state.
     pub(super) fn choice(&self) -> AliasTable {
         AliasTable::of_rows(&self.rows)
     }
 
-    /// A point of the attractor.
+    /// Returns a point of the attractor.
     pub(super) fn start(&self) -> Start {
         self.start
     }
 }
 
-/// The affine maps that may follow each.
+/// Returns the affine maps that may follow each affine map.
 fn targets_of_maps(rows: &[Vec<f64>], affine: usize) -> Vec<Vec<usize>> {
     let rows = (0..affine).map(|map| &rows[map.min(rows.len() - 1)]);
     let targets = rows.map(|row| (0..affine).filter(|&to| row[to] > 0.0).collect());
     targets.collect()
 }
 
-/// A point drawn from a condensation set, or the fixed point of a cycle of maps that contracts.
+/// Returns a point drawn from a condensation set, or the fixed point of a contracting cycle of maps.
 fn start(ifs: &Ifs, maps: &[Map], targets: &[Vec<usize>]) -> Option<Start> {
     let drawn = maps.iter().enumerate().find_map(|(last, map)| match map {
         Map::Condensation(shape) => Some(Start {
@@ -189,7 +191,7 @@ fn start(ifs: &Ifs, maps: &[Map], targets: &[Vec<usize>]) -> Option<Start> {
     })
 }
 
-/// The maps on the shortest way from a map back to itself, which comes last.
+/// Returns the maps on the shortest path from a map back to itself, which comes last.
 fn cycle(targets: &[Vec<usize>], last: usize) -> Option<Vec<usize>> {
     let mut before = vec![None; targets.len()];
     let mut reached = vec![last];
@@ -247,13 +249,13 @@ mod tests {
     fn the_start_lies_on_the_attractor() {
         let start = system(cantor(), None).unwrap().start();
         assert_eq!((start.point, start.last), (DVec2::ZERO, 0));
-        // Only in turn: the last map is the first one, so it is f(g(f(g(…)))) = 1/4.
+        // The maps alternate: the last map applied is the first one, and the point is f(g(f(g(…)))) = 1/4.
         let start = system(cantor(), Some(&[[0, 1], [1, 0]])).unwrap().start();
         assert!((start.point.x - 0.25).abs() < 1e-15);
         assert_eq!(start.last, 0);
     }
 
-    /// Of three maps in turn, the fixed point takes the one before last first.
+    /// For a cycle of three maps, the order in which the fixed point applies them matters.
     #[test]
     fn cycles_are_applied_in_their_order() {
         let maps = vec![scaled(0.5, 0.0), scaled(0.5, 1.0), scaled(0.5, 10.0)];

@@ -1,4 +1,4 @@
-//! Bookkeeping of a game: progress and cancellation.
+//! Counters of a thread, with progress and cancellation.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -7,23 +7,23 @@ use crate::grow::Progress;
 
 use super::walkers::Bins;
 
-/// The game was cancelled.
+/// Error of a game that was cancelled.
 #[derive(Debug)]
 pub(super) struct Cancelled;
 
-/// The most points that a counter of a thread may get.
+/// Maximum number of points in a counter of a thread.
 const MOST: u64 = u32::MAX as u64;
 
-/// Points are told to the progress when there are so many.
+/// Number of points between two reports of progress.
 const PATIENCE: u64 = 1 << 17;
 
-/// What a thread has counted.
+/// Counts of a thread.
 pub(super) struct Tally<'a> {
     counts: Vec<u32>,
     counted: u64,
-    /// Points that progress has not been told of.
+    /// Number of points not yet reported to the progress.
     untold: u64,
-    /// What all threads have counted.
+    /// Counts of all threads.
     all: &'a Mutex<Option<Vec<u32>>>,
     progress: Option<&'a Progress>,
     cancel: Option<&'a AtomicBool>,
@@ -46,7 +46,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Counts the first points of a block, as many as there are up to a number, and tells how many.
+    /// Counts the first points of a block, up to `most`, and returns their number.
     #[inline(always)]
     pub(super) fn add(&mut self, bins: &Bins, most: u64) -> Result<u64, Cancelled> {
         let bins = bins.as_flattened();
@@ -65,7 +65,8 @@ impl<'a> Tally<'a> {
         Ok(points)
     }
 
-    /// Tells progress, and looks whether to go on.
+    /// Reports progress, adds counts to those of all threads before they overflow, and checks for
+    /// cancellation.
     #[cold]
     fn look(&mut self) -> Result<(), Cancelled> {
         if let Some(progress) = self.progress {
@@ -84,7 +85,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Adds what has been counted to what all have.
+    /// Adds counts to those of all threads.
     fn hand_in(&mut self, counts: Vec<u32>) {
         let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         match &mut *all {
@@ -97,7 +98,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Ends the count.
+    /// Ends the count, and adds it to that of all threads.
     pub(super) fn finish(mut self) {
         let counts = std::mem::take(&mut self.counts);
         self.hand_in(counts);

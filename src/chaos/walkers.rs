@@ -1,7 +1,7 @@
 //! The inner loop: walkers side by side, a step at a time.
 //!
 //! A block of steps is walked before its points are counted: counters are stored to at random, and a
-//! processor that meets such stores between the walkers' own loads and stores falls back to waiting.
+//! processor that meets such stores between the walkers' own loads and stores has to wait.
 
 use multiversion::multiversion;
 
@@ -19,10 +19,10 @@ use super::tally::{Cancelled, Tally};
 /// Steps that are walked before they are counted.
 const STEPS: usize = 64;
 
-/// The points of some steps, as bins of the histogram.
+/// The points of a block of steps, as bins of the histogram.
 pub(super) type Bins = [[u32; LANES]; STEPS];
 
-/// Walks a wave.
+/// Walks a wave, in single or double precision.
 pub(super) fn walk(course: &Course<'_>, wave: u64, tally: &mut Tally<'_>) -> Result<(), Cancelled> {
     if course.is_double {
         walk_double(course, wave, tally)
@@ -60,7 +60,7 @@ fn walk_in<T: Real>(
     }
 }
 
-/// The most maps all of which are applied. More are faster looked up.
+/// Maximum number of maps for which all are applied; for more, a look-up is faster.
 const MOST: usize = 16;
 
 #[inline(always)]
@@ -85,15 +85,15 @@ fn walk_few<T: Real, const BY_LAST: bool>(
     }
 }
 
-/// Where walkers are, in pixels.
+/// Positions of walkers, in pixels.
 struct Places<T> {
     x: [T; LANES],
     y: [T; LANES],
 }
 
-/// How walkers take a step.
+/// Method by which walkers take a step.
 trait Walk<T: Real> {
-    /// Moves every walker by what its random word says, and tells the bins that they come to.
+    /// Moves every walker by the map that its random word chooses, and stores the bins of the new positions.
     fn step(&mut self, words: &[u32; LANES], places: &mut Places<T>, bins: &mut [u32; LANES]);
 }
 
@@ -135,7 +135,7 @@ fn run<T: Real>(
 struct Raster<T> {
     width: T,
     height: T,
-    /// Pixels a row, and all of them.
+    /// Number of pixels in a row, and of all pixels.
     row: u32,
     all: u32,
 }
@@ -151,7 +151,7 @@ impl<T: Real> Raster<T> {
         }
     }
 
-    /// The bin of a place: the pixel that it lies in, or the one for what lies outside.
+    /// Returns the bin of a position: its pixel, or the bin for points outside.
     #[inline(always)]
     fn bin(&self, x: T, y: T) -> u32 {
         let is_inside = (x >= T::ZERO) & (x < self.width) & (y >= T::ZERO) & (y < self.height);
@@ -162,7 +162,7 @@ impl<T: Real> Raster<T> {
     }
 }
 
-/// An affine map as six numbers.
+/// The coefficients of an affine map.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 struct Affine<T> {
@@ -189,13 +189,13 @@ impl<T: Real> Affine<T> {
     }
 }
 
-/// A few affine maps, any of which may follow: all are applied, and one is taken.
+/// A few affine maps, any of which may follow: all are applied, and one result is selected.
 struct Few<T, const BY_LAST: bool, const N: usize> {
     raster: Raster<T>,
     maps: [Affine<T>; N],
-    /// The first bin of the class of a map, if the last map tells classes apart.
+    /// First bin of the class of each map, if classes are distinguished by the last map.
     classes: [u32; N],
-    /// A map is taken where the word is not below its own threshold, but below the next one's.
+    /// A map is selected if the word is not below its own threshold, but below the next one's.
     thresholds: [u32; N],
 }
 
@@ -208,7 +208,7 @@ impl<T: Real, const BY_LAST: bool, const N: usize> Few<T, BY_LAST, N> {
         let mut thresholds = [0; N];
         let mut maps = [Affine::of(&DAffine2::IDENTITY); N];
         for place in 0..N {
-            // Where there are fewer maps, the last one is there again.
+            // Where there are fewer maps, the last one is repeated.
             let map = place.min(weights.len() - 1);
             if let Some(affine) = &course.maps[map] {
                 maps[place] = Affine::of(affine);
@@ -267,20 +267,20 @@ impl<T: Real, const BY_LAST: bool, const N: usize> Walk<T> for Few<T, BY_LAST, N
     }
 }
 
-/// Any system: maps are looked up.
+/// Arbitrary systems, whose maps are looked up.
 struct Any<'a, T> {
     raster: Raster<T>,
     system: &'a System,
     choice: &'a AliasTable,
     maps: Vec<Affine<T>>,
-    /// The condensation sets.
+    /// Condensation sets, by map.
     shapes: Vec<Option<&'a Sampler>>,
     to_pixels: DAffine2,
     random: Scalar,
-    /// The map before.
+    /// Previous map of each walker.
     last: [u32; LANES],
     past: Past,
-    /// The bins of a class; 0 where there is one class only.
+    /// Number of bins of a class; 0 if there is one class only.
     stride: u32,
 }
 
@@ -352,7 +352,7 @@ impl<T: Real> Walk<T> for Any<'_, T> {
     }
 }
 
-/// The maps that walkers applied last, some steps back: a ring.
+/// Ring buffer of the maps that walkers applied in recent steps.
 struct Past {
     maps: Vec<[u32; LANES]>,
     now: usize,
@@ -366,7 +366,7 @@ impl Past {
         }
     }
 
-    /// The place of the step that comes.
+    /// Advances to the next step, and returns its place in the ring.
     #[inline(always)]
     fn advance(&mut self) -> usize {
         self.now = if self.now + 1 < self.maps.len() {
@@ -377,13 +377,13 @@ impl Past {
         self.now
     }
 
-    /// A walk begins with a map: it counts as all that were before.
+    /// Starts a new walk: its first map counts as all previous ones.
     #[cold]
     fn begin(&mut self, lane: usize, map: u32) {
         self.maps.iter_mut().for_each(|maps| maps[lane] = map);
     }
 
-    /// Takes the maps of a step, and tells those of the oldest one.
+    /// Stores the maps of a step, and returns those of the oldest one.
     #[inline(always)]
     fn add(&mut self, now: usize, maps: &[u32; LANES]) -> [u32; LANES] {
         self.maps[now] = *maps;

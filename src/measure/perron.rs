@@ -21,8 +21,8 @@ const NARROW: f64 = 4e-16;
 /// identity, which has one dominant eigenvalue even where the matrix is periodic. The quotients of successive
 /// vectors enclose it (Collatz 1942, Wielandt 1950).
 ///
-/// The enclosure [low, high] is narrowed until `enough` returns `true` for it, or to the precision of a
-/// double.
+/// The enclosure is narrowed until `enough` returns `true` for its lower and upper bounds, or to the
+/// precision of a double.
 pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -> bool) -> Perron {
     let mut vector = vec![1.0; size];
     let mut enclosed = [0.0, f64::INFINITY];

@@ -190,9 +190,9 @@ pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> 
 /// Returns `true` if the natural measure is known to be regular.
 ///
 /// The measure of a set is regular if its pieces do not overlap, or are of finitely many types: a ball meets
-/// a bounded number of distinct pieces of its size r, each of which has a mass of about r^D. The same holds
-/// for finitely many copies of sets of this kind, wherever they lie. Sets of smaller dimensions may be
-/// present as well, unless they hold copies of the former: these would be infinitely many. Pieces that
+/// a bounded number of distinct pieces of its size r, each of which has a mass of about r^D. Finitely many
+/// copies of sets of this kind have a regular measure as well, wherever they lie. Sets of smaller dimensions
+/// may be present, unless they hold copies of the former: these would be infinitely many. Pieces that
 /// coincide are distinguished only [in sets that hold no others](distinct).
 fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimension>]) -> bool {
     const SAME: f64 = 1e-9;
