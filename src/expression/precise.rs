@@ -26,7 +26,7 @@ pub(crate) struct Precise {
 }
 
 impl Precise {
-    /// Returns the exact value of a double; 0 if it is not finite.
+    /// Returns the exact value of a double; 0 for NaN.
     pub(crate) fn of(near: f64) -> Self {
         let exact = Float::try_from(near).unwrap_or(Float::ZERO);
         Self { near, exact }
