@@ -1,4 +1,4 @@
-//! How fast boxes are counted: `cargo bench --bench boxes`.
+//! Benchmarks of box counting: `cargo bench --bench boxes`.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(
@@ -21,7 +21,7 @@ fn main() {
 
 const SIDE: usize = 1 << 14;
 
-/// A gasket of 16384² pixels, a byte each.
+/// Returns a Sierpinski gasket of 16384² pixels, one byte each.
 fn bytes() -> Vec<u8> {
     let pixel = |place: usize| {
         let (column, row) = (place % SIDE, place / SIDE);
@@ -55,7 +55,7 @@ fn bits_of_16384_squared(bencher: Bencher) {
         .bench(|| pyramid(bits.clone()));
 }
 
-/// Points all over a gasket, in no order.
+/// Returns points of a gasket in random order.
 fn points() -> Vec<DVec2> {
     let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
     let (mut state, mut at) = (1u64, DVec2::ZERO);
@@ -69,7 +69,7 @@ fn points() -> Vec<DVec2> {
     (0..10_000_000).map(point).collect()
 }
 
-/// Down to boxes of 2^-14 by bits, or of 2^-20 by sorted keys.
+/// Counts boxes down to 2⁻¹⁴ with bits, or down to 2⁻²⁰ with sorted keys.
 #[divan::bench(args = [14, 20], sample_count = 5)]
 fn ten_million_points(bencher: Bencher, levels: u32) {
     let points = points();
@@ -80,7 +80,7 @@ fn ten_million_points(bencher: Bencher, levels: u32) {
         .bench(|| counts(&points, &map, [boxes; 2], levels));
 }
 
-/// A whole measurement of a limit set, on one thread.
+/// Measures a limit set completely, on one thread.
 #[divan::bench(args = ["koch", "carpet", "dragon"], sample_count = 3)]
 fn limit_set(bencher: Bencher, name: &str) {
     let catalogue = Catalogue::embedded();

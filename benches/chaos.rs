@@ -1,4 +1,4 @@
-//! The chaos game: points a second that walkers walk and a histogram counts.
+//! Benchmarks of the chaos game, in points a second that are iterated and counted in a histogram.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(
@@ -20,7 +20,7 @@ fn main() {
 
 const POINTS: u64 = 16 << 20;
 
-/// Barnsley's fern: a, b, c, d, e, f and the weight of x → ax + by + e, y → cx + dy + f.
+/// Barnsley's fern: a, b, c, d, e, f and the weight of the map x → ax + by + e, y → cx + dy + f.
 const FERN: [[f64; 7]; 4] = [
     [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],
     [0.85, 0.04, -0.04, 0.85, 0.0, 1.6, 0.85],
@@ -44,7 +44,7 @@ fn system(maps: Vec<Map>, edges: Option<Vec<Edge>>) -> System {
     System::of(&Ifs::new(definition).unwrap()).unwrap()
 }
 
-/// The window of the fern in a square picture.
+/// Returns the window of the fern in a square picture.
 fn window(side: u32) -> Window {
     let scale = f64::from(side) / 10.2;
     let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
@@ -68,7 +68,7 @@ fn bench(bencher: Bencher, system: &System, side: u32, classes: ClassBy, threads
         .bench(|| play(system, &window, &game).unwrap());
 }
 
-/// No cache holds the counters of 8192 x 8192 pixels.
+/// The counters of 8192 × 8192 pixels exceed every cache.
 #[divan::bench(args = [(1024, 1), (1024, 2), (8192, 1)])]
 fn fern_by_side_and_threads(bencher: Bencher, (side, threads): (u32, usize)) {
     let system = system(fern(), None);
@@ -92,7 +92,7 @@ fn recurrent_fern(bencher: Bencher) {
     bench(bencher, &system, 1024, ClassBy::One, 1);
 }
 
-/// The fern's maps over and over, with their weights shared among them.
+/// The fern's maps repeat, and copies share their weights.
 #[divan::bench(args = [5, 8, 12, 16, 32])]
 fn more_maps(bencher: Bencher, count: usize) {
     let maps = fern().into_iter().cycle().take(count).collect();

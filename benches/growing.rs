@@ -1,4 +1,4 @@
-//! The kernels of growing and writing: `cargo bench`, or `cargo bench -- walk` for some of them.
+//! Benchmarks of growing and writing: `cargo bench`, or `cargo bench -- walk` for some of them.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(
@@ -37,7 +37,7 @@ fn graph(name: &str, steps: u32) -> Graph {
     Graph::compile(&rule(name), steps).unwrap()
 }
 
-/// Looks at every element, and does nothing with it.
+/// A visitor that reads every element and discards it.
 struct Looks;
 
 impl Visitor for Looks {

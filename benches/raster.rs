@@ -1,6 +1,6 @@
-//! How fast coverage is drawn: lines of a round pen and of a hair, and small polygons.
+//! Benchmarks of coverage: lines of a round pen and of a hair, and small polygons.
 //!
-//! The rates are items a second, drawn all over a picture of 1024 x 1024 pixels.
+//! Rates are in items a second, drawn all over a picture of 1024 × 1024 pixels.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(
@@ -22,14 +22,14 @@ use divan::counter::ItemsCount;
 
 const SIZE: u32 = 1024;
 
-/// Items a sample.
+/// The number of items in a sample.
 const ITEMS: usize = 100_000;
 
 fn main() {
     divan::main();
 }
 
-/// Positions of a walk whose steps have a length in hundredths of a pixel and all directions.
+/// Returns the positions of a walk in random directions, with steps of a length in hundredths of a pixel.
 fn walk(length: f64) -> Vec<[i64; 2]> {
     let most = f64::from(SIZE) * 100.0;
     let mut at = [most / 2.0, most / 2.0];
@@ -56,7 +56,7 @@ fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
     bencher.counter(ItemsCount::new(ITEMS)).bench_local(|| {
         for pair in positions.windows(2) {
             let far = (0..2).any(|axis| pair[0][axis].abs_diff(pair[1][axis]) > 5000);
-            // The walk comes in again on the other side.
+            // The walk re-enters on the opposite side.
             if !far {
                 plane.line(&pen, pair[0], pair[1]);
             }
@@ -64,7 +64,7 @@ fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
     });
 }
 
-/// Each with its ends, as branches of a tree are.
+/// Every hair has two ends of its own, as branches of a tree have.
 #[divan::bench(args = [0.03, 0.1, 0.3, 1.0, 3.0])]
 fn hairs(bencher: Bencher, length: f64) {
     let positions = walk(length * 100.0);

@@ -1,7 +1,8 @@
-//! How long pictures of random systems take: `cargo bench --bench systems`.
+//! Benchmarks of pictures of random systems: `cargo bench --bench systems`.
 //!
-//! Every sample is another of 1,000 affine systems, in a picture of 1024 x 1024 pixels on two threads; the
-//! median and the slowest sample are what is to be looked at. A system that is refused ends the benchmark.
+//! Every sample is a different one of 1,000 affine systems, in a picture of 1024 × 1024 pixels on two
+//! threads; median and slowest sample are the figures of interest. A system that is refused ends the
+//! benchmark.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(

@@ -1,8 +1,8 @@
-//! What people write by mistake, and what hostile people write: each ends with a message that has a
-//! place and a mend, in bounded time and memory.
+//! Mistakes of users and hostile input: each ends with a diagnostic that has a place and a hint, in bounded
+//! time and memory.
 //!
-//! `tests/bad` holds a file for each mistake and, beside it, the message that belongs to it. With
-//! `KFRAC_BLESS=1` the messages are written instead of compared.
+//! `tests/bad` holds a file for each mistake and, beside it, the expected diagnostics. With `KFRAC_BLESS=1`
+//! the diagnostics are written instead of compared.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -21,7 +21,7 @@ use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::heading::Parameter;
 
-/// All that `kfrac check` says of a rule.
+/// Returns all diagnostics that `kfrac check` reports for a rule.
 fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnostics> {
     let source = catalogue.rule(argument)?;
     let (model, mut found) = Document::read(&source, catalogue)?.resolve(&[])?;
@@ -34,7 +34,7 @@ fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnosti
 
 #[test]
 fn every_mistake_has_its_message() {
-    // Names in messages are as given: from the crate's root, where tests run.
+    // Paths in messages are as given: relative to the crate's root, where tests run.
     let catalogue = Catalogue::with_folders(vec!["tests/bad/library".into()]);
     let mut names: Vec<_> = fs::read_dir("tests/bad")
         .unwrap()
@@ -100,7 +100,7 @@ fn round_outlines_may_end_where_they_start() {
     }
 }
 
-/// A folder with these files.
+/// Creates a folder with files.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -167,7 +167,7 @@ fn a_rule_extends_a_file_beside_it_and_the_rule_that_it_hides() {
     for name in ["koch", "koch.yml", "other", "other.yaml"] {
         let document = read(Path::new(name), &catalogue);
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
-        // The embedded rule with a generator of this library.
+        // The embedded rule uses a generator of the folder's library.
         assert_eq!(rule.generators()[0].parts()[0].elements.len(), 1);
         assert_eq!(
             rule.description().source.as_deref(),

@@ -1,4 +1,4 @@
-//! Pictures that are drawn in bands are the same pictures.
+//! Pictures that are drawn in bands are equal to those drawn in one piece.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -12,7 +12,7 @@ use kfrac::grow::{Growth, Progress};
 use kfrac::render::{self, Detail, Format, Options, Size};
 use kfrac::style::{Cap, ColorBy, Colour, Join, Width};
 
-/// The file of a rule of the library, drawn in bands of so many pixels or in one piece.
+/// Returns the PNG of a rule of the library, drawn in bands of a number of pixels or in one piece.
 fn png(name: &str, steps: u32, band: Option<u64>, change: &dyn Fn(&mut Options)) -> Vec<u8> {
     let document = common::document(name);
     let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
@@ -33,7 +33,7 @@ fn png(name: &str, steps: u32, band: Option<u64>, change: &dyn Fn(&mut Options))
     bytes
 }
 
-/// All pixels, and some twenty rows.
+/// Pixels of a band: all of them, and about twenty rows.
 const BANDS: [u64; 2] = [u64::MAX, 1_700];
 
 const STYLES: [fn(&mut Options); 9] = [
@@ -80,7 +80,7 @@ fn the_height_of_bands_does_not_show() {
     }
 }
 
-/// What is drawn as coverage, strokes of thin round pens and small polygons, does not know of bands.
+/// Coverage, strokes of thin round pens and small polygons, does not depend on bands.
 #[test]
 fn what_is_drawn_in_one_piece_is_the_same_in_bands() {
     for (name, steps) in [("koch", 5), ("levy", 8), ("gosper", 2)] {
@@ -124,7 +124,7 @@ fn plots_are_the_same_in_bands() {
     }
 }
 
-/// Cells that a band shows nothing of are left out.
+/// Cells outside a band are skipped.
 #[test]
 fn sheets_do_not_know_of_bands() {
     let document = common::document("dragon-wreath");
@@ -179,7 +179,7 @@ fn progress_counts_pixels() {
     };
     let mut bytes = Vec::new();
     let picture = render::write(&graph, &growth, &options, &mut bytes).unwrap();
-    // Two looks at every pixel, and the survey.
+    // Two passes over the pixels, and the prepass.
     let [width, height] = picture.size.map(u64::from);
     assert!(progress.walked() >= 2 * width * height);
     assert!(progress.expected() >= Some(progress.walked()));
@@ -202,6 +202,6 @@ fn the_command_line_says_how_long_bands_take() {
     let note = "note: 67200 x 1000 pixels are drawn in bands, in about 1 s, to about 90 kB\nwide.png: step 3 of koch, ";
     assert!(said.starts_with(note), "{said}");
     let bytes = std::fs::read(folder.path().join("wide.png")).unwrap();
-    // The width and height that PNG has in its first chunk.
+    // Width and height in the first chunk of a PNG.
     assert_eq!(bytes[16..24], [0, 1, 6, 128, 0, 0, 3, 232]);
 }

@@ -1,4 +1,4 @@
-//! Box counting: what is known is measured, and what cannot be measured is said.
+//! Box counting: known dimensions are measured, and sets that cannot be measured are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -24,7 +24,7 @@ fn grids() -> Vec<Grid> {
     Grid::spread(number(8))
 }
 
-/// A square picture whose pixels are told by their column and row.
+/// Returns a square picture from a predicate of column and row.
 fn picture(side: usize, is_set: impl Fn(usize, usize) -> bool) -> Bits {
     let mut bits = Bits::new(side, side);
     for row in 0..side {
@@ -126,7 +126,7 @@ fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
     );
     let gasket = picture(256, |column, row| column & row == 0);
     let gasket = Masses::of_pixels(&gasket, [0; 2]).lacunarity();
-    // One box of one pixel: ⟨m²⟩ / ⟨m⟩² is one over the part of the pixels that are set.
+    // With one box of one pixel, ⟨m²⟩ / ⟨m⟩² is 1 / the share of set pixels.
     assert!((gasket[0].value - (4.0f64 / 3.0).powi(8)).abs() < 1e-9);
     assert!(gasket.is_sorted_by(|a, b| a.value >= b.value), "{gasket:?}");
 }
@@ -141,7 +141,7 @@ fn limit(name: &str) -> Result<LimitSet, NoLimit> {
     LimitSet::of(&model.compile(20).unwrap())
 }
 
-/// The sizes at which a debug build is quick.
+/// Measures a limit set at sizes for which a debug build is quick.
 fn of_limit(set: &LimitSet, base: f64) -> Estimate {
     let window = kfrac::measure::Window {
         finest: 0.0,
@@ -186,7 +186,7 @@ fn a_sample_tells_what_is_counted() {
                 assert_eq!(sample.count, scale.count, "{name}");
             }
         }
-        // Boxes of 10⁻⁹ of the extent: counts have grown by 9 decades times the dimension.
+        // Boxes of 10⁻⁹ of the extent: counts grow over 9 decades with the dimension.
         let (first, last) = (sampled[2], sampled[sampled.len() - 1]);
         assert!(last.sampled && last.size < 3e-9 * first.size * 27.0);
         let slope =
@@ -204,7 +204,7 @@ fn a_limit_set_lies_in_its_box_and_is_met_by_what_is_counted() {
         (max - kfrac::geometry::DVec2::new(1.0, 12f64.sqrt().recip())).length() < 1e-9,
         "{max}"
     );
-    // Of the trunks of a tree nothing belongs to the limit set of what stays fertile.
+    // The trunks of a tree do not belong to the limit set of its fertile elements.
     let tree = limit("binary-tree").unwrap();
     assert!(tree.bounds().min().x > 0.9, "{:?}", tree.bounds());
 }
@@ -219,7 +219,7 @@ fn a_limit_that_is_a_point_has_dimension_0() {
 
 #[test]
 fn maps_that_are_no_similarities_are_as_long_as_their_product() {
-    // The norms of these two maps are 0.73, but a product of n of them is some 2^-n long.
+    // The norms of the two maps are 0.73, but products of n maps have lengths of about 2^-n.
     let parabola = limit("parabola").unwrap();
     let scales = parabola.sampled_scales(number(2), &grids()[..2], number(2));
     let (first, last) = (scales[4], scales[scales.len() - 1]);

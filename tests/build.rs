@@ -1,4 +1,4 @@
-//! What is built in code: the same as what is written in files.
+//! Fractals built in code are equal to those written in files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -37,7 +37,7 @@ fn polygon(points: &[(f64, f64)], closed: bool) -> BaseElement {
     BaseElement::new(start, points.map(Piece::Line).collect(), closed).unwrap()
 }
 
-/// That a rule is the library's, once described and drawn as that is.
+/// Asserts that a rule equals the library's, once it has that rule's description and style.
 fn assert_is_of_the_library(name: &str, rule: RuleBuilder) {
     let expected = common::resolved(&common::document(name), &[]);
     let rule = rule
@@ -328,7 +328,7 @@ fn round_base_elements_are_what_they_were() {
     }
 }
 
-/// The message of the only mistake in a rule.
+/// Returns the message of the only error in a rule.
 fn mistake(rule: &RuleBuilder) -> String {
     let errors = rule.build().unwrap_err();
     let mut wrong = errors
@@ -424,7 +424,7 @@ fn numbers_that_are_not_finite_are_refused() {
         for rule in [
             RuleBuilder::new([(0.0, 0.0), (1.0, value)]).generator("g", koch()),
             segment().generator("g", [(0.0, 0.0), (value, 1.0), (1.0, 0.0)]),
-            // A parameter cannot give it a meaning.
+            // No parameter can give such a number a meaning.
             rule()
                 .dimension(value)
                 .parameter(Parameter::new("inf", 1.0)),

@@ -1,4 +1,4 @@
-//! The chaos game: its measure, its points, and that nothing but the seed tells in them.
+//! The chaos game: its measure and its points, which depend on nothing but the seed.
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it unwraps nothing")]
 
@@ -19,7 +19,7 @@ const FERN: [[f64; 7]; 4] = [
     [-0.15, 0.28, 0.26, 0.24, 0.0, 0.44, 0.07],
 ];
 
-/// Maps x → ax + by + e, y → cx + dy + f with their weights.
+/// Returns maps x → ax + by + e, y → cx + dy + f with their weights.
 fn maps(table: &[[f64; 7]]) -> Vec<Map> {
     let map = |&[a, b, c, d, e, f, weight]: &[f64; 7]| {
         Map::new(DAffine2::from_cols_array(&[a, c, b, d, e, f])).weighing(weight)
@@ -35,7 +35,7 @@ fn ifs(maps: Vec<Map>) -> Ifs {
     .unwrap()
 }
 
-/// A recurrent system by the weights with which a column's map follows a row's.
+/// Returns a recurrent system, given the weights with which the map of a column follows that of a row.
 fn recurrent(maps: Vec<Map>, transitions: &[Vec<f64>]) -> Ifs {
     let rows = transitions.iter().enumerate();
     let edges = rows.flat_map(|(from, row)| {
@@ -56,7 +56,7 @@ fn recurrent(maps: Vec<Map>, transitions: &[Vec<f64>]) -> Ifs {
     .unwrap()
 }
 
-/// A system with condensation sets, each with its weight.
+/// Returns a system with weighted condensation sets.
 fn condensed(maps: Vec<Map>, sets: Vec<(Shape, f64)>) -> Ifs {
     let sets = sets.into_iter().map(|(shape, weight)| Condensation {
         shape,
@@ -78,13 +78,13 @@ fn fern() -> System {
     system(&ifs(maps(&FERN)))
 }
 
-/// x → (x + digit)/3, so that points are ternary fractions; the last map gives the first digit.
+/// Returns the map x → (x + digit)/3: points are ternary fractions, and the last map gives the first digit.
 fn digit(digit: u32, weight: f64) -> Map {
     let shift = f64::from(digit) / 3.0;
     maps(&[[1.0 / 3.0, 0.0, 0.0, 0.0, shift, 0.5, weight]]).remove(0)
 }
 
-/// A window of square pixels, so many a unit, from an upper left corner on.
+/// Returns a window of square pixels, with `scale` pixels in a unit and the given upper left corner.
 fn window(corner: DVec2, scale: f64, size: [u32; 2]) -> Window {
     let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
     Window {
@@ -98,7 +98,7 @@ fn fern_window(side: u32) -> Window {
     window(DVec2::new(-5.1, 10.1), scale, [side; 2])
 }
 
-/// Ternary fractions of so many digits.
+/// Returns a window with a pixel for every ternary fraction of a number of digits.
 fn ternary(digits: u32) -> Window {
     let cells = 3u32.pow(digits);
     window(DVec2::Y, f64::from(cells), [cells, cells])
@@ -111,7 +111,7 @@ fn game(points: u64) -> Game<'static> {
     }
 }
 
-/// The moments of a histogram, in the units of the plane. Half a pixel's error in a point is none in
+/// Returns the moments of a histogram, in the units of the plane. Errors of half a pixel in points cancel in
 /// the mean of many.
 fn moments(histogram: &Histogram, window: &Window) -> Moments {
     let back = window.to_pixels.inverse();
@@ -131,8 +131,9 @@ fn moments(histogram: &Histogram, window: &Window) -> Moments {
     Moments { mean, covariance }
 }
 
-/// What is counted of a million points must agree with the exact moments to a 40th of a standard
-/// deviation: steps of the fern are correlated over some ten steps, so that is eight standard errors.
+/// Asserts that the moments of a million counted points agree with the exact ones to 1/40 of a standard
+/// deviation: steps of the fern are correlated over about ten steps, so the tolerance is eight standard
+/// errors.
 fn assert_moments(ifs: &Ifs, window: &Window) {
     let exact = ifs.measure().unwrap().moments;
     let histogram = play(&system(ifs), window, &game(1_000_000)).unwrap();
@@ -151,7 +152,7 @@ fn assert_moments(ifs: &Ifs, window: &Window) {
 #[test]
 fn the_measure_has_its_moments() {
     assert_moments(&ifs(maps(&FERN)), &fern_window(512));
-    // In double precision: the plane is far away from its origin.
+    // The plane is far from its origin, where double precision is needed.
     let mut far = fern_window(512);
     let shift = DAffine2::from_translation(DVec2::splat(1e5));
     far.to_pixels *= shift.inverse();
@@ -224,7 +225,7 @@ fn threads_do_not_tell() {
     }
 }
 
-/// What is drawn is part of every picture: on any machine these are the counts.
+/// Pins the counts of a fixed seed, which are equal on all machines.
 #[test]
 fn counts_are_pinned() {
     let window = fern_window(64);
@@ -259,18 +260,18 @@ fn nothing_lies_in_the_gaps_of_the_cantor_set() {
         digits.any(|digit| digit == 1)
     };
     for (cell, &count) in columns.iter().enumerate() {
-        // Rounding may carry points over the edge of a gap.
+        // Rounding may move points across the edge of a gap.
         if (cell.max(1) - 1..=cell + 1).all(is_in_gap) {
             assert_eq!(count, 0, "{cell}");
         }
         if !is_in_gap(cell) {
-            // Of 10,000 points, five standard errors.
+            // Five standard errors of 10,000 points.
             assert!(count.abs_diff(10_000) < 500, "{cell}");
         }
     }
 }
 
-/// The distance to the triangles of the gasket after some steps, or `most` if it is larger.
+/// Returns the distance from the triangles of the gasket after a number of steps, but at most `most`.
 fn distance(point: DVec2, corner: DVec2, side: f64, steps: u32, most: f64) -> f64 {
     let height = 0.75f64.sqrt();
     let centre = corner + DVec2::new(0.5, height / 3.0) * side;
@@ -317,7 +318,7 @@ fn points_lie_on_the_gasket() {
     assert!(hit > 200, "{hit}");
 }
 
-/// The points of each class and column.
+/// Returns the number of points in each class and column.
 fn columns(histogram: &Histogram) -> Vec<Vec<u32>> {
     let width = histogram.size()[0] as usize;
     let classes = (0..histogram.classes()).map(|class| {
@@ -349,7 +350,7 @@ fn weights_are_honoured_and_classes_are_tiles() {
                 } else {
                     0.0
                 };
-                // Rounding may carry a few points over the edge of a cell.
+                // Rounding may move a few points across the edge of a cell.
                 let error = 5.0 * f64::sqrt(expected) + 5.0;
                 assert!(
                     (f64::from(count) - expected).abs() < error,
@@ -360,8 +361,8 @@ fn weights_are_honoured_and_classes_are_tiles() {
     }
 }
 
-/// From 0 only 1 may follow, from 1 itself or 2, from 2 only 0: stationary weights 1, 2, 1. A point's
-/// digits are the last map and the one before.
+/// After 0 only 1 may follow, after 1 itself or 2, after 2 only 0: the stationary weights are 1, 2, 1. The
+/// digits of a point are the last map and the preceding one.
 #[test]
 fn transitions_lead_from_the_row_to_the_column() {
     let digits = (0..3).map(|place| digit(place, 1.0)).collect();
@@ -459,7 +460,7 @@ fn progress_is_told_and_games_can_be_cancelled() {
     assert_eq!(progress.walked(), 1_234_567);
     assert_eq!(progress.expected(), Some(1_234_567));
     cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    // It would take forever.
+    // The game would take forever.
     game.points = u64::MAX;
     let cancelled = play(&fern(), &window, &game);
     assert_eq!(cancelled, Err(GameError::Cancelled));
@@ -502,9 +503,10 @@ fn no_points_are_an_empty_histogram() {
     assert_eq!(histogram.counts(0).len(), 64 * 64);
 }
 
-/// The pixels of a picture of two points in a row of three, the second one hit three times as often.
+/// Returns the pixels of a picture of two points in a row of three; the second point is hit three times as
+/// often.
 fn pixels(density: &Density, classes: ClassBy) -> Vec<[u8; 4]> {
-    // Two maps to a point each.
+    // Two maps, each onto a point.
     let point = |x: f64, weight: f64| maps(&[[0.0, 0.0, 0.0, 0.0, x, 0.5, weight]]).remove(0);
     let system = system(&ifs(vec![point(0.5, 1.0), point(1.5, 3.0)]));
     let game = Game {
@@ -566,7 +568,7 @@ fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
     assert_eq!(drawn[2], [255; 4]);
 }
 
-/// The list is another walk by the same chances.
+/// The list is a different walk with the same probabilities.
 #[test]
 fn points_can_be_listed() {
     let weights = [2.0, 5.0, 1.0];

@@ -1,4 +1,4 @@
-//! The program as people run it.
+//! The command-line program from a user's point of view.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -165,7 +165,7 @@ fn info_tells_the_size_of_every_step() {
     assert!(info["elements"].is_array() && info["length"].is_null() && info["bounds"].is_null());
 }
 
-/// Which of two generators is drawn does not matter where both have as many elements.
+/// The draw between two generators with equal numbers of elements does not affect counts.
 #[test]
 fn counts_are_told_where_they_do_not_hang_on_the_draw() {
     let folder = tempfile::tempdir().unwrap();
@@ -200,7 +200,7 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
          4e8 years of drawing; 12 is the deepest step within --max-elements 50,000,000; \
          --detail 0.5 draws it to half a pixel\n"
     );
-    // Estimates are of the picture that is asked for, and tables are not drawn.
+    // Estimates apply to the requested picture, and tables are not drawn.
     let refused = |arguments: &[&str]| {
         let arguments = [&["grow"], arguments].concat();
         stderr(&run(folder.path(), &arguments).code(1))
@@ -219,13 +219,13 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
         ),
         "{table}"
     );
-    // Draws decide how long the elements are, and whether they become smaller.
+    // Draws decide the lengths of elements, and whether they shrink.
     let drawn = refused(&["vegetation", "--steps", "60"]);
     assert!(
         !drawn.contains(" of SVG") && !drawn.contains("--detail"),
         "{drawn}"
     );
-    // Where the size is not known before, the walk ends at the limit and leaves nothing.
+    // Where the size is unknown beforehand, the walk ends at the limit and leaves no file.
     fs::write(
         folder.path().join("many.yaml"),
         "initiator: segment\ngenerators: {a: koch, b: levy}\nselect: {at_random: {a: 1, b: 1}}\n",
@@ -505,7 +505,7 @@ fn folders_of_ones_own_come_before_the_library() {
     assert_eq!(title(&[]), "environment");
     write("given/koch.yaml", "given");
     assert_eq!(title(&["--library", "given"]), "given");
-    // A file that exists wins.
+    // An existing file has precedence.
     write("koch", "here");
     assert_eq!(title(&["--library", "given"]), "here");
 }
@@ -535,7 +535,7 @@ fn the_library_is_listed_with_rules_and_components() {
     assert!(dragons.contains("terdragon") && !dragons.contains("koch"));
 }
 
-/// What is listed can be looked at, and what cannot be grown says what it is.
+/// Listed components can be shown, and growing a component is refused with its kind.
 #[test]
 fn components_are_shown_and_printed() {
     const COMPONENTS: [&str; 3] = ["initiator", "generator", "base_element"];
@@ -559,7 +559,7 @@ fn components_are_shown_and_printed() {
         });
         let long = format!("{shelf}/{name}");
         assert_eq!(stdout(&run(folder.path(), &["cat", &long]).success()), file);
-        // The first of a name is meant, where no rule has it.
+        // The first component of a name is taken, unless a rule has that name.
         let short = stdout(&run(folder.path(), &["cat", name]).success());
         let same = COMPONENTS.iter().find(|kind| {
             listed
@@ -569,7 +569,7 @@ fn components_are_shown_and_printed() {
         if !has_rule && same == Some(&kind) {
             assert_eq!(short, file, "{name}");
         }
-        // Refused, with what it is for.
+        // Growing is refused with the component's kind.
         let grown = run(folder.path(), &["grow", &long]).code(1);
         let said = String::from_utf8(grown.get_output().stderr.clone()).unwrap();
         let noun = kind.replace('_', " ");
@@ -617,7 +617,7 @@ fn components_are_shown_and_printed() {
     }
     let set = ["show", "swaying-roof", "--set", "sway=40", "-o", "roof.png"];
     run(folder.path(), &set).success();
-    // Parameters of no component are refused as those of no rule are.
+    // Unknown parameters of components are refused, as those of rules are.
     run(folder.path(), &["show", "swaying-roof", "--set", "sawy=40"]).code(2);
 }
 
@@ -645,12 +645,12 @@ fn a_rule_is_printed_as_it_is_or_with_everything_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let plain = stdout(&run(folder.path(), &["cat", "vegetation"]).success());
     let file = include_str!("../library/rules/vegetation.yaml");
-    // But for the line that leads from the library to the schema.
+    // The line that refers the library's file to its schema is left out.
     assert_eq!(plain, file.split_once('\n').unwrap().1);
     assert!(plain.starts_with("title: "));
     let inline = stdout(&run(folder.path(), &["cat", "pythagoras-30", "--inline"]).success());
     assert!(!inline.contains("extends") && inline.contains("- [0, 0]"));
-    // What was inlined draws the same.
+    // The inlined rule draws the same picture.
     let csv = |rule: &str, input: &str| {
         let assert = kfrac(folder.path())
             .args(["grow", rule, "--steps", "4", "--format", "csv", "-o", "-"])
@@ -786,7 +786,7 @@ fn an_existing_file_is_replaced_as_a_whole_or_not_at_all() {
     assert_eq!(files(folder.path()), ["koch.svg"]);
 }
 
-/// Files of many chunks are the same to the byte.
+/// Files of many chunks are equal to the byte.
 #[test]
 fn what_is_written_does_not_depend_on_the_threads() {
     let folder = tempfile::tempdir().unwrap();
@@ -959,7 +959,7 @@ fn who_ends_the_program_leaves_nothing_behind() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // The work is under way once the file that is to become the table is there.
+    // The command is under way once the table's temporary file exists.
     while files(folder.path()).is_empty() {
         assert!(
             child.try_wait().unwrap().is_none(),

@@ -1,4 +1,4 @@
-//! How far fractals are apart, against what is known and against brute force.
+//! Distances between fractals, against known values and against brute force.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -41,7 +41,7 @@ fn distance(a: &Graph, b: &Graph, tolerance: f64) -> Distance {
     hausdorff([&a, &b], &precision).unwrap()
 }
 
-/// Asserts that a distance is what it should be, to within an error that is small.
+/// Asserts that a distance agrees with the expected one within its error, which is at most `most`.
 fn assert_is(found: &Distance, expected: f64, most: f64) {
     assert!((found.value() - expected).abs() <= found.error, "{found:?}");
     assert!(found.error <= most, "{found:?}");
@@ -57,7 +57,7 @@ fn koch_is_one_set_as_a_rule_and_as_a_system() {
 #[test]
 fn a_set_that_is_moved_is_as_far_as_it_is_moved() {
     let moved = "initiator: [[0.1, 0], [1.1, 0]]\ngenerator: koch\n";
-    // (0, 0) has nothing nearer than (0.1, 0).
+    // The nearest point to (0, 0) is (0.1, 0).
     assert_is(&distance(&rule("koch"), &graph(moved), 1e-3), 0.1, 1.3e-3);
 }
 
@@ -75,7 +75,7 @@ fn the_middle_of_a_segment_is_far_from_the_cantor_set() {
 
 #[test]
 fn what_an_outline_encloses_belongs_to_it() {
-    // A square as four of its quarters, and as a condensation set of something that is in it.
+    // A square as four of its quarters, and as a condensation set of a system inside it.
     let quarters = "kind: ifs\nvertices: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], shrink: 1/2}\n";
     let filled = "\
 kind: ifs
@@ -85,13 +85,13 @@ condensation:
 ";
     let found = distance(&graph(quarters), &graph(filled), 1e-2);
     assert!(found.may_be_same() && found.error < 1.5e-2, "{found:?}");
-    // The centre of a disc is as far from its circle as that is large.
+    // The distance from the centre of a disc to its circle is the radius.
     let disk = "kind: ifs\nmaps: [{scale: 1/2}]\ncondensation:\n  - disk: {radius: 1}\n";
     let point = "kind: ifs\nmaps: [{scale: 1/2}]\n";
     assert_is(&distance(&graph(disk), &graph(point), 1e-2), 1.0, 3e-2);
 }
 
-/// Of such maps there are so many products down to the error that none can look at them all.
+/// Products of such maps down to the error are too many to enumerate.
 #[test]
 fn copies_that_overlap_a_lot_are_covered() {
     let corners = ["[0, 0]", "[16, 0]", "[8, 14]"];
@@ -104,12 +104,12 @@ fn copies_that_overlap_a_lot_are_covered() {
     ));
     let found = distance(&copies, &triangle, 1e-2);
     assert!(found.may_be_same() && found.error < 0.17, "{found:?}");
-    // Without a corner of it, it is the line that is left.
+    // Without one of its corners, the line is left.
     let line = graph("kind: ifs\nmaps: [{scale: 1/2}, {scale: 1/2, shift: [8, 0]}]\n");
     assert_is(&distance(&copies, &line, 1e-2), 14.0, 0.17);
 }
 
-/// Objects of sizes and sets of their own, whose copies overlap.
+/// Objects of different sizes and shapes, whose copies overlap.
 #[test]
 fn structures_that_overlap_a_lot_are_covered() {
     let structure = "\
@@ -129,7 +129,7 @@ scene: [{object: large, scale: [1, 2]}, {segment: [[40, 0], [41, 0]]}]
     let subject = Subject::new(&structure, Set::Limit).unwrap();
     let size = subject.bounds().size().max_element();
     assert!(found.error <= 0.011 * size, "{found:?}, {size}");
-    // Points of the set, each by some ten maps that are picked by turns.
+    // Points of the set, each the image under about ten maps that are picked in turn.
     let cover = subject.cover(0.005 * size, 4_000_000).unwrap();
     let mut missed = 0;
     for point in orbit(&structure, 2000) {
@@ -145,7 +145,7 @@ fn two_dragons_differ() {
     assert!(!found.may_be_same() && found.value() > 0.1, "{found:?}");
 }
 
-/// Points of the limit set, by long walks from the initiator to what is kept.
+/// Returns points of the limit set, by long walks from the initiator to kept elements.
 fn orbit(graph: &Graph, count: u64) -> Vec<DVec2> {
     let walk = |seed: u64| {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
@@ -171,7 +171,7 @@ fn orbit(graph: &Graph, count: u64) -> Vec<DVec2> {
     (1..=count).map(walk).collect()
 }
 
-/// The corners of an approximant.
+/// Returns the corners of an approximant.
 fn corners(graph: &Graph, steps: u32) -> Vec<DVec2> {
     let fractals = grown(graph, &Growth::steps(steps));
     let elements = fractals.iter().flat_map(|fractal| &fractal.elements);
@@ -202,8 +202,8 @@ fn a_perturbed_map_is_as_far_as_brute_force_says() {
             from.iter().map(nearest).fold(0.0, f64::max).sqrt()
         };
         let brute = far(&a, &b).max(far(&b, &a));
-        // Corners are of the sets, and no point of them is farther than half a side from a corner:
-        // sides of the perturbed curve are a few hundredths longer at most.
+        // Corners belong to the sets, and no point of a set is farther from a corner than half a side: sides
+        // of the perturbed curve are at most a few hundredths longer.
         let error = found.error + 1.3 * side;
         assert!(
             (found.value() - brute).abs() <= error,
@@ -321,7 +321,7 @@ fn a_picture_shows_the_difference() {
     assert_eq!(colours, expected.into());
 }
 
-/// A picture marks pixels, and keeps no points.
+/// A picture of the difference marks pixels and keeps no points.
 #[test]
 fn a_picture_needs_no_points_that_are_kept() {
     let folder = tempfile::tempdir().unwrap();

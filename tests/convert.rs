@@ -1,4 +1,4 @@
-//! Fractals written in another way, against what they were.
+//! Conversions between kinds, against the originals.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -22,7 +22,7 @@ fn model(document: &Document) -> Model {
         .0
 }
 
-/// All that can be grown, with its name, but for L-systems.
+/// Returns all fractals of the library with their names, except L-systems.
 fn library() -> Vec<(String, Model)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
@@ -37,13 +37,13 @@ fn library() -> Vec<(String, Model)> {
         .collect()
 }
 
-/// Holds a set of two graphs against each other; covers of few points show the large.
+/// Asserts that a set of two graphs is the same; covers of few points show large differences.
 fn assert_same(name: &str, graphs: [&Graph; 2], set: Set<'_>) {
     let subjects = graphs.map(|graph| {
         let subject = Subject::new(graph, set);
         subject.unwrap_or_else(|error| panic!("{name}: {error}"))
     });
-    // Where a limit takes too long to be bounded, there is nothing to compare.
+    // A limit set that takes too long to be bounded is not compared.
     if matches!(set, Set::Limit) && graphs.iter().any(|graph| graph.limit_bounds().is_none()) {
         return;
     }
@@ -57,7 +57,7 @@ fn assert_same(name: &str, graphs: [&Graph; 2], set: Set<'_>) {
         tolerance: 1.0 / 16.0,
         most_points: 100_000,
     };
-    // Of what takes too many points the boxes have been compared.
+    // Sets that take too many points are compared by their boxes alone.
     if let Ok(distance) = hausdorff([&subjects[0], &subjects[1]], &precision) {
         assert!(distance.may_be_same(), "{name}: {distance:?}");
     }
@@ -164,7 +164,7 @@ style: {width: 2}
     assert_eq!(written, expected);
 }
 
-/// A tree with a trunk that stays, from an initiator that is turned and moved.
+/// A tree with a trunk that is kept, on a rotated and translated initiator.
 const TREE: &str = "\
 initiator: [[1, 1], [1, 3]]
 generator:
@@ -197,7 +197,7 @@ fn an_initiator_of_several_elements_becomes_a_recurrent_system() {
         12,
         "{written}"
     );
-    // Copies are kept apart: what follows a map of the second side are those of the second side.
+    // Copies are kept apart: only maps of the second side follow maps of the second side.
     assert!(
         written.contains("  \"5\": [\"5\", \"6\", \"7\", \"8\"]")
             || written.contains("5: [5, 6, 7, 8]"),
@@ -205,7 +205,7 @@ fn an_initiator_of_several_elements_becomes_a_recurrent_system() {
     );
 }
 
-/// The golden rectangle's dust: 1 may not follow 2 after itself, and not the other way round.
+/// A recurrent system of three maps with a condensation set.
 const RECURRENT: &str = "\
 kind: ifs
 maps:
@@ -241,7 +241,7 @@ fn a_recurrent_system_becomes_objects_and_a_system_again() {
     assert_eq!(first.ifs().condensation(), second.ifs().condensation());
 }
 
-/// Converts to a system, which must be the same to a hundredth.
+/// Converts to a system, which must agree with the original to a hundredth.
 fn as_system(text: &str) -> String {
     let written = converted(text, Kind::Ifs, Keeps::Limit).unwrap();
     let graphs = [text, &written].map(|text| model(&document_of(text)).compile(64).unwrap());
@@ -258,11 +258,11 @@ fn as_system(text: &str) -> String {
 
 #[test]
 fn shapes_that_are_not_everywhere_become_copies_of_themselves() {
-    // Two trunks, each with a tree of its own: lines are two halves each.
+    // Two trunks, each with a tree of its own: every line becomes two halves.
     let forest = TREE.replace("[[1, 1], [1, 3]]", "[[1, 1], [1, 3], [2, 3]]");
     let written = as_system(&forest);
     assert!(!written.contains("condensation"), "{written}");
-    // A polygon with a notch, which does not follow the map: triangles are four quarters each.
+    // A polygon with a notch, which does not follow the map: every triangle becomes four quarters.
     let notched = "\
 kind: instancing
 objects:
@@ -360,7 +360,7 @@ generator:
     );
 }
 
-/// What rewrites edges has a limit set; of what starts anew at every step, a step is written.
+/// A system that rewrites edges has a limit set; of one that starts anew at every step, a step is written.
 #[test]
 fn l_systems_become_what_they_draw() {
     let model_of = |name: &str| {
@@ -399,7 +399,7 @@ fn l_systems_become_what_they_draw() {
     }
 }
 
-/// The strings that the literature has for these curves.
+/// The strings of the literature for these curves.
 #[test]
 fn chains_of_equal_lines_become_plain_strings() {
     let strings = |name: &str| {
@@ -423,7 +423,7 @@ fn chains_of_equal_lines_become_plain_strings() {
         strings("terdragon"),
         "angle: 360/3\naxiom: F\nproductions: {F: F-F+F}"
     );
-    // A is F traversed from its end.
+    // A is F traversed backwards.
     assert_eq!(
         strings("gosper"),
         "angle: 360/6\naxiom: F\nproductions: {F: F-A--A+F++FF+A-, A: +F-AA--A-F++F+A}\nsymbols: {A: draw}"
@@ -438,7 +438,7 @@ fn chains_of_equal_lines_become_plain_strings() {
     );
 }
 
-/// Trunks stay, and everything stands in brackets.
+/// The trunks are kept, and every instance is in brackets.
 #[test]
 fn other_rules_become_strings_with_ways() {
     let written = converted(TREE, Kind::LSystem, Keeps::Approximants).unwrap();
@@ -453,7 +453,7 @@ fn other_rules_become_strings_with_ways() {
     assert_same("a tree", [&graphs[0], &graphs[1]], Set::Limit);
 }
 
-/// Branches as long as what they stand on, which leads back to it by way of a shorter one only.
+/// Branches as long as the one they grow on, which leads back to it only by way of a shorter one.
 #[test]
 fn what_shrinks_by_way_of_others_is_not_doubted() {
     let catalogue = Catalogue::embedded();
@@ -466,7 +466,7 @@ fn what_shrinks_by_way_of_others_is_not_doubted() {
     assert!(doubts.is_empty(), "{doubts}");
     let boxes = [tree, model].map(|it| it.compile(4).unwrap().limit_bounds().unwrap());
     assert!((boxes[0].size() - boxes[1].size()).length() < 1e-9);
-    // A branch that leads to itself as long as it is has no limit.
+    // A branch that leads to itself at its own length has no limit set.
     let text = "initiator: {elements: [{from: [0, 0], to: [1, 0], use: a}]}\ngenerators:\n  \
                 a: {elements: [{from: [0, 0], to: [1, 0], use: b}]}\n  \
                 b: {elements: [{from: [0, 0], to: [1, 0], use: a}]}\n";
@@ -474,7 +474,7 @@ fn what_shrinks_by_way_of_others_is_not_doubted() {
     assert!(doubts.to_string().contains("does not shrink"), "{doubts}");
 }
 
-/// Messages call objects as the file does.
+/// Messages name objects as the file does.
 #[test]
 fn what_is_refused_is_called_by_its_name() {
     let text = "kind: instancing\nobjects:\n  twig: [{polyline: [[0, 0], [0, 1]]}]\n  \

@@ -1,4 +1,4 @@
-//! Small files that ask for much: told in bounded time and memory, or refused.
+//! Small files that demand large results: accepted in bounded time and memory, or refused.
 
 use std::fs;
 use std::sync::atomic::AtomicBool;
@@ -11,7 +11,7 @@ use kfrac::grow::{Growth, WalkError, extent};
 
 use super::hostile::{kfrac, refused};
 
-/// Checks that the program finds nothing wrong with a file of this text.
+/// Asserts that the program accepts a file without a diagnostic.
 fn accepted(text: &str, arguments: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("many.yaml"), text).unwrap();
@@ -22,7 +22,7 @@ fn accepted(text: &str, arguments: &[&str]) {
 const CHECK: [&str; 2] = ["check", "many.yaml"];
 const INFO: [&str; 4] = ["info", "many.yaml", "--steps", "2"];
 
-/// Two lists of equal numbers of elements, and many generators that name each other.
+/// Returns a rule with two lists of equal numbers of elements, and many generators that name each other.
 fn entangled(count: usize) -> String {
     let mut text = String::from("initiator: segment\ngenerators:\n");
     for (name, y) in [("a", 0), ("b", 1)] {
@@ -117,7 +117,7 @@ fn many_parameters_are_inherited() {
     assert_eq!(outcome.status, Some(0), "{}", outcome.said);
 }
 
-/// A structure of these objects, with this scene.
+/// Returns a structure with given objects and scene.
 fn structure(objects: &str, scene: &str) -> String {
     format!("kind: instancing\nobjects:\n{objects}scene: [{scene}]\n")
 }
@@ -157,7 +157,7 @@ fn many_shapes_are_told_apart() {
 
 #[test]
 fn many_loops_are_checked() {
-    // Every object holds all others; of each pair of instances one grows.
+    // Every object instances all others; one of each pair of instances grows.
     for (objects, factor) in [(40, "1/2"), (12, "[1.5, 0.3]"), (150, "[1.5, 0.3]")] {
         let names: Vec<_> = (0..objects)
             .map(|i| format!("{{object: a{i}, scale: {factor}, rotate: 90}}"))
@@ -256,7 +256,7 @@ fn fractals_of_fractals_are_counted() {
     refused(text(1_000_000, 1).as_bytes(), "more than 100000 lines");
 }
 
-/// Brackets are nested deeper than any stack of calls.
+/// The depth of brackets exceeds that of the call stack.
 #[test]
 fn brackets_may_be_nested_deeply() {
     const DEPTH: usize = 100_000;

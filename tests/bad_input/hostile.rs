@@ -1,4 +1,4 @@
-//! Input that is too much: through the program where the exit status counts.
+//! Excessive input, through the program where its exit status matters.
 
 use std::fs;
 use std::path::Path;
@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 use assert_cmd::Command;
 use kfrac::catalogue::Catalogue;
 
-/// Reading at most this long is not a hang, for a program that is not optimised on a busy machine.
+/// Time limit for reading a file: a hang takes longer, even if the program is not optimised and the machine
+/// is busy.
 const SOON: Duration = Duration::from_secs(120);
-/// What is said of one file is at most this long.
+/// Limit of the length of the messages about one file.
 const MOST_SAID: usize = 100_000;
 
 pub(super) struct Outcome {
@@ -39,7 +40,7 @@ pub(super) fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
     }
 }
 
-/// Checks that a file of these bytes is refused, by `check` and by `grow`, which leaves no file.
+/// Asserts that a file is refused by `check` and by `grow`, which leaves no file behind.
 pub(super) fn refused(bytes: &[u8], message: &str) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.yaml"), bytes).unwrap();
@@ -144,7 +145,7 @@ fn long_lists_are_read_or_refused_soon() {
 
 #[test]
 fn names_are_compared_with_few_others() {
-    // Mistakes beyond the most that are looked for, then generators beyond the most that are near.
+    // More unknown names than get a suggestion, then more generators than are compared with one.
     for (generators, uses) in [(100, 50_000), (5_000, 20)] {
         let named: String = (0..generators)
             .map(|i| format!("  g{i}: [[0, 0], [1/2, 0]]\n"))
@@ -225,7 +226,7 @@ fn what_is_no_file_is_said() {
         let locked = folder.path().join("locked.yaml");
         fs::write(&locked, KOCH).unwrap();
         fs::set_permissions(&locked, fs::Permissions::from_mode(0o000)).unwrap();
-        // Who may read everything has no such problem.
+        // A privileged user may read the file.
         if fs::read(&locked).is_err() {
             says("locked.yaml", "'locked.yaml' cannot be read");
         }
@@ -313,7 +314,7 @@ fn parents_and_components_may_be_hostile_too() {
         count == 1 && said.contains("'mine' extends itself"),
         "{said}"
     );
-    // A generator that names itself is no generator: components hold no components.
+    // A generator that extends itself is refused: components do not contain components.
     let (count, said) = says(KOCH);
     assert!(
         count == 2 && said.contains("unknown key 'generator' in a generator"),

@@ -1,4 +1,4 @@
-//! The library's files with random mistakes in them.
+//! Files of the library with random mistakes.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use kfrac::model::Model;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// Pieces that mistakes are made of: those that mean something in a rule file.
+/// Fragments that mistakes are made of, which have a meaning in rule files.
 const PIECES: [&str; 48] = [
     "",
     " ",
@@ -62,7 +62,7 @@ const PIECES: [&str; 48] = [
     "null",
 ];
 
-/// A text cut into words, signs and white space.
+/// Splits a text into words, signs and white space.
 fn tokens(text: &str) -> Vec<String> {
     let class = |c: char| {
         if c.is_alphanumeric() || "_.".contains(c) {
@@ -150,13 +150,13 @@ fn with_mistakes(text: &str, mistakes: &[(Index, Mistake)]) -> String {
     tokens.concat()
 }
 
-/// Reads, resolves and compiles a text; what comes of it is said in lines of bounded length.
+/// Reads, resolves and compiles a text; messages must have lines of bounded length.
 fn digest(text: &str) -> Result<(), Diagnostics> {
     let catalogue = Catalogue::embedded();
     let source = Source::new("mutated.yaml", text);
     let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
     match (model.compile(2), &model) {
-        // What grows too long has no place.
+        // An L-system that grows too long has no place in the file.
         (Ok(_), _) | (Err(_), Model::LSystem(_)) => Ok(()),
         (Err(error), _) => Err(model.diagnostic(&error).into()),
     }
@@ -177,7 +177,7 @@ proptest! {
             prop_assert!(found.has_errors());
             let said = found.to_string();
             prop_assert!(said.len() < 1 << 20, "{}", said);
-            // A place is in the file, or in the library.
+            // A place is in the file or in the library.
             prop_assert!(found.iter().all(|one| one.place().is_some()), "{}\n{}", text, said);
             let mut places: Vec<_> = found.iter().map(|one| format!("{one:?}")).collect();
             places.sort();

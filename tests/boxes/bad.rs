@@ -1,4 +1,4 @@
-//! `kfrac dim` on files: what it reads, and what it refuses.
+//! Input of `kfrac dim`: formats that are read, and files that are refused.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// A greyscale PNG.
+/// Returns a greyscale PNG.
 fn png(values: &[u8], width: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let height = u32::try_from(values.len()).unwrap() / width;
@@ -124,7 +124,7 @@ fn wrong_options_are_a_wrong_command_line() {
 fn pictures_are_read_in_either_format_and_inverted() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // The same blocks of 8 × 8 pixels as in the JPEG.
+    // Equal blocks of 8 × 8 pixels are in the JPEG.
     let dark = |place: usize| (place % 64 / 8) & (place / 64 / 8) == 0;
     let values: Vec<u8> = (0..64 * 64)
         .map(|place| if dark(place) { 10 } else { 240 })

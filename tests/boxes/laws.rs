@@ -5,7 +5,7 @@ use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised, Points, counts, r
 
 use super::{grids, number, picture};
 
-/// Numbers that look like chance (Knuth's multiplier).
+/// Iterates over pseudorandom numbers (Knuth's multiplier).
 fn numbers(seed: u64) -> impl Iterator<Item = u64> {
     std::iter::successors(Some(seed), |last| {
         Some(
@@ -17,7 +17,7 @@ fn numbers(seed: u64) -> impl Iterator<Item = u64> {
     .skip(1)
 }
 
-/// Points of a dust of dimension log 4 / log 3, by the chaos game.
+/// Returns points of a dust of dimension log 4 / log 3, by the chaos game.
 fn dust(count: usize) -> Vec<DVec2> {
     let mut at = DVec2::ZERO;
     let corners =
@@ -107,7 +107,7 @@ fn sorted_keys_count_as_bits_do() {
     }
 }
 
-/// Points of a gasket in an upright triangle, by the chaos game.
+/// Returns points of a gasket in an upright triangle, by the chaos game.
 fn gasket(count: usize) -> Vec<DVec2> {
     let mut at = DVec2::ZERO;
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75f64.sqrt()]].map(DVec2::from_array);
@@ -118,7 +118,7 @@ fn gasket(count: usize) -> Vec<DVec2> {
     points.skip(60).take(count).collect()
 }
 
-/// A number from 0 to 1.
+/// Maps a pseudorandom number to the range from 0 to 1.
 fn part(number: u64) -> f64 {
     number as f64 / (1u64 << 31) as f64
 }
@@ -173,7 +173,7 @@ fn a_similarity_changes_no_dimension() {
 
 #[test]
 fn neither_scale_nor_place_changes_what_boxes_hold() {
-    // Whole numbers of 2⁻²⁰, which stay exact wherever they are moved to.
+    // Multiples of 2⁻²⁰ stay exact under all translations.
     let whole = |point: DVec2| (point * 1_048_576.0).round() / 1_048_576.0;
     let points: Vec<DVec2> = gasket(3_000).into_iter().map(whole).collect();
     let of = |scale: f64, shift: [f64; 2]| {
@@ -198,7 +198,7 @@ fn neither_scale_nor_place_changes_what_boxes_hold() {
 
 #[test]
 fn points_are_boxed_however_far_away_they_lie() {
-    // Nanoseconds since 1970, which doubles tell apart by 256: no point lies where it was written.
+    // Doubles resolve nanoseconds since 1970 in steps of 256: no point lies exactly where it was written.
     for (offset, step) in [
         (1.7e18, 1.0),
         (1.7e18, 700.0),

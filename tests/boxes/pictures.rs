@@ -1,10 +1,10 @@
-//! Pictures of known sets, turned, moved and drawn with pens: their dimensions lie within their errors.
+//! Pictures of known sets, rotated, moved and drawn with pens: their dimensions lie within their errors.
 
 use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised};
 
 use super::{grids, number, picture};
 
-/// The pixels that points lie in, in a square picture, with `pen` pixels to the right and down.
+/// Returns the pixels of a square picture that points fall into, with `pen` pixels to the right and down.
 fn marked(side: usize, pen: usize, points: impl Iterator<Item = [f64; 2]>) -> Bits {
     #[expect(
         clippy::cast_possible_truncation,
@@ -23,7 +23,7 @@ fn marked(side: usize, pen: usize, points: impl Iterator<Item = [f64; 2]>) -> Bi
     bits
 }
 
-/// A similarity: by a factor, turned by degrees, and moved.
+/// Returns a similarity: a factor, a rotation in degrees, and a translation.
 fn placed(scale: f64, degrees: f64, [left, top]: [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {
     let (sin, cos) = degrees.to_radians().sin_cos();
     move |[x, y]| {
@@ -34,12 +34,12 @@ fn placed(scale: f64, degrees: f64, [left, top]: [f64; 2]) -> impl Fn([f64; 2]) 
     }
 }
 
-/// Points along a segment from 0 to 1.
+/// Iterates over points of the segment from 0 to 1.
 fn segment() -> impl Iterator<Item = [f64; 2]> {
     (0..=8000).map(|number| [f64::from(number) / 8000.0, 0.0])
 }
 
-/// The corners of a Koch curve of so many steps, on a segment from 0 to 1.
+/// Returns the corners of a Koch curve after a number of steps, on the segment from 0 to 1.
 fn koch(steps: u32) -> Vec<[f64; 2]> {
     let turns = [0.0, 60.0, -60.0, 0.0];
     let (mut at, scale) = ([0.0; 2], 3f64.powi(-steps.cast_signed()));
@@ -85,7 +85,7 @@ fn a_turned_koch_curve_has_its_dimension() {
 
 #[test]
 fn a_spiral_is_a_curve_below_the_distance_of_its_turns() {
-    // To boxes that are larger than this, it is an area, and no power stands for what lies between.
+    // To boxes larger than this distance the spiral is an area, and no power describes the transition.
     for (side, pen) in [(1000_u16, 1), (700, 3)] {
         let radius = f64::from(side) / 2.0 - 10.0;
         let point = |number: i32| {
@@ -168,7 +168,7 @@ fn where_a_set_lies_in_a_picture_changes_nothing() {
 
 #[test]
 fn slopes_that_drift_are_told() {
-    // A ring looks like an area to boxes smaller than its width, and like a curve to larger ones.
+    // A ring is an area to boxes smaller than its width, and a curve to larger ones.
     let ring = picture(700, |column, row| {
         let away = libm::hypot(column as f64 - 350.0, row as f64 - 350.0);
         (300.0..308.0).contains(&away)

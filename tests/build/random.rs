@@ -1,4 +1,4 @@
-//! Random rules, of which some are right.
+//! Random rules, some of them valid.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 
 use crate::common;
 
-/// One in thirty is any text or number.
+/// A number or expression, of which one in thirty is arbitrary text or an arbitrary number.
 fn number() -> impl Strategy<Value = Number> {
     prop_oneof![
         12 => (-2..3i32).prop_map(Number::from),
@@ -130,7 +130,7 @@ fn rule() -> impl Strategy<Value = RuleBuilder> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// What is built is a rule that can be saved and compiled, or is told what is wrong with it.
+    /// A rule that builds can be saved and compiled; any other is refused with errors.
     #[test]
     fn nothing_that_is_built_panics(rule in rule()) {
         match rule.build() {

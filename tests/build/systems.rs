@@ -1,4 +1,4 @@
-//! Systems and structures that are built in code: the same as those that are written in files.
+//! Systems and structures built in code are equal to those written in files.
 
 use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};

@@ -1,4 +1,4 @@
-//! What several test files share.
+//! Helpers shared by several test files.
 
 #![allow(dead_code, reason = "each test file uses its share")]
 
@@ -13,7 +13,7 @@ use kfrac::graph::Graph;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
 use kfrac::rule::Rule;
 
-/// Runs the program in a folder: its status, and what it says beside its output.
+/// Runs the program in a folder; returns its status and its standard error.
 pub(crate) fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
     let output = command
@@ -25,21 +25,21 @@ pub(crate) fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), said)
 }
 
-/// A rule of the embedded library as it is written.
+/// Returns a rule of the embedded library as a document.
 pub(crate) fn document(name: &str) -> Document {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     Document::read(&source, &catalogue).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
 }
 
-/// A rule that is written in a test, with the components of the embedded library.
+/// Returns a document from text, with the components of the embedded library.
 pub(crate) fn document_of(text: &str) -> Document {
     let source = Source::new("test.yaml", text);
     Document::read(&source, &Catalogue::embedded())
         .unwrap_or_else(|errors| panic!("{}{text}", errors.render(false)))
 }
 
-/// The validated rule, which must not be doubtful.
+/// Returns the validated rule, which must resolve without warnings.
 pub(crate) fn resolved(document: &Document, settings: &[Setting]) -> Arc<Rule> {
     let (model, warnings) = document
         .resolve(settings)
@@ -48,7 +48,7 @@ pub(crate) fn resolved(document: &Document, settings: &[Setting]) -> Arc<Rule> {
     model.into_rule().unwrap()
 }
 
-/// The graph of a rule, resolved for some steps.
+/// Returns the graph of a rule, resolved for a number of steps.
 pub(crate) fn compiled(rule: &Arc<Rule>, steps: u32) -> Graph {
     Graph::compile(rule, steps).unwrap()
 }
@@ -57,7 +57,7 @@ pub(crate) fn compiled(rule: &Arc<Rule>, steps: u32) -> Graph {
 pub(crate) struct Grown {
     pub(crate) fractal: Fractal,
     pub(crate) elements: Vec<Element>,
-    /// Whether the last element goes on to the first.
+    /// Whether the last element is joined to the first.
     pub(crate) is_ring: bool,
 }
 
@@ -88,7 +88,7 @@ impl Visitor for Collector {
     }
 }
 
-/// An approximant, fractal by fractal, by the walk.
+/// Returns an approximant by the walk, fractal by fractal.
 pub(crate) fn grown(graph: &Graph, growth: &Growth<'_>) -> Vec<Grown> {
     let mut collector = Collector::default();
     walk(graph, growth, &mut collector).unwrap();

@@ -1,8 +1,8 @@
-//! Iterated function systems at random, as files.
+//! Random iterated function systems, as files.
 
 use kfrac::geometry::{DMat2, DVec2};
 
-/// Numbers without end (splitmix64; Steele et al. 2014).
+/// A generator of pseudorandom numbers (splitmix64; Steele et al. 2014).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -13,7 +13,7 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// From 0 to 1.
+    /// Returns a number from 0 to 1.
     pub(crate) fn part(&mut self) -> f64 {
         (self.next() >> 40) as f64 / f64::from(1 << 24)
     }
@@ -23,18 +23,18 @@ impl Random {
     }
 }
 
-/// The file of a system of two to eight maps: turns, reflections, singular values in [0, 1), and shifts of
-/// up to 1 along each axis.
+/// Returns the file of a system of two to eight maps: rotations, reflections, singular values in [0, 1), and
+/// translations of up to 1 along each axis.
 pub(crate) fn random_system(seed: u64) -> String {
     maps(seed, |random| [random.part(), random.part()])
 }
 
-/// The file of such a system of similarities, that make everything shorter by 0.05 to 0.85.
+/// Returns the file of a random system of similarities with ratios from 0.05 to 0.85.
 pub(crate) fn random_similar_system(seed: u64) -> String {
     maps(seed, |random| [0.05 + 0.8 * random.part(); 2])
 }
 
-/// Maps of some singular values.
+/// Returns maps whose singular values `values` gives.
 fn maps(seed: u64, values: impl Fn(&mut Random) -> [f64; 2]) -> String {
     let mut random = Random(seed);
     let mut text = "maps:\n".to_owned();
