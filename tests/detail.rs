@@ -1,4 +1,4 @@
-//! Pictures of what can be seen: nothing that shows is left out, and little that does not is grown.
+//! Pictures to a detail: everything visible is drawn, and little of the invisible is grown.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -33,11 +33,11 @@ fn read(text: &str) -> Arc<Rule> {
     model.into_rule().unwrap()
 }
 
-/// Collects elements down to a length, and what has been replaced on the way.
+/// A visitor that collects elements down to a length, and the subtrees replaced by their elements.
 #[derive(Default)]
 struct Cut {
     shortest: f64,
-    /// What is skipped, by the sum of birth and object.
+    /// Residue modulo 3 of birth plus object for which subtrees are skipped, if any are.
     skipped: Option<usize>,
     replaced: Vec<Subtree>,
     fractals: Vec<(Fractal, Vec<Element>, bool)>,
@@ -96,7 +96,7 @@ impl Visitor for Cut {
     }
 }
 
-/// All that elements tell, but their rank.
+/// Formats all properties of elements except their rank.
 fn told(elements: &[Element]) -> String {
     let told = |e: &Element| {
         format!(
@@ -111,7 +111,7 @@ fn close(a: DVec2, b: DVec2) -> bool {
     a.distance(b) <= 1e-12 * (1.0 + a.length())
 }
 
-/// That what is said to be joined stands together.
+/// Asserts that joined elements meet in a point.
 fn assert_joined(fractals: &[(Fractal, Vec<Element>, bool)]) {
     for (_, elements, end) in fractals {
         for pair in elements.windows(2).filter(|pair| pair[1].joined) {
@@ -126,7 +126,7 @@ fn assert_joined(fractals: &[(Fractal, Vec<Element>, bool)]) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A detail beyond the depth of a walk changes nothing.
+    /// A detail finer than the elements of a walk changes nothing.
     #[test]
     fn what_is_not_small_is_not_cut(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -139,7 +139,7 @@ proptest! {
         }
     }
 
-    /// What is cut stands as it stood in its approximant, and what is small is cut.
+    /// Cut elements have their frames in their own approximant, and all small elements are cut.
     #[test]
     fn what_is_cut_stands_as_in_its_approximant(text in rules::rule(Features::ALL), steps in 1..5u32, seed in 0..3u64) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -161,7 +161,7 @@ proptest! {
         assert_joined(&cut.fractals);
     }
 
-    /// What is skipped leaves a gap: nothing is joined across it, and nothing else is missing.
+    /// A skipped element leaves a gap: nothing is joined across it, and nothing else is missing.
     #[test]
     fn what_is_skipped_leaves_a_gap(text in rules::rule(Features::ALL), steps in 1..4u32, skipped in 0..3usize) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -169,7 +169,7 @@ proptest! {
         let gaps = Cut { skipped: Some(skipped), ..Cut::default() }.walked(&graph, steps, 0);
         let plain = Cut::default().walked(&graph, steps, 0);
         assert_joined(&gaps.fractals);
-        // What is visited comes in the same order, and with the gaps in it everything is there.
+        // The visited elements keep their order; only elements inside gaps are missing.
         let mut left = plain.elements();
         for element in gaps.elements() {
             prop_assert!(left.any(|e| e.frame == element.frame && e.object == element.object));
@@ -184,7 +184,7 @@ fn drawn(rule: &Arc<Rule>, steps: u32, options: &Options) -> (Picture, Vec<u8>) 
     (picture, bytes)
 }
 
-/// The options for a window.
+/// Returns the options of a picture of a window.
 fn window(rule: &Rule, window: [f64; 4], side: u32) -> Options {
     Options {
         format: Format::Png,
@@ -209,13 +209,13 @@ fn what_lies_outside_a_window_is_not_visited() {
     assert!(elements("koch", 12, [0.4999, 0.2886, 0.0002, 0.0002]) < 10_000);
     assert_eq!(elements("koch", 1000, [2.0, 2.0, 0.02, 0.02]), 0);
     assert!(elements("pythagoras", 18, [0.0, 0.0, 0.1, 0.1]) < 100_000);
-    // Seeds in a square that is filled with them; seeds as the initiator may stand anywhere.
+    // Seeds inside a square stay in it; seeds placed as the initiator may lie anywhere.
     assert!(elements("self-seeding-square", 4, [0.5, 0.5, 0.02, 0.02]) < 1000);
     let vegetation = library("vegetation");
     let [small, large] = [[0.0, 0.0, 0.01, 0.01], [-9.0, -9.0, 18.0, 18.0]]
         .map(|place| elements("vegetation", 4, place));
     assert_eq!(small, large, "{:?}", vegetation.description().title);
-    // Elements that are numbered are counted without a visit, but for fractals.
+    // Elements coloured by index are counted without a visit, except in fractals.
     let mut options = window(&library("koch"), [0.49, 0.28, 0.02, 0.02], 100);
     let mut by = |color_by| {
         options.style.color_by = color_by;
@@ -225,7 +225,7 @@ fn what_lies_outside_a_window_is_not_visited() {
     assert_eq!(by(ColorBy::Fractal), 1024);
 }
 
-/// The detail of a picture.
+/// Returns a detail in pixels.
 fn detail(pixels: f64, decides_steps: bool) -> Option<Detail> {
     Some(Detail {
         pixels,
@@ -246,7 +246,7 @@ fn elements_are_replaced_until_they_are_smaller() {
     ] {
         let rule = library(name);
         let graph = compiled(&rule, limit);
-        // So large that nothing is outside, at 100 pixels a unit.
+        // The window is large enough for all elements, at 100 pixels a unit.
         let mut options = window(&rule, [-40.0, -40.0, 80.0, 80.0], 8000);
         options.format = Format::Svg;
         options.detail = detail(3.0, limit > 4);
@@ -262,7 +262,7 @@ fn elements_are_replaced_until_they_are_smaller() {
             cut.elements()
                 .all(|e| e.frame.length() < 0.03 || !e.fertile || e.born == 4)
         );
-        // As many steps as it took give the same picture, colours by step and age included.
+        // Growing as many steps gives an identical picture, colours by step and age included.
         let mut again = Options {
             detail: detail(3.0, false),
             ..options.clone()
@@ -281,7 +281,7 @@ fn elements_are_replaced_until_they_are_smaller() {
 
 #[test]
 fn the_detail_is_that_of_the_picture_as_it_comes_out() {
-    // Two pixels from end to end, one of margin and half of the stroke on either side.
+    // Two pixels from end to end, one pixel of margin and half of the stroke on either side.
     let options = |pixels| Options {
         size: Size::Exactly(732, 732),
         detail: detail(pixels, true),
@@ -303,7 +303,7 @@ fn the_detail_is_that_of_the_picture_as_it_comes_out() {
         assert_eq!(picture.elements, 4u64.pow(picture.steps));
         picture.steps
     };
-    // 729 = 3⁶ pixels: strokes reach no more than half their width beyond the ends, or a mitre's.
+    // 729 = 3⁶ pixels: strokes extend beyond the ends by half their width, or by the length of a mitre.
     let ends = (steps(1.1), steps(0.9), steps(0.37), steps(2.9), steps(3.1));
     assert_eq!(ends, (6, 7, 7, 6, 5));
 }
@@ -334,12 +334,12 @@ fn what_has_no_end_is_refused() {
     assert!(!shrinks(
         "initiator: segment\ngenerator: [[0, 0], [0, 1], [1, 0]]"
     ));
-    // Larger at every other step, and smaller in the end.
+    // Larger at every other step, but smaller in the end.
     let alternating = "initiator: {elements: [[0, 0], {to: [1, 0], use: a}]}\n\
         generators:\n  a: [[0, 0], {to: [2, 0], use: b}]\n  b: [[0, 0], {to: [SIZE, 0], use: a}]\n";
     assert!(shrinks(&alternating.replace("SIZE", "1/3")));
     assert!(!shrinks(&alternating.replace("SIZE", "1/2")));
-    // What is kept need not shrink.
+    // Kept elements need not shrink.
     assert!(shrinks(
         "initiator: segment\ngenerator: [[0, 0], {to: [0, 3], fertile: false}, {to: [0.9, 3]}]"
     ));
@@ -391,7 +391,7 @@ fn growth_goes_on_until_nothing_more_can_be_seen() {
         &["grow", "koch", "--detail", "0.5"],
         "koch.svg: koch to a detail of 0.5 pixels, 7 steps, 16,384 elements, 1024 x 298 pixels, ",
     );
-    // A number of steps that nobody could grow, cut by the detail.
+    // A number of steps beyond all limits, cut by the detail.
     says(
         &["grow", "koch", "--steps", "40", "--detail", "1"],
         "koch.svg: step 40 of koch to a detail of 1 pixel, 16,384 elements, ",
@@ -407,7 +407,7 @@ fn growth_goes_on_until_nothing_more_can_be_seen() {
         .concat(),
         "koch.svg: step 20 of koch to a detail of 2 pixels, ",
     );
-    // More steps than a graph that depends on the time is first compiled for.
+    // More steps than those that a time-dependent graph is first compiled for.
     let slow = "initiator: segment\ngenerator: [[0, 0], {to: [0.3, 0], fertile: false}, \
                 {to: [\"1.24 + if(step > 90, 0.01, 0)\", 0.1]}]";
     fs::write(folder.path().join("slow.yaml"), slow).unwrap();
@@ -458,7 +458,7 @@ fn a_detail_that_cannot_be_had_is_refused() {
     }
 }
 
-/// Where every step starts anew, the detail cannot tell how many there are: the file does.
+/// Where every step starts anew, the file gives the number of steps, for the detail cannot decide it.
 #[test]
 fn steps_that_start_anew_are_those_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -479,7 +479,7 @@ fn steps_that_start_anew_are_those_of_the_file() {
     }
 }
 
-/// Where all elements of a step are equally long, a detail is a number of steps.
+/// Where all elements of a step have equal lengths, a detail amounts to a number of steps.
 #[test]
 fn a_detail_of_even_elements_is_a_number_of_steps() {
     for name in [

@@ -1,4 +1,4 @@
-//! Similarity dimensions of graphs with several objects, against what can be worked out by hand.
+//! Similarity dimensions of graphs with several objects, against values derived by hand.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -37,7 +37,7 @@ fn the_largest_part_decides_also_where_parts_are_alike() {
     assert_eq!(value(points), 0.0);
 }
 
-/// The root of det(I − M(D)) = 0 for a 2 × 2 matrix, by bisection on its largest eigenvalue.
+/// The dimension is the root of det(I − M(D)) = 0 for a 2 × 2 matrix, by bisection on its largest eigenvalue.
 #[test]
 fn two_objects_have_the_root_of_their_determinant() {
     let text = "initiator: segment\ngenerators:\n  a: [[0, 0], {to: [1/2, 1/5], use: b}, {to: [1, 0], use: a}]\n  \
@@ -68,7 +68,7 @@ fn two_objects_have_the_root_of_their_determinant() {
 
 #[test]
 fn a_long_cycle_of_generators_is_one_object_after_another() {
-    // g0 makes three copies of a third, the 99 others hand on half of what they get.
+    // g0 has three copies of ratio 1/3; each of the 99 others has one of ratio 1/2.
     let mut text =
         String::from("initiator: {elements: [[0, 0], {to: [1, 0], use: g0}]}\ngenerators:\n");
     text.push_str(

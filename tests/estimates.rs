@@ -1,4 +1,4 @@
-//! What is said of a picture's size before it is drawn is held against pictures that are drawn.
+//! Estimates of file sizes before drawing, against the files that are drawn.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -11,8 +11,8 @@ use kfrac::graph::Graph;
 use kfrac::grow::{Growth, extent};
 use kfrac::render::{self, Format, Options, Size};
 
-/// Holds the estimates of the steps of a rule that have a number of elements in a range against
-/// pictures that are `side` pixels large, and tells how many there were.
+/// Compares the estimates for those steps of a rule that have a number of elements in a range with pictures
+/// of `side` pixels; returns the number of steps compared.
 fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize {
     const TOLERANCE: f64 = 1.5;
     const DEEPEST: u32 = 16;
@@ -69,7 +69,7 @@ fn sizes_are_estimated_where_elements_are_smaller_than_can_be_written() {
     }
 }
 
-/// Of pictures with whole areas of one colour, which are those that are large.
+/// Large PNG files are pictures with whole areas of one colour.
 #[test]
 fn sizes_of_png_are_estimated() {
     for (name, step) in [

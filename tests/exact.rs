@@ -1,4 +1,4 @@
-//! Dimensions by neighbour maps, against published values and against what can be counted.
+//! Exact dimensions by neighbour maps, against published values and against counts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -15,14 +15,15 @@ mod systems;
 use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::measure::exact::{Dimensions, System, dimensions};
 
-/// z → ratio · e^{i turn} z + shift, reflected in the x-axis first or not; the turn in degrees.
+/// Returns the map z → ratio · e^{i turn} z + shift, with the turn in degrees; if `reflected`, a reflection
+/// in the x axis precedes it.
 fn similarity(ratio: f64, turn: f64, reflected: bool, shift: [f64; 2]) -> DAffine2 {
     let turn = DAffine2::from_angle(turn.to_radians());
     let scale = DVec2::new(ratio, if reflected { -ratio } else { ratio });
     DAffine2::from_translation(DVec2::from(shift)) * turn * DAffine2::from_scale(scale)
 }
 
-/// x → ratio x + shift on the x-axis.
+/// Returns the map x → ratio x + shift of the x axis.
 fn line(ratio: f64, shift: f64) -> DAffine2 {
     similarity(ratio, 0.0, false, [shift, 0.0])
 }

@@ -1,4 +1,4 @@
-//! Figures of production rules, systems and structures: what they show, and that it can be read.
+//! Figures of production rules, systems and structures: their content and its legibility.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -21,7 +21,7 @@ fn names(shelf: Shelf) -> impl Iterator<Item = String> {
     alike.map(|entry| entry.name)
 }
 
-/// The figure of a file as a file, with its size.
+/// Returns the figure of a document in a format, with its size.
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
     let model = document.resolve(&[]).unwrap().0;
     let title = model.heading().description.title.clone();
@@ -50,14 +50,14 @@ fn svg_of(document: &Document) -> String {
     String::from_utf8(figure(document, Format::Svg, None).0).unwrap()
 }
 
-/// What a figure says, one label a line.
+/// Returns the labels of a figure, one a line.
 fn said(text: &str) -> String {
     let (_, paths) = svg::read(&svg_of(&document_of(text)));
     let labels: Vec<_> = paths.into_iter().filter_map(|path| path.label).collect();
     labels.join("\n")
 }
 
-/// A figure without the outlines of letters, which are long and tell nothing.
+/// Returns a figure without the outlines of letters, which are long and hold no information.
 fn reduced(name: &str) -> String {
     let mut reduced = String::new();
     for piece in svg_of(&document(name)).split_inclusive("/>\n") {
@@ -115,7 +115,7 @@ fn labels(paths: &[Path]) -> Vec<&Path> {
     paths.iter().filter(|path| path.label.is_some()).collect()
 }
 
-/// All labels are inside, none lies on another one or on an element.
+/// Asserts that all labels lie inside the figure, and that none overlaps another one or an element.
 fn assert_can_be_read(name: &str, size: [i64; 2], paths: &[Path]) {
     let labels = labels(paths);
     for (number, label) in labels.iter().enumerate() {
@@ -146,7 +146,7 @@ fn every_structure_of_the_library_can_be_read() {
             .filter_map(|path| path.label.as_deref())
             .collect();
         assert!(labels.contains(&"scene"), "{name}");
-        // Every name once, as a panel; levels may be left out.
+        // Every name occurs once, as a panel; levels may be left out.
         for object in structure.objects() {
             let own = object.name.split('(').next().unwrap();
             let is_own = |label: &&&str| label.split('(').next() == Some(own);
@@ -178,7 +178,7 @@ scene: [row(9)]";
             "{label}: {said}"
         );
     }
-    // Of ten levels three are shown, and what stands in them is named.
+    // Three of ten levels are shown, and their instances are named.
     assert!(said.contains("7 more objects are not shown"), "{said}");
     assert!(
         said.contains("row(6)") && !said.contains("row(5)"),
@@ -190,7 +190,7 @@ fn overlap(a: &Path, b: &Path) -> bool {
     (0..2).all(|side| a.min[side] < b.max[side] && b.min[side] < a.max[side])
 }
 
-/// Whether these are the lines of elements: solid, and of the widths that only those have.
+/// Returns whether a path holds lines of elements: solid, with a width that only elements have.
 fn is_element(path: &Path) -> bool {
     let width = path.width.as_deref();
     path.label.is_none()
@@ -199,9 +199,9 @@ fn is_element(path: &Path) -> bool {
         && (width.is_none() || width == Some("150.0"))
 }
 
-/// Whether a line passes through the box of a path.
+/// Returns whether a line segment crosses the bounding box of a path.
 fn crosses(path: &Path, line: [[i64; 2]; 2]) -> bool {
-    // The part of the line, from 0 to 1, that is within the box (Liang and Barsky 1984).
+    // The part of the line, from 0 to 1, that lies within the box (Liang and Barsky 1984).
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for side in 0..2 {
         let [from, to] = line.map(|point| point[side] as f64);
@@ -296,7 +296,7 @@ generator:
     ] {
         assert!(joined.contains(line), "{line}\n{said}");
     }
-    // The point is told where it stands, too.
+    // The point is labelled at its position, too.
     assert!(said.split('\n').any(|label| label == "p1"), "{said}");
 }
 

@@ -1,4 +1,4 @@
-//! The pictures of the gallery are those that its commands make.
+//! The pictures of the gallery equal those that its commands make.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-/// Pixels may differ by this much between processors, of 255.
+/// Tolerance of a pixel's value, of 255, for differences between processors.
 const WORST: u8 = 2;
 
 fn pixels(bytes: &[u8]) -> Vec<u8> {

@@ -1,5 +1,4 @@
-//! The model of iterated function systems and its mathematics, held against the reference, against
-//! closed forms and against brute force.
+//! The model of iterated function systems, against the reference, closed forms and brute force.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -22,7 +21,7 @@ use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Definition, Edge, Ifs, Map};
 use proptest::prelude::*;
 
-/// A map from its matrix by rows, and its shift.
+/// Returns a map, given its matrix by rows and its translation.
 fn map(a: f64, b: f64, c: f64, d: f64, shift: [f64; 2]) -> Map {
     Map::new(DAffine2::from_cols(
         DVec2::new(a, c),
@@ -72,12 +71,13 @@ fn assert_near_matrix(value: DMat2, expected: DMat2, tolerance: f64) {
     assert_near(value.y_axis, expected.y_axis, tolerance);
 }
 
-/// Matrices with entries up to a size.
+/// Generates matrices with entries up to a size.
 fn matrix(size: f64) -> impl Strategy<Value = DMat2> {
     prop::array::uniform4(-size..size).prop_map(|entries| DMat2::from_cols_array(&entries))
 }
 
-/// Edges among so many maps: a cycle through all, so that each is entered and left, and some more.
+/// Generates edges among a number of maps: a cycle through all, so that each is entered and left, and some
+/// more.
 fn digraph(maps: usize) -> impl Strategy<Value = Vec<(usize, usize)>> {
     prop::collection::vec(any::<bool>(), maps * maps).prop_map(move |chosen| {
         let pairs = (0..maps * maps).map(|pair| (pair / maps, pair % maps));

@@ -1,4 +1,4 @@
-//! Files of Fractint, through the binary.
+//! Import of Fractint's files, through the command-line program.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn kfrac(folder: &Path) -> Command {
     command
 }
 
-/// Standard output and standard error.
+/// Returns standard output and standard error.
 fn said(output: &std::process::Output) -> (String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (text(&output.stdout), text(&output.stderr))
@@ -131,7 +131,7 @@ fn files_that_hold_nothing_are_refused() {
             "{name}: {errors}"
         );
     }
-    // Files are older than UTF-8.
+    // Some files are older than UTF-8.
     fs::write(
         folder.path().join("old.l"),
         b"L\xe9vy { ; caf\xe9\n angle 8 axiom F F=+F--F+ }",

@@ -1,4 +1,4 @@
-//! SVGs of nested instances show what plain ones show.
+//! SVGs of nested instances show the pictures of plain SVGs.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -49,7 +49,7 @@ fn write(graph: &Graph, steps: u32, options: &Options) -> Result<(Picture, Strin
     Ok((picture, String::from_utf8(bytes).unwrap()))
 }
 
-/// Writes it in a style that symbols can have, if there is one.
+/// Writes a picture with instances in a style that symbols can have; `None` if there is no such style.
 fn write_somehow(graph: &Graph, steps: u32, options: &mut Options) -> Option<(Picture, String)> {
     for _ in 0..4 {
         match write(graph, steps, options) {
@@ -95,15 +95,15 @@ fn the_picture_is_that_of_plain_svg() {
             worst.push((off.mean, off.far, what));
         }
     }
-    // What lies side by side is blended edge by edge, and once more where lines join: that shows where
-    // lines are as near as pixels.
+    // Adjacent shapes are blended edge by edge, and again where lines join, which shows where lines are as
+    // close as pixels.
     assert!(worst.len() > 200, "{}", worst.len());
     for (mean, far, what) in worst {
         assert!(mean < 7.0 && far < 0.02, "{what}: {mean} {far}");
     }
 }
 
-/// What colours tell is told of the same elements, and later classes lie on top.
+/// Colours apply to the same elements, and later classes lie on top.
 #[test]
 fn colours_are_those_of_plain_svg() {
     for (name, by) in [
@@ -130,7 +130,7 @@ fn colours_are_those_of_plain_svg() {
         let colours = picture::colours(&plain);
         assert!(colours.len() > 2, "{name} by {by:?}");
         let drawn = picture::colours(&nested);
-        // Tints that come together in another order may round to the next value.
+        // Tints that are composed in a different order may round to a neighbouring value.
         let is_near = |a: &[u8; 3], b: &[u8; 3]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
         let holds = |all: &BTreeSet<_>, some: &BTreeSet<_>| {
             some.iter()
@@ -153,7 +153,7 @@ fn the_file_grows_with_the_steps_and_not_with_the_elements() {
     let options = options(&heading);
     let written = [100, 200, 300].map(|steps| write(&graph, steps, &options).unwrap());
     let [a, b, c] = [0, 1, 2].map(|number| written[number].1.len());
-    // Names get longer, by a letter each in five places.
+    // Names get longer by a letter each in five places.
     assert!(b.abs_diff(a).abs_diff(c.abs_diff(b)) < 700, "{a} {b} {c}");
     assert!((59_000..64_000).contains(&b), "{b}");
     let instanced = written[1].0.instanced.unwrap();

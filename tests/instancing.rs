@@ -25,7 +25,8 @@ fn structure(text: &str) -> Instancing {
     (*structure).clone()
 }
 
-/// Where instances of objects, `None`, and shapes stand after some steps, in order, by plain recursion.
+/// Returns the instances of objects, with `None`, and of shapes after some steps, in order, by plain
+/// recursion.
 fn expanded(
     structure: &Instancing,
     instances: &[Instance],
@@ -103,7 +104,7 @@ objects:
 scene: [up, left, right]
 ";
 
-/// Hart 1992, section 2.1, with the numbers that are printed there.
+/// The gasket of Hart 1992, section 2.1, with the numbers printed there.
 #[test]
 fn the_gasket_of_the_paper_is_the_system_of_three_maps() {
     let structure = structure(GASKET);
@@ -134,7 +135,7 @@ fn objects_of_levels_end_where_there_is_one_of_that_level() {
     let all = grown(&graph, &Growth::steps(14));
     assert_eq!(all[0].elements.len(), 729);
     assert!(all[0].elements.iter().all(|element| !element.fertile));
-    // And as many from then on.
+    // Later steps have as many elements.
     assert_eq!(grown(&graph, &Growth::steps(20))[0].elements.len(), 729);
 
     let recursive = document("gasket-recursive").resolve(&[]).unwrap().0;
@@ -179,8 +180,8 @@ fn transforms_are_done_in_the_order_in_which_they_are_written() {
     );
 }
 
-/// Random structures: a few objects, each with instances of those after it at any size and of any at
-/// half the size, so that all loops contract.
+/// Generates random structures of a few objects. Each object instances later ones at any size and arbitrary
+/// ones at half the size, so that all loops contract.
 fn structures() -> impl Strategy<Value = String> {
     let number = -1.5..1.5f64;
     let instance = (
@@ -230,8 +231,8 @@ proptest! {
     }
 }
 
-/// A loop may be drawn to ever larger scales on its way, if it comes back smaller. Of 14 objects that all
-/// lead to each other, single products of instances would be too many to tell.
+/// A loop may enlarge on its way if it returns smaller. With 14 objects that all lead to each other, single
+/// products of instances are too many to enumerate.
 #[test]
 fn loops_shrink_by_what_they_stretch_in_all() {
     let objects: String = (0..14)

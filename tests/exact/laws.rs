@@ -1,4 +1,4 @@
-//! What holds for all systems.
+//! Laws of exact dimensions for arbitrary systems.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::{line, near, of, similarity};
 
-/// The numbers of distinct sums Σ d_k 3^k with n digits, for n = 0, 1, ….
+/// Returns the numbers of distinct sums Σ d_k 3^k with n digits, for n = 0, 1, ….
 fn distinct_sums(digits: &BTreeSet<i64>, generations: usize) -> Vec<usize> {
     let mut sums = BTreeSet::from([0]);
     let mut counts = vec![1];
@@ -25,7 +25,7 @@ fn distinct_sums(digits: &BTreeSet<i64>, generations: usize) -> Vec<usize> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Pieces of (x + d)/3 at whole d lie on a lattice, where distinct ones can be counted.
+    /// Pieces of (x + d)/3 with integers d lie on a lattice, where distinct ones can be counted.
     #[test]
     fn exact_overlaps_are_counted(digits in prop::collection::btree_set(0i64..8, 2..5)) {
         let third = 1.0 / 3.0;
@@ -43,7 +43,7 @@ proptest! {
         prop_assert!((growth / expected - 1.0).abs() < 0.03, "{:?} {} {}", digits, growth, expected);
     }
 
-    /// Dimensions are the same after a similarity of the set, and in any order of the maps.
+    /// Dimensions are invariant under similarities of the set and permutations of the maps.
     #[test]
     fn similar_sets_have_equal_dimensions(
         turn in -180.0..180.0f64,
@@ -86,7 +86,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// No maps make it panic or run without end, and bounds are bounds.
+    /// The computation neither panics nor runs forever for any maps, and its bounds hold.
     #[test]
     fn whatever_the_maps_are(
         maps in prop::collection::vec((0.05..0.95f64, -180.0..180.0f64, any::<bool>(), -2.0..2.0f64, -2.0..2.0f64), 1..5),

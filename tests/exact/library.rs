@@ -1,4 +1,4 @@
-//! The rules of the library.
+//! Exact dimensions of the library's rules.
 
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::graph::Graph;
@@ -20,7 +20,7 @@ fn text(text: &str) -> Grown {
     grown(&rule.compile(3).unwrap())
 }
 
-/// What a closed form is as the dimension of a rule file.
+/// Evaluates a closed form as the dimension of a rule file.
 fn evaluated(form: &str) -> f64 {
     let file = format!("initiator: segment\ngenerator: koch\ndimension: {form}\n");
     let (rule, _) = common::document_of(&file).resolve(&[]).unwrap();
@@ -29,7 +29,7 @@ fn evaluated(form: &str) -> f64 {
 
 #[test]
 fn every_published_dimension_is_found() {
-    // What is not decided: ratios that are no powers of one number, or turns by irrational parts.
+    // Undecided: ratios that are not powers of one number, or rotations by irrational parts of a turn.
     let open = [
         "mandala",
         "pythagoras-30",
@@ -143,7 +143,7 @@ fn what_is_drawn_has_the_larger_dimension() {
             .iter()
             .any(|note| note.contains("finite length"))
     );
-    // A Cantor set on bars.
+    // A Cantor set with bars.
     let bars = "initiator: segment\ngenerator: [[0, 0], [1/3, 0], {to: [2/3, 0], fertile: false}, [1, 0]]\n";
     let bars = text(bars);
     let cantor = bars.dimensions.unwrap();
@@ -186,7 +186,7 @@ fn random_ratios_are_averaged() {
     let d = text(dust).dimensions.unwrap().similarity.unwrap().value;
     let mean = (0.4f64.powf(d + 1.0) - 0.2f64.powf(d + 1.0)) / (0.2 * (d + 1.0));
     assert!((2.0 * mean - 1.0).abs() < 1e-12, "{d}");
-    // By weight: three thirds of the time a half in two, else one of three thirds.
+    // Two pieces of 1/2 with probability 3/4, two of 1/4 otherwise.
     let mixed = "initiator: segment\ngenerators:\n  a: [[0, 0], [1/2, 0], [1, 0]]\n  \
                  b: [[0, 0], [1/4, 0], {to: [3/4, 0], fertile: false}, [1, 0]]\n\
                  select: {at_random: {a: 3, b: 1}}\n";

@@ -1,4 +1,4 @@
-//! Spectra of dimensions D_q: exact where they are decided, and measured beside that.
+//! Spectra of dimensions D_q: exact where they are decided, and measured for comparison.
 
 use std::fs;
 use std::num::NonZero;
@@ -31,7 +31,8 @@ fn natural(name: &str) -> (Cascade, Option<Spectrum>) {
     )
 }
 
-/// What is measured lies within three standard errors, and near, and does not rise.
+/// Asserts that the measured spectrum lies within three standard errors of the exact one and close to it, and
+/// does not increase.
 fn assert_measured(name: &str, measure: &Cascade, exact: &Spectrum) {
     let series = NonZero::new(2).unwrap();
     let spectrum = Generalised::of_measure(measure, &ORDERS, None, series, series);
@@ -88,7 +89,7 @@ fn unequal_ratios_solve_their_equation() {
     }
     let golden = f64::midpoint(1.0, libm::sqrt(5.0));
     assert!(near(spectrum.at(0.0), libm::log(golden) / libm::log(2.0)));
-    // With the weights of the dimension, all are equal.
+    // With the weights of the natural measure, all D_q are equal.
     let natural = [1.0 / golden, 1.0 / (golden * golden)];
     let maps = [(0.5, 0.0, natural[0]), (0.25, 0.75, natural[1])];
     let spectrum = Spectrum::of_weights(&system(&maps)).unwrap();
@@ -99,7 +100,7 @@ fn unequal_ratios_solve_their_equation() {
 
 #[test]
 fn a_recurrent_system_has_the_radius_of_a_matrix() {
-    // Binary numbers without two ones in a row; from 0, a 1 comes three times as often.
+    // Binary numbers without two consecutive ones; after 0, a 1 is three times as likely as a 0.
     let edge = |from, to, weight| Edge {
         from,
         to,
@@ -119,7 +120,7 @@ fn a_recurrent_system_has_the_radius_of_a_matrix() {
         let expected = libm::log2(radius) / (1.0 - q);
         assert!(near(spectrum.at(q), expected), "{q}");
     }
-    // Four sevenths of the time in 0, where the next digit is drawn.
+    // The walk is in 0, where the next digit is drawn, four sevenths of the time.
     let entropy = -(0.25 * libm::log2(0.25) + 0.75 * libm::log2(0.75));
     assert!(near(spectrum.at(1.0), entropy * 4.0 / 7.0));
     let measure = Cascade::of_weights(&ifs).unwrap();
@@ -164,7 +165,7 @@ fn natural_measures_have_one_dimension() {
 
 #[test]
 fn natural_measures_are_measured() {
-    // Touching, coinciding, with a ratio that is no part of a whole number.
+    // Pieces touch, coincide, or have a ratio that is not 1 / an integer.
     for name in ["gasket", "koch-rings", "pentagon"] {
         let (measure, spectrum) = natural(name);
         assert_measured(name, &measure, &spectrum.unwrap());
@@ -177,7 +178,7 @@ fn sets_that_hold_infinitely_many_copies_of_a_larger_one_are_not_decided() {
     let quarter = |x, y| similarity(0.5, 0.0, false, [x, y]);
     let gasket = [quarter(0.0, 0.0), quarter(0.5, 0.0), quarter(0.25, 0.4)];
     let copies = gasket.map(|map| (1, 1, map));
-    // A Cantor set of gaskets; and a single one beside it.
+    // A Cantor set of gaskets, and a single one beside it.
     let dust = [
         (0, 0, line(0.25, 0.0)),
         (0, 0, line(0.25, 3.0)),

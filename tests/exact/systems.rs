@@ -1,4 +1,4 @@
-//! Iterated function systems and graphs of them, straight from their maps.
+//! Exact dimensions of systems and of graphs of them, given by their maps.
 
 use glam::{DAffine3, DMat3, DVec3};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
@@ -7,16 +7,16 @@ use serde::Deserialize;
 
 use crate::{line, near, of, similarity};
 
-/// A system of the reference, computed without kfrac.
+/// A system of the reference, computed independently of kfrac.
 #[derive(Deserialize)]
 struct Entry {
     id: String,
-    /// None where maps are not similarities.
+    /// Similarity dimension; `None` where maps are not similarities.
     similarity: Option<f64>,
     maps: Vec<Map>,
 }
 
-/// x → linear · x + shift; the matrix row by row.
+/// The map x → linear · x + shift, with the matrix row by row.
 #[derive(Deserialize)]
 struct Map {
     from: usize,
@@ -49,7 +49,7 @@ impl Entry {
 fn the_reference_systems_have_their_dimensions() {
     let entries: Vec<Entry> = serde_json::from_str(include_str!("systems.json")).unwrap();
     assert_eq!(entries.len(), 39);
-    // Those whose own dimension is not the similarity dimension, or not decided.
+    // Systems whose dimension differs from the similarity dimension, or is undecided.
     let special = |id: &str| match id {
         "jones_campa_cake" => Some((10.0 + 2.0 * 13f64.sqrt()).ln() / 3f64.ln()),
         "jones_solid_tetrahedron" => Some((5.0 + 5f64.sqrt()).ln() / 2f64.ln()),
@@ -104,14 +104,14 @@ fn the_reference_systems_have_their_dimensions() {
     }
 }
 
-/// A square of a ratio, upright.
+/// Returns the map of an upright square with a ratio, at a position.
 fn square(ratio: f64, x: f64, y: f64) -> DAffine2 {
     similarity(ratio, 0.0, false, [x, y])
 }
 
 #[test]
 fn boundaries_of_squares_of_unequal_and_of_overlapping_squares() {
-    // One square of 2/3 and five of 1/3: no powers of one number.
+    // One square of 2/3 and five of 1/3: the ratios are not powers of one number.
     let (large, small) = (2.0 / 3.0, 1.0 / 3.0);
     let unequal = of(&[
         square(large, 0.0, 0.0),
@@ -123,7 +123,7 @@ fn boundaries_of_squares_of_unequal_and_of_overlapping_squares() {
     ]);
     assert_eq!(unequal.hausdorff.value, Some(2.0));
     assert_eq!(unequal.boundary.unwrap().value, Some(1.0));
-    // Nine squares of 1/2, every 1/4: pieces coincide.
+    // Nine squares of 1/2, at multiples of 1/4: pieces coincide.
     let quarters = [0.0, 0.25, 0.5];
     let all = quarters.map(|x| quarters.map(|y| square(0.5, x, y)));
     let coinciding = of(all.as_flattened());
@@ -147,7 +147,7 @@ fn ratios_that_are_no_powers_of_one_number() {
     ]);
     assert_eq!(touching.hausdorff.overlap, Overlap::Touching);
     assert_eq!(touching.hausdorff.value, Some(1.0));
-    // A segment of the plane has no inside.
+    // A segment has no interior in the plane.
     assert_eq!(touching.boundary, None);
     let overlapping = of(&[line(0.7, 0.0), line(0.55, 0.45)]);
     assert_eq!(overlapping.hausdorff.overlap, Overlap::Unknown);
@@ -179,7 +179,7 @@ fn turns_by_irrational_parts_are_decided_where_copies_are_apart_only() {
     );
 }
 
-/// Two sets, each made of four copies of the other, the second smaller by an odd factor.
+/// Two sets, each of four copies of the other, the second smaller by an irregular factor.
 #[test]
 fn ratios_are_powers_of_one_number_along_cycles() {
     let third = 1.0 / 3.0;
@@ -207,7 +207,7 @@ fn ratios_are_powers_of_one_number_along_cycles() {
     assert!(near(found.hausdorff.value.unwrap(), 4f64.ln() / 3f64.ln()));
 }
 
-/// The self-seeding square as two sets that are equal, each made of copies of both.
+/// The self-seeding square as two equal sets, each of copies of both.
 #[test]
 fn equal_sets_may_have_two_names() {
     let third = 1.0 / 3.0;
@@ -239,7 +239,7 @@ fn equal_sets_may_have_two_names() {
 
 #[test]
 fn what_has_no_finite_type_is_bounded() {
-    // With digits 0, v and Av the words 20 and 01 are the same map; A turns by an irrational part.
+    // With digits 0, v and Av the words 20 and 01 are equal maps; A rotates by an irrational part of a turn.
     let turn = 2f64.sqrt() * 30.0;
     let map = |shift: DVec2| similarity(0.6, turn, false, shift.into());
     let v = DVec2::X;
@@ -254,7 +254,7 @@ fn what_has_no_finite_type_is_bounded() {
         (Overlap::Exact, None),
         "{found:?}"
     );
-    // Words without 20 grow by φ² a generation.
+    // The number of words without 20 grows by φ² in a generation.
     let golden = f64::midpoint(3.0, 5f64.sqrt()).ln() / -(0.6f64.ln());
     let bound = found.upper_bound.unwrap();
     assert!(bound >= golden && bound < golden + 0.05, "{bound} {golden}");
@@ -289,7 +289,7 @@ fn the_largest_part_decides() {
 
 #[test]
 fn affine_maps_are_bounded_by_the_affinity_dimension() {
-    // Four boxes of a half by a third: 4 · 1/2 · (1/3)^(s − 1) = 1.
+    // Four boxes of 1/2 by 1/3: 4 · 1/2 · (1/3)^(s − 1) = 1.
     let shape = DMat2::from_diagonal(DVec2::new(0.5, 1.0 / 3.0));
     let boxes = [[0.0, 0.0], [0.5, 0.0], [0.0, 2.0 / 3.0], [0.5, 1.0 / 3.0]];
     let boxes = boxes.map(|shift| DAffine2::from_mat2_translation(shape, DVec2::from(shift)));
@@ -302,7 +302,7 @@ fn affine_maps_are_bounded_by_the_affinity_dimension() {
     );
     assert_eq!(found.hausdorff.upper_bound, Some(affinity.upper_bound));
     assert_eq!(found.similarity, None);
-    // Maps that shrink areas but stretch one way.
+    // Maps that shrink areas but stretch in one direction.
     let sheared = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(2.0, 0.25)));
     let turned = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(0.25, 2.0)));
     let copies = [(0, 0, sheared), (0, 0, turned)];
@@ -317,7 +317,7 @@ fn bad_numbers_are_refused() {
         None
     );
     assert_eq!(dimensions(&System::plane([]).unwrap()), None);
-    // A map onto a point is no similarity.
+    // A map onto a point is not a similarity.
     let point = of(&[line(0.0, 0.0)]);
     assert_eq!(
         (point.similarity, point.hausdorff.upper_bound),

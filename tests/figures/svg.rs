@@ -2,19 +2,19 @@
 
 /// A path, in hundredths of a pixel.
 pub(crate) struct Path {
-    /// What it says in words.
+    /// Text that the path stands for.
     pub(crate) label: Option<String>,
     pub(crate) is_filled: bool,
-    /// The width of its stroke, where it is not that of most paths.
+    /// Width of the stroke, where it differs from that of most paths.
     pub(crate) width: Option<String>,
     pub(crate) is_dashed: bool,
-    /// Its straight lines, and the chords of its curves.
+    /// Line segments of the path, and the chords of its curves.
     pub(crate) lines: Vec<[[i64; 2]; 2]>,
     pub(crate) min: [i64; 2],
     pub(crate) max: [i64; 2],
 }
 
-/// Width and height in pixels, and all paths.
+/// Returns width and height in pixels, and all paths.
 pub(crate) fn read(svg: &str) -> ([i64; 2], Vec<Path>) {
     let document = roxmltree::Document::parse(svg).unwrap();
     let root = document.root_element();
@@ -41,7 +41,7 @@ pub(crate) fn read(svg: &str) -> ([i64; 2], Vec<Path>) {
     (size, paths.collect())
 }
 
-/// Reads path data of the commands M, l, h, c and z.
+/// Parses path data with the commands M, l, h, c and z.
 fn lines(data: &str) -> Vec<[[i64; 2]; 2]> {
     let mut lines = Vec::new();
     let (mut pen, mut start) = ([0, 0], [0, 0]);
@@ -55,7 +55,7 @@ fn lines(data: &str) -> Vec<[[i64; 2]; 2]> {
             .map(|number| number.parse().unwrap())
             .collect();
         rest = &rest[end..];
-        // Where a command ends is told by its last two numbers.
+        // The last two numbers of a command are its end.
         let each = match command {
             'M' | 'l' | 'h' => 2,
             'c' => 6,

@@ -1,3 +1,5 @@
+//! Contraction of systems, against known joint spectral radii and against all products of a length.
+
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Contraction, Ifs, Map, Verdict};
 use proptest::prelude::*;
@@ -11,7 +13,7 @@ fn linear(matrices: &[DMat2]) -> Vec<Map> {
     maps.map(Map::new).collect()
 }
 
-/// Matrices by rows.
+/// Returns the contraction of matrices, given by rows.
 fn of(rows: &[[f64; 4]]) -> Contraction {
     let matrices = rows
         .iter()
@@ -34,20 +36,20 @@ fn assert_radius(contraction: &Contraction, verdict: Verdict, radius: f64, word:
 fn maps_that_are_no_contractions_may_contract() {
     assert_radius(&of(&[[0.5, 10.0, 0.0, 0.5]]), Verdict::Contracts, 0.5, &[0]);
     assert_radius(&of(&[[0.0, 4.0, 0.01, 0.0]]), Verdict::Contracts, 0.2, &[0]);
-    // Skewed copies of the gasket's maps, in coordinates far from round.
+    // Skewed copies of the gasket's maps, whose best coordinates are far from the given ones.
     let skewed = [[0.5, 0.0, 0.0, 0.5], [1.5, -1.0, 1.0, -0.5]];
     assert_radius(&of(&skewed), Verdict::Contracts, 0.5, &[0]);
 }
 
-/// Small eigenvalues are not enough (Demko, Hodges & Naylor's condition), nor is a small
-/// determinant (Jones & Campa's).
+/// Small eigenvalues are not sufficient (Demko, Hodges & Naylor's condition), nor is a small determinant
+/// (Jones & Campa's).
 #[test]
 fn the_shortest_product_that_diverges_is_named() {
     let nilpotent = [[0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0]];
     assert_radius(&of(&nilpotent), Verdict::Diverges, 2.0, &[0, 1]);
     let flat = [[0.5, 0.0, 0.0, 0.5], [2.0, 0.0, 0.0, 0.25]];
     assert_radius(&of(&flat), Verdict::Diverges, 2.0, &[1]);
-    // Nothing shrinks: a turn, a shear, a shift.
+    // A rotation, a shear and a translation do not shrink.
     let turn = (1.0f64.cos(), 1.0f64.sin());
     for map in [
         [turn.0, -turn.1, turn.1, turn.0],
@@ -58,7 +60,7 @@ fn the_shortest_product_that_diverges_is_named() {
     }
 }
 
-/// Shears up and to the right grow fastest in turns, by the golden ratio a step.
+/// Alternating shears upwards and to the right grow fastest, by the golden ratio a step.
 #[test]
 fn products_decide_where_maps_do_not() {
     let golden = f64::midpoint(1.0, 5f64.sqrt());
@@ -97,7 +99,7 @@ fn a_digraph_forbids_products() {
     assert_radius(&round, Verdict::Contracts, 0.5, &[0, 1, 2, 3, 4, 5, 6]);
 }
 
-/// The best norm for these has a square for its unit disk, so ellipses leave a gap of √2, which only
+/// The unit disc of the best norm for these matrices is a square, so ellipses leave a gap of √2, which only
 /// long products close.
 #[test]
 fn what_is_undecided_says_so() {
@@ -145,7 +147,7 @@ fn numbers_at_the_ends_of_the_range_do_no_harm() {
     );
 }
 
-/// All admitted words of a length, with their products.
+/// Returns all admitted words of a length, with their products.
 fn words(
     matrices: &[DMat2],
     pairs: Option<&[(usize, usize)]>,
@@ -180,7 +182,7 @@ fn eigenvalue(matrix: DMat2) -> f64 {
     }
 }
 
-/// The Frobenius norm: no less than the largest singular value.
+/// Returns the Frobenius norm, an upper bound of the largest singular value.
 fn norm(matrix: DMat2) -> f64 {
     (matrix.x_axis.length_squared() + matrix.y_axis.length_squared()).sqrt()
 }

@@ -1,4 +1,4 @@
-//! Against Barnsley's coefficients in the reference, and curves that are known.
+//! Fractal interpolation, against Barnsley's coefficients in the reference and against known curves.
 
 use kfrac::geometry::DVec2;
 use kfrac::ifs::{
@@ -22,7 +22,7 @@ fn points(list: &[[f64; 2]]) -> Vec<DVec2> {
     list.iter().copied().map(DVec2::from).collect()
 }
 
-/// Expected are a, b, c, d, e, f of (a x + b y + e, c x + d y + f).
+/// Asserts that the maps have the coefficients a, b, c, d, e, f of (a x + b y + e, c x + d y + f).
 #[track_caller]
 fn assert_maps(list: &[[f64; 2]], scales: &[f64], expected: &[[f64; 6]]) {
     let maps = interpolate(&points(list), scales).unwrap();
@@ -69,7 +69,7 @@ fn maps_have_the_coefficients_of_the_reference() {
     assert_maps(&ZIGZAG, &[0.5, 0.5, -0.5, 0.5], &zigzag);
 }
 
-/// The parabola 2x(1 − x) with x uniform: mean 1/3, variance 4(1/30) − 1/9 = 1/45.
+/// The parabola 2x(1 − x) with x uniform has mean 1/3 and variance 4(1/30) − 1/9 = 1/45.
 #[test]
 fn a_parabola_has_the_moments_of_a_parabola() {
     let measure = system(interpolate(&points(&TENT), &[0.25]).unwrap())

@@ -1,4 +1,4 @@
-//! Moments against closed forms and against all words of a length.
+//! Moments of measures, against closed forms and against all words of a length.
 
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Choice, Condensation, Definition, Ifs, Map, Moments, Shape, complex, toward};
@@ -48,7 +48,7 @@ fn distant_attractors_lose_no_digits() {
     }
 }
 
-/// E z z̄ = E z z̄ / 2 + 1 and E z² = s² E z² + 1 with s = (1 + i)/2: 2 and (4 + 2i)/5.
+/// E z z̄ = E z z̄ / 2 + 1 and E z² = s² E z² + 1 with s = (1 + i)/2 give 2 and (4 + 2i)/5.
 #[test]
 fn the_twindragon_has_the_moments_of_its_equations() {
     let s = DVec2::new(0.5, 0.5);
@@ -78,7 +78,7 @@ fn condensation_sets_count_with_their_weights() {
     assert_near(point.moments.mean, half, 1e-15);
     assert!((point.moments.covariance.x_axis.x - 2.0 / 25.0).abs() < 1e-15);
     assert!((point.by_map[0].weight - 1.0 / 3.0).abs() < 1e-15);
-    // A segment's own variance 1/12 comes to it: v = 2/3 (v + 1)/9 + 1/36.
+    // The segment adds its own variance 1/12: v = 2/3 (v + 1)/9 + 1/36.
     let segment = with(Shape::polyline(&[DVec2::ZERO, DVec2::X]).unwrap());
     let expected = (2.0 / 27.0 + 1.0 / 36.0) * 27.0 / 25.0;
     assert!((segment.moments.covariance.x_axis.x - expected).abs() < 1e-15);
@@ -125,7 +125,7 @@ fn parts_that_are_left_for_ever_have_no_moments() {
     assert_near_matrix(measure.moments.covariance, DMat2::ZERO, 1e-14);
 }
 
-/// A map that doubles does no harm if it is rare: second moments are finite while Σ p r² < 1.
+/// A map that doubles lengths is harmless if it is rare: second moments are finite while Σ p r² < 1.
 #[test]
 fn there_are_moments_where_second_ones_are_finite() {
     let doubling = |weight: f64| {
@@ -152,11 +152,11 @@ fn there_are_moments_where_second_ones_are_finite() {
     );
 }
 
-/// Moments of all points that so many steps reach from the origin in every state, by the
+/// Returns the moments of all points that a number of steps reaches from the origin in every state, by the
 /// probabilities of the walk.
 fn by_force(system: &Ifs, steps: u32) -> Moments {
     let walk = system.walk();
-    // Powers of the walk, half of the time at rest so that it is not periodic.
+    // Powers of the lazy walk, which rests half of the time and is therefore not periodic.
     let states = walk.states();
     let mut weights = vec![1.0; states.len()];
     for _ in 0..2000 {
@@ -205,7 +205,7 @@ fn by_force(system: &Ifs, steps: u32) -> Moments {
     Moments { mean, covariance }
 }
 
-/// Two points with the moments of a segment or a point.
+/// Returns two points with the moments of a segment or a point.
 fn representatives(shape: &Shape) -> [DVec2; 2] {
     match shape {
         Shape::Point(point) => [*point; 2],
@@ -223,7 +223,7 @@ fn shift() -> impl Strategy<Value = DVec2> {
 }
 
 prop_compose! {
-    /// Systems of three maps that shrink lengths to less than 0.2, with anything else.
+    /// Generates systems of three maps that shrink lengths to less than 0.2.
     fn shrinking()(
         maps in prop::collection::vec((matrix(0.1), shift(), 0.1..1.0f64), 3),
         pairs in prop::option::of(digraph(3)),

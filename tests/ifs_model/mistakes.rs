@@ -1,3 +1,5 @@
+//! Errors of definitions, and default weights.
+
 use kfrac::geometry::DVec2;
 use kfrac::ifs::{Condensation, Definition, Edge, Ifs, IfsError, Map, Shape, Weighted};
 
@@ -85,7 +87,7 @@ fn every_map_of_a_digraph_is_entered_and_left() {
     );
     let twice = IfsError::EdgeTwice { edge: 3, first: 0 };
     assert_eq!(of(&[(0, 1), (1, 2), (2, 0), (0, 1)]), [twice]);
-    // A digraph that leads from one part to another is one.
+    // A digraph need not be strongly connected.
     let parts = Definition {
         edges: edges(&[(0, 0), (0, 1), (1, 1), (1, 2), (2, 2)]),
         ..definition(vec![half(), half(), half()])

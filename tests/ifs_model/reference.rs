@@ -1,4 +1,4 @@
-//! Maps as papers write them, and the fixed points that the reference gives for them.
+//! Maps in the notations of papers, and their fixed points in the reference.
 
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Map, about, axes, complex, complex_conjugate, toward};
@@ -94,7 +94,7 @@ fn scaled_and_turned_axes() {
     assert_fixed(maps.map(Map::new).to_vec(), &expected);
 }
 
-/// Each axis turns counter-clockwise by its own angle (Demko, Hodges & Naylor, section 4.3).
+/// Each axis rotates counter-clockwise by its own angle (Demko, Hodges & Naylor, section 4.3).
 #[test]
 fn axes_turn_apart() {
     let linear = axes(DVec2::new(2.0, 3.0), DVec2::new(90.0, 0.0));

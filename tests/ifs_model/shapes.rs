@@ -1,3 +1,5 @@
+//! Moments of shapes, against closed forms.
+
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use kfrac::geometry::{DMat2, DVec2};
@@ -50,7 +52,7 @@ fn closed_outlines_are_measured_by_area() {
             1e-13 + 1e-16 * x,
         );
     }
-    // Clockwise as well; a triangle's covariance is a third of that of its corners' mid-points.
+    // The orientation may be clockwise; a triangle's covariance is that of its sides' mid-points.
     let triangle = Shape::polygon(&points(&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])).unwrap();
     let third = 1.0 / 3.0;
     assert_moments(
@@ -65,7 +67,7 @@ fn closed_outlines_are_measured_by_area() {
 fn ellipses_have_half_axes_and_an_angle() {
     let disk = Shape::ellipse(DVec2::new(0.0, -3.0), DVec2::splat(20.0), 0.0).unwrap();
     assert_moments(&disk, [0.0, -3.0], [100.0, 0.0, 100.0], 1e-5);
-    // A quarter of the half axes' squares, turned by 45°.
+    // A quarter of the half axes' squares, rotated by 45°.
     let ellipse = Shape::ellipse(DVec2::ONE, DVec2::new(6.0, 2.0), 45.0).unwrap();
     assert_moments(&ellipse, [1.0, 1.0], [5.0, 4.0, 5.0], 1e-6);
     let Shape::Outline(outline) = &ellipse else {

@@ -1,3 +1,5 @@
+//! The walk of random iteration: states, probabilities and stationary weights.
+
 use kfrac::geometry::DVec2;
 use kfrac::ifs::{Choice, Condensation, Definition, Ifs, Map, Shape};
 
@@ -38,7 +40,7 @@ fn without_a_digraph_there_is_one_state() {
     assert_stationary(&system, &[1.0]);
 }
 
-/// Edges point forward: 1 follows 0 only, 2 follows 1 only. Backwards 2 would follow 0.
+/// Edges point forward: 1 follows 0 only, 2 follows 1 only. If they pointed backwards, 2 would follow 0.
 #[test]
 fn an_edge_points_to_what_comes_after() {
     let system = recurrent(halves(3), &[(0, 0), (0, 1), (1, 2), (2, 0)]);

@@ -1,10 +1,10 @@
-//! `kfrac grow --svg instanced`, as people type it.
+//! `kfrac grow --svg instanced` on the command line.
 
 use std::path::Path;
 
 use crate::common;
 
-/// What `kfrac grow --svg instanced` says, and its status.
+/// Returns status and standard error of `kfrac grow --svg instanced`.
 fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let instanced = ["grow", "--svg", "instanced"];
     common::said(folder, &[&instanced, arguments].concat())
@@ -54,7 +54,7 @@ fn what_does_not_go_together_is_refused() {
     assert_eq!(folder.path().read_dir().unwrap().count(), 0);
 }
 
-/// More elements than there are limits for, in a file that says what it takes to make it again.
+/// A small file has more elements than the limits admit, and includes the command that made it.
 #[test]
 fn many_steps_make_a_small_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The maps of instances, composed as who shows them does.
+//! Maps of nested instances, composed as a viewer composes them.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use kfrac::graph::{Graph, Replacement};
 
 use super::{common, compiled, options, write};
 
-/// A map as SVG has it.
+/// Parses a transform in SVG's notation.
 fn read(text: &str) -> DAffine2 {
     let calls = text.split(')').filter(|call| !call.is_empty());
     calls.fold(DAffine2::IDENTITY, |map, call| {
@@ -29,7 +29,7 @@ fn read(text: &str) -> DAffine2 {
     })
 }
 
-/// The way down that takes one child after another, by the graph: the maps of all levels.
+/// Returns the maps of all levels on a path of children through the graph.
 fn by_graph(graph: &Graph, steps: u32, mut choose: impl FnMut(usize) -> usize) -> Vec<DAffine2> {
     let mut chain = graph.initiator(steps);
     let mut map = DAffine2::IDENTITY;
@@ -47,8 +47,8 @@ fn by_graph(graph: &Graph, steps: u32, mut choose: impl FnMut(usize) -> usize) -
     }
 }
 
-/// Errors do not add up: composed of what is written, places are right at any depth, and sizes to as
-/// many digits.
+/// Errors do not accumulate: composed of written numbers, positions are exact to rounding at any depth, and
+/// sizes to as many digits.
 #[test]
 fn many_levels_are_as_precise_as_one() {
     for name in ["koch", "gosper", "pythagoras-345", "monkeys-tree", "peano"] {
@@ -64,7 +64,7 @@ fn many_levels_are_as_precise_as_one() {
             .filter_map(|node| Some((node.attribute("id")?, node)))
             .collect();
         for way in 0..20usize {
-            // Children are chosen by what looks like chance.
+            // Children are chosen pseudorandomly.
             let chance = |state: &mut usize, count: usize| {
                 *state = state
                     .wrapping_mul(6_364_136_223_846_793_005)

@@ -1,17 +1,17 @@
-//! Pictures as another program reads them. It knows instances, but strokes that do not scale only as
-//! far as they are drawn here.
+//! Pictures as another program renders them. It supports instances, but non-scaling strokes only as far as
+//! they are drawn here.
 
 use std::collections::BTreeSet;
 
 use resvg::tiny_skia::{FillRule, Paint, Pixmap, PixmapPaint, Transform};
 use resvg::usvg;
 
-/// How much two pictures differ.
+/// Difference of two pictures.
 #[derive(Debug)]
 pub(crate) struct Difference {
-    /// The mean difference of a value, of 255.
+    /// Mean difference of a value, of 255.
     pub(crate) mean: f64,
-    /// The part of the values that differ by more than 96.
+    /// Share of the values that differ by more than 96.
     pub(crate) far: f64,
 }
 
@@ -35,7 +35,7 @@ fn tree(svg: &str) -> usvg::Tree {
     usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap()
 }
 
-/// Draws paths; strokes that do not scale are of their width in pixels, whatever they stand in.
+/// Draws paths; strokes that do not scale have their width in pixels in every group.
 fn draw(group: &usvg::Group, scales: bool, pixmap: &mut Pixmap) {
     if group.opacity().get() < 1.0 {
         let mut layer = Pixmap::new(pixmap.width(), pixmap.height()).unwrap();
@@ -94,7 +94,7 @@ fn ink(paint: &usvg::Paint, opacity: f32) -> Paint<'static> {
     ink
 }
 
-/// The colours of all that is drawn.
+/// Returns the colours of everything drawn.
 pub(crate) fn colours(svg: &str) -> BTreeSet<[u8; 3]> {
     fn add(group: &usvg::Group, colours: &mut BTreeSet<[u8; 3]>) {
         for node in group.children() {
@@ -117,7 +117,7 @@ pub(crate) fn colours(svg: &str) -> BTreeSet<[u8; 3]> {
     all
 }
 
-/// Both say the same of themselves, are of one size, and have strokes that do not scale.
+/// Asserts that two files have the same metadata and size, and that their strokes do not scale.
 pub(crate) fn hold_same_frames(plain: &str, nested: &str, what: &str) {
     let both = [plain, nested].map(|text| roxmltree::Document::parse(text).unwrap());
     let frame = |document: &roxmltree::Document<'_>| {

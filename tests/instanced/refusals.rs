@@ -1,11 +1,11 @@
-//! What nested instances cannot show is refused, with the reason.
+//! Pictures that nested instances cannot show are refused, with the reason.
 
 use kfrac::render::{NotInstanced, Options, RenderError};
 use kfrac::style::{Cap, ColorBy, Colour, Width};
 
 use super::{common, compiled, options, write};
 
-/// Why there is no such picture.
+/// Returns the reason why a picture is refused.
 fn refusal(text: &str, change: impl FnOnce(&mut Options)) -> NotInstanced {
     let (heading, graph) = compiled(&common::document_of(text), 3);
     let mut options = options(&heading);
