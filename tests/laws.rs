@@ -1,4 +1,4 @@
-//! Laws that hold for every rule, tried on random ones.
+//! Laws that hold for every rule, tested on random ones.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -33,7 +33,7 @@ fn read(text: &str) -> Arc<Rule> {
     model.into_rule().unwrap()
 }
 
-/// Everything that a walk tells.
+/// A visitor that records everything that a walk reports.
 #[derive(Default)]
 struct Collected {
     fractals: Vec<(Fractal, Vec<Element>, bool)>,
@@ -86,7 +86,7 @@ fn close(a: DVec2, b: DVec2) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Two engines: the walk over the graph, and Kaandorp's algorithm on lists.
+    /// Two engines agree: the walk over the graph, and Kaandorp's algorithm on lists.
     #[test]
     fn the_walk_agrees_with_kaandorps_lists(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
         let rule = read(&text);
@@ -120,8 +120,8 @@ proptest! {
         }
     }
 
-    /// Counts of regular rules are powers of the replacement matrix: the forecast, from the graph,
-    /// is what the walk finds.
+    /// The forecast of a regular rule, from powers of the replacement matrix, agrees with the counts of the
+    /// walk.
     #[test]
     fn the_forecast_agrees_with_the_walk(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -143,7 +143,7 @@ proptest! {
         }
     }
 
-    /// The box from the graph is the box of what the walk finds.
+    /// The bounds computed from the graph are the bounds of the elements in the walk.
     #[test]
     fn the_bounds_agree_with_the_walk(text in rules::rule(Features::DETERMINISTIC), steps in 0..4u32) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -158,8 +158,8 @@ proptest! {
             "{:?} {:?}", bounds, walked);
     }
 
-    /// The box of the limit set is the limit of the boxes: they come together, and where nothing is
-    /// drawn any more there is none.
+    /// The bounds of approximants converge to those of the limit set; where approximants become empty, there
+    /// is no limit set.
     #[test]
     fn the_bounds_converge_to_those_of_the_limit(text in rules::rule(Features::REGULAR)) {
         let graph = Graph::compile(&read(&text), 0).unwrap();
@@ -178,7 +178,7 @@ proptest! {
         let near = |bounds: &Bounds| {
             bounds.min().distance(limit.min()) < 1e-5 && bounds.max().distance(limit.max()) < 1e-5
         };
-        // A rule that alternates draws its limit again and again, not at every step.
+        // A rule that alternates draws its limit set recurrently, not at every step.
         let boxes: Vec<_> = (60..66).map(|steps| graph.bounds(steps)).collect();
         prop_assert!(boxes.iter().flatten().any(near), "{:?} {:?}", limit, boxes);
     }
@@ -191,7 +191,7 @@ proptest! {
         (x, y) in (-3..4i32, 1..4i32),
         (a, b) in (-2..3i32, -2..3i32),
     ) {
-        // z → s z + t, of the initiator's points as written.
+        // The map z → s z + t is applied to the initiator's points as written.
         let (sx, sy) = (f64::from(x) / 3.0, f64::from(y) / 3.0);
         let turned = turn_initiator(&text, [sx, sy], [f64::from(a), f64::from(b)]);
         let similarity = Frame::between(
@@ -213,7 +213,7 @@ proptest! {
         }
     }
 
-    /// What is said to be joined stands together.
+    /// Joined elements meet in a point.
     #[test]
     fn connected_chains_stay_connected(text in rules::rule(Features::ALL), steps in 0..4u32) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
@@ -227,9 +227,8 @@ proptest! {
         }
     }
 
-    /// The fertile elements of approximant n of a random rule stand where n + 1 refines them: the
-    /// elements of n + 1 that are not new are those of n that were infertile, and what is new hangs
-    /// on a fertile one.
+    /// Approximant n + 1 of a random rule refines approximant n: its elements that are not new are the
+    /// infertile ones of n, and new elements exist only where n has fertile ones.
     #[test]
     fn the_next_approximant_refines_this_one(text in rules::rule(Features::ALL), steps in 0..3u32, seed in 0..3u64) {
         let rule = read(&text);
@@ -243,13 +242,13 @@ proptest! {
         for frame in &stays {
             prop_assert!(stands.contains(frame));
         }
-        // One list engine step from what stands leads to what stands next.
+        // New elements require a fertile one.
         let fertile = now.elements().filter(|element| element.fertile).count();
         let new = next.elements().filter(|element| element.born == steps + 1).count();
         prop_assert!(fertile > 0 || new == 0);
     }
 
-    /// The same input gives the same bytes.
+    /// Equal input gives equal bytes.
     #[test]
     fn two_runs_give_the_same_bytes(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
         let draw = |threads| {
@@ -266,7 +265,7 @@ proptest! {
     }
 }
 
-/// The rule with z → s z + t applied to the initiator's points, in their expressions.
+/// Returns the rule with z → s z + t applied to the initiator's points, in their expressions.
 fn turn_initiator(text: &str, [sx, sy]: [f64; 2], [tx, ty]: [f64; 2]) -> String {
     let (initiator, rest) = text.split_once("generators:").unwrap();
     let mut turned = String::new();
@@ -295,7 +294,7 @@ fn directions_multiply_like_the_klein_four_group() {
     for (a, row) in Direction::ALL.into_iter().zip(table) {
         for (b, product) in Direction::ALL.into_iter().zip(row) {
             assert_eq!(a * b, product);
-            // So do the maps that they stand for, with elements from 0 to 1.
+            // The maps of the directions multiply alike, with elements from 0 to 1.
             let frames =
                 [a, b, product].map(|direction| Frame::between(DVec2::ZERO, DVec2::X, direction));
             assert!(
@@ -308,7 +307,7 @@ fn directions_multiply_like_the_klein_four_group() {
     }
 }
 
-/// The same elements, taken by blocks.
+/// A visitor that receives elements in blocks.
 struct Blocks(Collected);
 
 impl Visitor for Blocks {
@@ -331,7 +330,7 @@ impl Visitor for Blocks {
     }
 }
 
-/// Holds a walk by blocks against one by elements.
+/// Asserts that a walk by blocks agrees with one by elements.
 fn blocks_agree(graph: &Graph, growth: &Growth<'_>) {
     let (mut single, mut blocks) = (Collected::default(), Blocks(Collected::default()));
     let walked = walk(graph, growth, &mut single).unwrap();

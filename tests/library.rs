@@ -1,4 +1,4 @@
-//! Every file of the library is loaded, grown, drawn and held against its published dimension.
+//! Every file of the library is loaded, grown, drawn and compared with its published dimension.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -28,7 +28,7 @@ use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
 use picture::Picture;
 
-/// What the project promises to have.
+/// Rules that the library must contain.
 const REQUIRED: [&str; 20] = [
     "koch",
     "koch-snowflake",
@@ -59,7 +59,7 @@ fn entries(shelf: Shelf) -> Vec<Entry> {
         .collect()
 }
 
-/// Every rule, with its name.
+/// Iterates over all rules, with their names.
 fn rules() -> impl Iterator<Item = (String, Arc<Rule>)> {
     let names = entries(Shelf::Rules).into_iter().map(|entry| entry.name);
     names.map(|name| {
@@ -100,7 +100,7 @@ fn table_of(graph: &Graph, steps: u32, format: Format) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// The rule that a text is read as.
+/// Returns the rule that a text is read as.
 fn read_again(text: &str) -> Rule {
     Arc::into_inner(resolved(&document_of(text), &[])).unwrap()
 }
@@ -235,7 +235,7 @@ fn a_table_of_objects_has_the_same_rows() {
     }
 }
 
-/// In a small picture many vertices round to the same place.
+/// In a small picture many vertices round to the same position.
 #[test]
 fn every_rule_is_drawn_within_its_picture() {
     for (name, rule) in rules() {
@@ -267,7 +267,7 @@ fn check_paths(what: &str, picture: &Picture) {
                 "{what}: {x} {y}"
             );
         }
-        // A curve may come back to where it starts, a line may not.
+        // A curve may return to its start, a line may not.
         for (pair, &is_curved) in vertices.windows(2).zip(&subpath.is_curved) {
             assert!(is_curved || pair[0] != pair[1], "{what}: a vertex twice");
         }
@@ -401,7 +401,7 @@ fn published_dimensions_are_those_that_are_computed() {
                 "{name}: {computed}, not {published}"
             );
         } else if !rule.is_random() {
-            // Rules that select by step or by length have no dimension, and so publish none.
+            // Rules that select by step or by length have no dimension, and publish none.
             assert!(graph.depth().is_some(), "{name}: no dimension");
             assert_eq!(
                 rule.dimension(),

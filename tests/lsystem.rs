@@ -1,4 +1,4 @@
-//! L-systems: words by published derivations, and what the turtle draws.
+//! L-systems: words by published derivations, and drawings of the turtle.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -20,10 +20,10 @@ use common::document_of;
 use kfrac::lsystem::{LSystem, RewriteError};
 use kfrac::model::Model;
 
-/// So many elements are allowed.
+/// Limit of the number of elements.
 const MOST: u64 = 1_000_000;
 
-/// An L-system that is written in a test.
+/// Returns an L-system from text.
 fn system(text: &str) -> Arc<LSystem> {
     let (model, _) = document_of(&format!("kind: lsystem\n{text}"))
         .resolve(&[])
@@ -34,7 +34,7 @@ fn system(text: &str) -> Arc<LSystem> {
     }
 }
 
-/// The words of the first steps.
+/// Returns the words of the first steps.
 fn words(text: &str, steps: u32) -> Vec<String> {
     let system = system(text);
     let word = |step| system.word(step, 0, MOST).unwrap().to_text(&system);
@@ -88,7 +88,7 @@ fn successors_may_be_empty() {
     assert_eq!(words, ["ABA", "ABA", "ABA"]);
 }
 
-/// The first that fits is taken, those with contexts before those without.
+/// The first production that fits is taken, those with contexts before those without.
 #[test]
 fn the_order_of_productions_decides() {
     let text = "axiom: XAA(2)\nproductions:\n\
@@ -99,7 +99,7 @@ fn the_order_of_productions_decides() {
     assert_eq!(words(text, 1)[1], "XCD");
 }
 
-/// Each of three with weights 3, 1 and 0 within four standard errors of its share.
+/// Productions with weights 3, 1 and 0 are drawn within four standard errors of their shares.
 #[test]
 fn draws_have_the_frequencies_of_their_weights() {
     const COUNT: usize = 40_000;
@@ -118,7 +118,7 @@ fn draws_have_the_frequencies_of_their_weights() {
     assert_ne!(word, system.word(1, 6, MOST).unwrap().to_text(&system));
 }
 
-/// A draw depends on the path alone: what else is in the word changes nothing, nor does being kept.
+/// A draw depends only on the path: neither the rest of the word nor being kept changes it.
 #[test]
 fn draws_hang_on_the_path() {
     let grow = |axiom: &str, x: &str| {
@@ -145,13 +145,13 @@ fn lengths_are_told_before_anything_is_written() {
     assert_eq!(error.to_string(), said);
     assert!(start.elapsed().as_secs() < 5);
     assert_eq!(koch.deepest(12, 1024), 5);
-    // Nothing is drawn, and yet it explodes.
+    // Nothing is drawn, but the word grows exponentially.
     let silent = system("axiom: A\nproductions: {A: AA}\n");
     let error = silent.word(1000, 0, MOST).unwrap_err();
     assert!(error.to_string().contains("modules"), "{error}");
 }
 
-/// Where lengths depend on what happens, growth ends where the limit is met.
+/// Where lengths depend on arguments, growth ends where the limit is met.
 #[test]
 fn what_cannot_be_told_before_ends_at_the_limit() {
     let text = "axiom: F(1)\nproductions: ['F(x) : x > 0 -> F(x)F(x)']\n";
@@ -172,7 +172,7 @@ fn what_cannot_be_told_before_ends_at_the_limit() {
     assert_eq!(error.to_string(), said);
 }
 
-/// What is read module by module is the word that is written step by step, and ends at the same step.
+/// The word read module by module equals the one rewritten step by step, and fails at the same step.
 #[test]
 fn words_are_read_as_they_are_written() {
     for text in [

@@ -12,14 +12,14 @@ fn kfrac() -> Command {
     command
 }
 
-/// What a command that succeeds writes to standard output.
+/// Returns the standard output of a command, which must succeed.
 fn printed(arguments: &[&str]) -> String {
     let output = kfrac().args(arguments).output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {output:?}");
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The subcommands that the help names, but for clap's own.
+/// Returns the subcommands that the help lists, except those of clap.
 fn commands() -> Vec<String> {
     let help = printed(&["--help"]);
     let list = help.split("Commands:\n").nth(1).unwrap();
@@ -28,13 +28,13 @@ fn commands() -> Vec<String> {
     names.filter(|name| name != "help").collect()
 }
 
-/// The examples of a help text: lines that are commands.
+/// Returns the examples of a help text: its lines that are commands.
 fn examples(help: &str) -> Vec<&str> {
     let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
     lines.filter(|line| line.starts_with("kfrac ")).collect()
 }
 
-/// Every example is a command that works, as far as kfrac has to do with it.
+/// Every example is a command that works, as far as it concerns kfrac.
 #[test]
 fn examples_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -58,7 +58,8 @@ fn examples_work() {
             let own = example.split(['|', '>']).next().unwrap();
             let words = own.split_whitespace().skip(1);
             let words = words.map(|word| word.replace('*', "other").replace('\'', ""));
-            // Large enough to be drawn in bands; a wall's worth of pixels takes minutes without optimisation.
+            // Large enough to be drawn in bands; the pixels of a whole wall take minutes without
+            // optimisation.
             let words = words.map(|word| word.replace("60000", "4900"));
             let output = kfrac().args(words).current_dir(folder.path()).output();
             let output = output.unwrap();
@@ -70,7 +71,7 @@ fn examples_work() {
 #[test]
 fn every_command_has_a_manual_page() {
     let folder = tempfile::tempdir().unwrap();
-    // The folder is made.
+    // The folder is created.
     let path = folder.path().join("new/man1");
     assert_eq!(printed(&["man", "--dir", path.to_str().unwrap()]), "");
     let sections = |page: &str| {
@@ -198,7 +199,7 @@ fn bash_completes() {
     }
 }
 
-/// The program where a shell finds it, in front of what it finds anyway.
+/// Returns the shell's path with the program's folder at its front.
 #[cfg(target_os = "linux")]
 fn path_of_shell() -> std::ffi::OsString {
     let program = assert_cmd::cargo::cargo_bin("kfrac");
@@ -250,14 +251,14 @@ fn fish_and_zsh_complete_parameters() {
             .unwrap();
         String::from_utf8(output.stdout).unwrap()
     };
-    // A machine that lacks a shell does not test it.
+    // A shell that is not installed is not tested.
     if has("fish") {
         let script =
             "kfrac completions fish | source; complete -C 'kfrac grow pythagoras --set an'";
         assert!(run("fish", script).starts_with("angle=\t"));
     }
     if has("zsh") {
-        // Without a terminal, what would be offered is looked at where it is collected.
+        // Without a terminal, candidates are inspected where zsh collects them.
         let script = "autoload -U compinit && compinit -u -D; \
              eval \"$(kfrac completions zsh)\" 2>/dev/null; \
              compadd() { shift 3; print -l -- $@ }; \

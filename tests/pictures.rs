@@ -1,4 +1,4 @@
-//! What SVG path data says of small rules, to the letter.
+//! SVG path data of small rules, to the letter.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -8,7 +8,7 @@ use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Options, Size};
 
-/// The path elements of a picture, 100 pixels wide, without the space that strokes take.
+/// Returns the path elements of a picture 100 pixels wide, without the margin of strokes.
 fn paths(text: &str, steps: u32) -> Vec<String> {
     let svg = picture(text, steps, "");
     let elements = svg.split("<path ").skip(1);
@@ -61,7 +61,7 @@ fn a_ring_is_closed_and_its_last_vertex_is_not_written_twice() {
         paths(square, 1),
         ["d=\"M0 10000l0-5000 0-5000 5000 0 5000 0 0 5000 0 5000-5000 0z\""]
     );
-    // As one that says so, a chain that comes back to where it began is closed.
+    // A chain that returns to its start is closed, as one with `closed: true` is.
     let written = "initiator: [[0, 0], [0, 1], [1, 1], [1, 0], [0, 0]]\ngenerator: [[0, 0], [1/2, 0], [1, 0]]";
     assert_eq!(paths(written, 1), paths(square, 1));
     let filled = format!("{square}\nstyle: {{width: 0, fill: teal}}");
@@ -98,7 +98,7 @@ fn what_is_invisible_or_not_connected_breaks_the_path() {
         with("{to: [3/4, 1/4], connected: false}"),
         ["d=\"M0 2500l2500-2500M2500 0l5000 0 2500 2500\""]
     );
-    // The same place, but not written as the same.
+    // The position is equal, but written differently.
     assert_eq!(
         with("{from: [0.25, 1/4], to: [3/4, 1/4]}"),
         ["d=\"M0 2500l2500-2500M2500 0l5000 0 2500 2500\""]
@@ -165,7 +165,7 @@ fn polygons_have_one_orientation_whatever_their_direction() {
         let [a, b, c, d] = numbers[..] else {
             panic!("{polygon}: a triangle has two steps and a way back")
         };
-        // y runs down in a picture, so counter-clockwise in the plane is negative.
+        // The y axis of a picture points down, so counter-clockwise in the plane is negative.
         assert!(a * d - b * c < 0, "{polygon}");
     }
 }
@@ -190,7 +190,7 @@ fn a_path_breaks_where_its_colour_changes() {
     assert!(svg.contains("<g stroke=\"#0000ff\">"), "{svg}");
 }
 
-/// A palette begins with the initiator only if something of it is drawn.
+/// A palette begins with the initiator only if a part of it is drawn.
 #[test]
 fn palettes_begin_with_what_is_drawn() {
     let strokes = |ends: &str, steps: u32| {
@@ -278,7 +278,8 @@ fn the_viewbox_holds_the_strokes() {
 fn round_pieces_are_curves() {
     let text = "initiator: segment\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\n\
                 base_element: {points: [[0, 0], {curve: [1, 0], control: [[1/2, 1]]}]}";
-    // The quadratic curve through (1/2, 1/2) as a cubic one, and its box, not that of its control points.
+    // The quadratic curve through (1/2, 1/2) becomes a cubic one; the bounds are those of the curve, not of
+    // its control points.
     assert_eq!(
         paths(text, 0),
         ["d=\"M0 5000c3333-6667 6667-6667 10000 0\""]
@@ -347,7 +348,7 @@ fn a_closed_chain_is_filled_whatever_strokes_it() {
             "{found:?}"
         );
     }
-    // Strokes that vary in width are paths of their own.
+    // Strokes of varying width are paths of their own.
     let varied = "initiator: {closed: true, elements: [[0, 0], [1/2, 1], [1, 0]]}\n\
                   generator: [[0, 0], [1/2, 0], [1, 0]]\nstyle: {fill: teal, width: {relative: 0.01}}";
     let found = paths(varied, 1);

@@ -1,4 +1,4 @@
-//! PNG and SVG are the same picture: resvg, which reads the SVG, is held against our PNG.
+//! PNG and SVG show the same picture: resvg renders the SVG, which is compared with kfrac's PNG.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -14,16 +14,18 @@ use kfrac::rule::Rule;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg;
 
-/// Values of pixels differ by no more than this on average and at worst, of 255, on white and on
-/// black. What tiny-skia draws in a PNG is what resvg draws of the SVG, which makes strokes in the
-/// units of the file, a hundred to a pixel, and rounds other corners; the worst is one of the four
-/// lines by which an edge is sampled. What is drawn as coverage is nearer to the true area, which
-/// resvg shows at four times the size. So a pixel is held against both, and the nearer one counts;
-/// the mean is largest where strokes fill the picture with their edges.
+/// Tolerance of the mean difference of pixel values, of 255, on white and on black.
+///
+/// tiny-skia draws in a PNG what resvg draws of the SVG. The strokes of the SVG are in units of the file, a
+/// hundred to a pixel, to which other corners are rounded. Coverage is closer to the true area, which resvg
+/// shows at four times the size. A pixel is therefore compared with both renderings, and the nearer one
+/// counts. The mean is largest where strokes fill the picture with their edges.
 const MEAN: f64 = 1.0;
+/// Tolerance of the largest difference: one of the four lines by which an edge is sampled.
 const WORST: u8 = 48;
-/// Areas that are narrower than a pixel are a pixel wide in both, but have round corners in an SVG, and
-/// strokes there whose widths go by quarters of a pixel.
+/// Tolerance of the largest difference with areas narrower than a pixel. They are a pixel wide in both
+/// formats, but in an SVG they have round corners, and strokes whose widths are multiples of a quarter of a
+/// pixel.
 const WORST_OF_AREAS: u8 = 72;
 const TIMES: [usize; 2] = [1, 4];
 
@@ -35,7 +37,7 @@ fn drawn(rule: &Arc<Rule>, steps: u32, options: &Options) -> Vec<u8> {
     bytes
 }
 
-/// The pixels of an SVG on a background, red, green and blue, drawn so many times as large and
+/// Returns the pixels of an SVG on a background, red, green and blue, rendered at a multiple of its size and
 /// averaged, and its width and height.
 fn read_svg(svg: &[u8], background: Color, times: usize) -> (Vec<[u8; 3]>, [u32; 2]) {
     let tree = usvg::Tree::from_data(svg, &usvg::Options::default()).unwrap();
@@ -64,7 +66,7 @@ fn read_svg(svg: &[u8], background: Color, times: usize) -> (Vec<[u8; 3]>, [u32;
     (means, [size.width(), size.height()])
 }
 
-/// A PNG as its decoder sees it: header, texts, and red, green, blue and opacity of every pixel.
+/// A decoded PNG: header, texts, and red, green, blue and opacity of every pixel.
 struct Read {
     colour: png::ColorType,
     depth: png::BitDepth,
@@ -102,7 +104,7 @@ fn read_png(bytes: &[u8]) -> Read {
     }
 }
 
-/// Mean and largest difference on a background that is white or black.
+/// Returns mean and largest difference on a background that is white or black.
 fn difference(png: &Read, svgs: &[Vec<[u8; 3]>], background: u8) -> (f64, u8) {
     let (mut sum, mut worst) = (0.0, 0);
     for (pixel, ours) in png.rgba.iter().enumerate() {
@@ -119,7 +121,7 @@ fn difference(png: &Read, svgs: &[Vec<[u8; 3]>], background: u8) -> (f64, u8) {
     (sum / (3.0 * png.rgba.len() as f64), worst)
 }
 
-/// Holds a picture's two formats against each other.
+/// Asserts that a picture's two formats agree.
 fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
     let options = |format| Options {
         format,
@@ -210,7 +212,7 @@ fn windows_show_the_same_part() {
     agree(text, &resolved(&document_of(text), &[]), 7, 200);
 }
 
-/// More vertices than are drawn at once, in a colour whose overlaps would show.
+/// The path has more vertices than are drawn at once, in a colour that would show overlaps.
 #[test]
 fn long_paths_are_drawn_as_one() {
     let text =
@@ -218,7 +220,7 @@ fn long_paths_are_drawn_as_one() {
     agree(text, &resolved(&document_of(text), &[]), 18, 700);
 }
 
-/// How a picture is stored: as grey, with a palette, or in full.
+/// The pixels of a picture are stored as grey, with a palette, or in full.
 #[test]
 fn pixels_take_no_more_bits_than_they_need() {
     use png::{BitDepth, ColorType};
@@ -301,9 +303,9 @@ fn pieces_that_are_too_large_are_refused_with_the_memory_they_would_take() {
     assert!(bytes.is_empty());
 }
 
-/// Strokes thinner than the samples lie apart, held against the picture that is drawn at four times
-/// the size alone, which shows them best. It is worst at the ends of hairs, which tiny-skia makes
-/// longer by half a pixel however thin they are.
+/// Strokes thinner than the distance of samples are compared only with the picture rendered at four times the
+/// size, which shows them best. The difference is largest at the ends of hairs, which tiny-skia lengthens by
+/// half a pixel at any width.
 #[test]
 fn thin_strokes_are_their_supersampled_picture() {
     const KOCH: &str = "initiator: triangle\ngenerator: koch\n";
@@ -336,7 +338,7 @@ fn thin_strokes_are_their_supersampled_picture() {
     }
 }
 
-/// Filled elements that are smaller than a pixel keep their ink, at any step.
+/// Filled elements smaller than a pixel keep their ink at every step.
 #[test]
 fn nothing_fades() {
     let ink = |name: &str, steps: u32| {

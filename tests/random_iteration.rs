@@ -1,5 +1,5 @@
-//! Random iteration of all systems of the library: held against deterministic iteration and against
-//! the exact moments; and on the command line.
+//! Random iteration of all systems of the library, against deterministic iteration and the exact moments; and
+//! on the command line.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -20,7 +20,7 @@ use kfrac::model::Model;
 use kfrac::render::{self, Canvas, Detail, Format, Options, Size};
 use kfrac::style::{ColorBy, View, Width};
 
-/// All systems of the library, by name.
+/// Returns all systems of the library, with their names.
 fn library() -> Vec<(String, Arc<ifs::System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
@@ -35,7 +35,7 @@ fn library() -> Vec<(String, Arc<ifs::System>)> {
     systems.collect()
 }
 
-/// What a file colours by steps keeps the beginning of its palette for what is large.
+/// In files coloured by step, large elements have the first colours of the palette.
 #[test]
 fn trunks_are_brown() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn trunks_are_brown() {
 
 const SIDE: u32 = 64;
 
-/// A square window around all of the attractor.
+/// Returns a square window around the whole attractor.
 fn around(graph: &Graph) -> [f64; 4] {
     let bounds = graph.limit_bounds().unwrap();
     let side = bounds.size().max_element() * 1.1;
@@ -84,7 +84,7 @@ fn pixels(hit: impl Iterator<Item = bool>) -> Pixels {
         .collect()
 }
 
-/// The pixels that deterministic iteration to a detail of a pixel inks.
+/// Returns the pixels inked by deterministic iteration to a detail of a pixel.
 fn deterministic(system: &ifs::System, view: View) -> Pixels {
     let graph = Graph::of_system(system);
     let mut options = Options::of(system.heading());
@@ -116,7 +116,7 @@ fn deterministic(system: &ifs::System, view: View) -> Pixels {
     )
 }
 
-/// The pixels that random iteration hits.
+/// Returns the pixels hit by random iteration.
 fn random(system: &ifs::System, view: View) -> Pixels {
     let size = Size::Exactly(SIDE, SIDE);
     let canvas = Canvas::of_window(view.window.unwrap(), &view, size).unwrap();
@@ -133,7 +133,7 @@ fn random(system: &ifs::System, view: View) -> Pixels {
     pixels(histogram.counts(0).iter().map(|&count| count > 0))
 }
 
-/// The share of pixels that have none of the others within some pixels.
+/// Returns the share of pixels that have none of the others within a distance.
 fn lonely(pixels: &Pixels, others: &Pixels, distance: i64) -> f64 {
     let range = -distance..=distance;
     let is_lonely = |[x, y]: &&[i64; 2]| {
@@ -145,10 +145,9 @@ fn lonely(pixels: &Pixels, others: &Pixels, distance: i64) -> f64 {
     pixels.iter().filter(is_lonely).count() as f64 / pixels.len() as f64
 }
 
-/// Every pixel that random iteration hits is beside one that deterministic iteration inks, but for one
-/// in 100, where more grows of an element than is drawn of it (the trunk of a tree). The other way
-/// round one in 50 may be missed: those that are hit less than once in a million points, of systems
-/// whose weights are uneven.
+/// Every pixel hit by random iteration is next to one inked by deterministic iteration, except one in 100,
+/// where more grows from an element than is drawn of it (the trunk of a tree). Conversely one in 50 may be
+/// missed: pixels hit less than once in a million points, of systems with uneven weights.
 #[test]
 fn random_and_deterministic_iteration_draw_one_set() {
     let mut wrong = Vec::new();
@@ -166,7 +165,7 @@ fn random_and_deterministic_iteration_draw_one_set() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The first and second moments about a point.
+/// Returns the first and second moments about a point.
 fn moments(points: impl Iterator<Item = DVec2>) -> [f64; 5] {
     let (mut count, mut sums) = (0.0, [0.0; 5]);
     for DVec2 { x, y } in points {
@@ -178,7 +177,7 @@ fn moments(points: impl Iterator<Item = DVec2>) -> [f64; 5] {
     sums.map(|sum| sum / count)
 }
 
-/// Many walks tell their own statistical error.
+/// Many walks provide their own statistical error.
 #[test]
 fn the_moments_of_the_library_are_those_of_its_walks() {
     const WALKS: u64 = 40;
@@ -215,7 +214,7 @@ fn kfrac(folder: &Path, arguments: &str) -> Output {
     command.args(arguments.split_whitespace()).output().unwrap()
 }
 
-/// What a command says that succeeds.
+/// Returns the standard error of a command that succeeds.
 #[track_caller]
 fn said(folder: &Path, arguments: &str) -> String {
     let output = kfrac(folder, arguments);
@@ -270,7 +269,7 @@ fn a_picture_says_how_to_make_it_again() {
     let command = comment.lines().nth(1).unwrap();
     let command = command.strip_prefix("# kfrac ").unwrap();
     fs::write(folder.path().join("gasket.yaml"), &comment).unwrap();
-    // A shell would take the quotes away.
+    // A shell would remove the quotes.
     let command = command.replace('\'', "");
     said(folder.path(), &format!("{command} -o two.png"));
     assert_eq!(fs::read(folder.path().join("two.png")).unwrap(), bytes);
@@ -312,7 +311,7 @@ fn points_are_drawn_into_a_png_or_listed() {
     assert_eq!(first, format!("{},{},{}", row["x"], row["y"], row["map"]));
 }
 
-/// Demko, Hodges & Naylor 1985, figure 4.5: one map, and where its walks lead from some starts.
+/// Demko, Hodges & Naylor 1985, figure 4.5: one map, and its walks from several starts.
 #[test]
 fn ways_from_starts_lie_in_the_picture() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
-//! The rules in the two README files: each is read, resolved without a warning, compiled and grown.
+//! The rules in the two README files are read, resolved without a warning, compiled and grown.
 //!
-//! A block that begins with ```` ```yaml ```` alone is a whole rule. One that begins with
-//! ```` ```yaml fragment ```` is a piece of one and is left out.
+//! A block that begins with ```` ```yaml ```` alone is a whole rule. One that begins with ```` ```yaml
+//! fragment ```` is a part of one and is skipped.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -13,7 +13,7 @@ use kfrac::document::Document;
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
 
-/// The blocks that are whole rules, named by file and line.
+/// Returns the blocks that are whole rules, named by file and line.
 fn rules(file: &str, text: &str) -> Vec<(String, String)> {
     let mut rules = Vec::new();
     let mut lines = text.lines().zip(1..);
@@ -35,7 +35,7 @@ fn rules(file: &str, text: &str) -> Vec<(String, String)> {
     rules
 }
 
-/// Counts visible elements.
+/// A visitor that counts visible elements.
 struct Visible<'g> {
     graph: &'g Graph,
     count: usize,

@@ -1,5 +1,5 @@
-//! Every rule of the reference: counts, lengths, boxes, areas and sequences of turns held against
-//! it; and the walk held against a second engine that knows nothing of graphs.
+//! Every rule of the reference: counts, lengths, bounds, areas and sequences of turns are compared with it;
+//! and the walk is compared with a second engine that is independent of graphs.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -31,7 +31,7 @@ use kfrac::measure::similarity_dimension;
 
 const CLOSE: f64 = 1e-12;
 
-/// No approximant with more elements than this is grown.
+/// Limit of the number of elements of an approximant.
 const MOST_ELEMENTS: u64 = 20_000;
 
 #[track_caller]
@@ -56,7 +56,7 @@ fn assert_same_box(what: &str, bounds: &Bounds, expected: [f64; 4]) {
     }
 }
 
-/// The deepest approximant up to 4 that has no more elements than are grown.
+/// Returns the deepest step up to 4 within the limit of elements.
 fn deepest(graph: &Graph) -> u32 {
     match graph.check_size(4, MOST_ELEMENTS) {
         Ok(_) => 4,
@@ -79,7 +79,7 @@ fn every_rule_of_the_library_is_held_against_the_reference() {
         if entry.shelf != Shelf::Rules {
             continue;
         }
-        // Of our own rules nobody else has numbers.
+        // There are no independent numbers for rules that were made for kfrac.
         let rule = resolved(&document(&entry.name), &[]);
         if !rule.description().tags.iter().any(|tag| tag == "own") {
             assert!(
@@ -248,7 +248,7 @@ fn limit_sets_have_the_boxes_that_the_reference_tells() {
     assert!((size.x * size.y - 28.2453753155).abs() < 1e-10, "{size}");
 }
 
-/// Holds an approximant against the naive engine's.
+/// Asserts that an approximant agrees with that of the naive engine.
 fn compare(entry: &Entry, steps: u32, fractals: &[Grown]) {
     let expected = naive::grow(entry, steps);
     assert_eq!(fractals.len(), expected.len(), "{} at {steps}", entry.id);

@@ -1,5 +1,4 @@
-//! The schemas that editors are given, held against files and against the reader, by a validator
-//! that knows neither.
+//! The schemas for editors, compared with files and with the reader by an independent validator.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -26,13 +25,13 @@ fn validator(shelf: Shelf) -> Validator {
     jsonschema::draft7::new(&parsed(shelf)).unwrap()
 }
 
-/// A text as editors see it, by YAML 1.2.
+/// Parses a text as editors do, by YAML 1.2.
 fn yaml(text: &str) -> Option<Value> {
     let options = serde_yaml::options! { strict_booleans: true };
     serde_yaml::from_str_with_options(text, options).ok()
 }
 
-/// Where a file of this text lies.
+/// Returns the shelf of a file by its content.
 fn shelf_of(value: &Value) -> Shelf {
     match value.get("kind").and_then(Value::as_str) {
         Some("ifs") => Shelf::Ifs,
@@ -85,7 +84,7 @@ fn validator_of_all() -> Validator {
     jsonschema::draft7::new(&schema).unwrap()
 }
 
-/// Editors may be told to take one schema for every file of a folder.
+/// Editors may apply one schema to every file of a folder.
 #[test]
 fn one_schema_holds_for_every_file() {
     let all = validator_of_all();
@@ -93,7 +92,7 @@ fn one_schema_holds_for_every_file() {
     for entry in catalogue.entries() {
         let source = catalogue.open(&entry).unwrap();
         assert_valid(&all, source.name(), source.text());
-        // A key that is not known is underlined, and so is a value of another kind than a key holds.
+        // Unknown keys are underlined, and so are values of a wrong type.
         let value = yaml(source.text()).unwrap();
         let mut misspelt = value.clone();
         misspelt["titel"] = json!("Koch curve");
@@ -145,8 +144,8 @@ proptest! {
     }
 }
 
-/// Whether something is said of a key or of the kind of a value, but not of an expression: what a
-/// schema knows of.
+/// Returns whether a message concerns a key or the type of a value, which a schema covers, and not an
+/// expression.
 fn is_of_structure(said: &str) -> bool {
     let mut errors = said.lines().filter(|line| line.starts_with("error: "));
     errors.any(|error| {
@@ -160,7 +159,7 @@ fn is_of_structure(said: &str) -> bool {
 
 #[test]
 fn what_people_write_by_mistake_is_refused() {
-    // What is wrong lies in another file.
+    // The errors are in another file.
     const ACCEPTED: [&str; 1] = ["mistakes-in-a-component.yaml"];
     let validator = validator(Shelf::Rules);
     let mut accepted = Vec::new();
@@ -180,7 +179,7 @@ fn what_people_write_by_mistake_is_refused() {
     assert_eq!(accepted, ACCEPTED);
 }
 
-/// All places in a value, as JSON pointers.
+/// Appends all places in a value, as JSON pointers.
 fn places(value: &Value, at: &str, places: &mut Vec<String>) {
     places.push(at.into());
     match value {
@@ -198,7 +197,7 @@ fn places(value: &Value, at: &str, places: &mut Vec<String>) {
     }
 }
 
-/// The value with one place changed in every way that is tried; `keys` are added to mappings.
+/// Returns the value with one place changed in all the ways that are tried; `keys` are added to mappings.
 fn changes(value: &Value, keys: &BTreeMap<String, Value>) -> Vec<Value> {
     let mut all = Vec::new();
     places(value, "", &mut all);
@@ -244,8 +243,8 @@ fn changes(value: &Value, keys: &BTreeMap<String, Value>) -> Vec<Value> {
     changed
 }
 
-/// What the reader says of a rule, or of one that names the component; both are written as JSON,
-/// which is YAML as well.
+/// Returns the diagnostics of the reader for a rule, or for a rule that names the component; both are written
+/// as JSON, which is also YAML.
 fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
@@ -314,7 +313,7 @@ fn the_schemas_and_the_reader_agree() {
     }
 }
 
-/// All keys in a value, each with something that it holds.
+/// Collects all keys in a value, each with an example of its value.
 fn collect_keys(value: &Value, keys: &mut BTreeMap<String, Value>) {
     match value {
         Value::Object(entries) => {
@@ -328,7 +327,7 @@ fn collect_keys(value: &Value, keys: &mut BTreeMap<String, Value>) {
     }
 }
 
-/// All keys that a schema knows.
+/// Collects all keys that a schema defines.
 fn collect_properties(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
         Value::Object(entries) => {

@@ -13,7 +13,7 @@ use kfrac::figure::sheet::{self, Cell};
 use kfrac::grow::Growth;
 use kfrac::render::{Options, Size};
 
-/// A sheet of some steps of a rule as SVG.
+/// Returns a sheet of some steps of a rule as SVG.
 fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::Written, String) {
     let rule = resolved(&document(name), &[]);
     let graph = compiled(&rule, *steps.iter().max().unwrap_or(&0));
@@ -57,7 +57,7 @@ fn every_approximant_has_its_window_and_its_caption() {
         .map(|&node| ["x", "y"].map(|side| number(node, side)))
         .collect();
     assert_eq!(corners.len(), 4);
-    // Three in a row, and one under the first.
+    // Three in a row, and one below the first.
     assert!(corners[..3].iter().all(|corner| corner[1] == corners[0][1]));
     assert!(corners[3][1] > corners[0][1]);
     assert_eq!(corners[3][0], corners[0][0]);
@@ -82,7 +82,7 @@ fn every_approximant_has_its_window_and_its_caption() {
     );
 }
 
-/// A tree that grows stands on the same spot in every picture.
+/// A tree that grows is at the same position in every picture.
 #[test]
 fn all_pictures_show_the_same_part_of_the_plane() {
     let (_, svg) = drawn("pythagoras", &[1, 2, 8], None);

@@ -1,4 +1,4 @@
-//! A few pictures, byte by byte: what changes in them is to be looked at.
+//! Snapshots of a few pictures, byte by byte: every change is to be reviewed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -8,7 +8,7 @@ use common::{compiled, document, resolved};
 use kfrac::grow::Growth;
 use kfrac::render::{self, Labels, Options, Size};
 
-/// A rule of the library at a size of 256 pixels.
+/// Returns the SVG of a rule of the library at a size of 256 pixels.
 fn picture(name: &str, steps: u32) -> String {
     let document = document(name);
     let rule = resolved(&document, &[]);

@@ -1,5 +1,5 @@
-//! Kaandorp's algorithm (1987, section 2.2) on lists: every fractal of an approximant is held in
-//! memory and replaced as a whole. Slow, and simple enough to be read beside the paper.
+//! Kaandorp's algorithm (1987, section 2.2) on lists: every fractal of an approximant is held in memory and
+//! replaced as a whole. Slow, and simple enough to be compared with the paper.
 
 use kfrac::geometry::{DAffine2, DVec2, Direction, Frame};
 use kfrac::rule::draw::Path;
@@ -12,10 +12,10 @@ pub(crate) struct Item {
     pub frame: Frame,
     pub length: f64,
     pub born: u32,
-    /// The frame of the initiator element that it descends from.
+    /// Frame of the initiator element that it descends from.
     root: Frame,
     path: Path,
-    /// Whether it goes on from the one before (the first one: from the last), by structure alone.
+    /// Whether the element is joined to the preceding one (the first to the last), by structure alone.
     pub joined: bool,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Grown {
 }
 
 impl Grown {
-    /// This fractal and its seeds, depth-first.
+    /// Returns the fractal and its seeds, depth-first.
     pub(crate) fn all(&self) -> Vec<&Grown> {
         let mut all = vec![self];
         all.extend(self.seeds.iter().flat_map(Grown::all));
@@ -36,7 +36,7 @@ impl Grown {
     }
 }
 
-/// Approximant `steps` of a rule.
+/// Returns approximant `steps` of a rule.
 pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
     let points = rule.initiator_points();
     let items = rule
@@ -74,7 +74,7 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
     let mut next: Vec<Item> = Vec::new();
     let mut broken = false;
     for (item, rank) in std::mem::take(&mut fractal.items).into_iter().zip(1u32..) {
-        // `broken`: the list before does not reach the point where this element starts.
+        // `broken`: the preceding list does not reach the start of this element.
         let joined = item.joined && !broken;
         if !item.listed.fertile {
             next.push(Item { joined, ..item });
@@ -140,7 +140,7 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
         }
     }
     if let Some(first) = next.first_mut() {
-        // A ring goes on from its last element.
+        // The first element of a ring is joined to the last.
         first.joined &= !broken;
     }
     fractal.items = next;
@@ -167,8 +167,8 @@ fn place(part: &Part, points: &[DVec2], parent: &Item, position: &mut u32, born:
     items
 }
 
-/// Puts a list into the order of traversal: backwards for directions 3 and 4. What joined the
-/// element listed before is then joined by it.
+/// Puts a list into the order of traversal: backwards for directions 3 and 4. Joints are reversed with their
+/// elements.
 fn turn(items: &mut [Item], direction: Direction) {
     if direction.is_reversed() {
         let mut joined: Vec<bool> = items.iter().map(|item| item.joined).collect();

@@ -1,4 +1,4 @@
-//! Neither scale nor place changes a picture or a dimension.
+//! Pictures and dimensions are invariant under changes of scale and position.
 
 use std::num::NonZero;
 
@@ -13,10 +13,10 @@ use kfrac::measure::{LimitSet, exact::dimensions_of_graph};
 use kfrac::model::{Model, OutOfRange};
 use kfrac::render::{self, Options, Size};
 
-/// A fractal of a size at a place, as a file has it. All numbers of the file are exact.
+/// Returns the file of a fractal of a size at a position. All numbers of the file are exact.
 type File = fn(f64, [f64; 2]) -> String;
 
-/// A Koch curve, a gasket, a fern-like system with a condensation set, a recurrent one and a structure.
+/// A Koch curve, a gasket, a fern-like system with a condensation set, a recurrent system and a structure.
 const FILES: [File; 5] = [koch, gasket, leaning, recurrent, structure];
 
 fn koch(s: f64, [x, y]: [f64; 2]) -> String {
@@ -27,7 +27,7 @@ fn koch(s: f64, [x, y]: [f64; 2]) -> String {
     )
 }
 
-/// A map of a half and of no turn about a point.
+/// Returns a map of ratio 1/2 without rotation about a point.
 fn half(s: f64, [x, y]: [f64; 2], [a, b]: [f64; 2]) -> String {
     let (x, y) = ((x + s * a) / 2.0, (y + s * b) / 2.0);
     format!("{{matrix: [[0.5, 0], [0, 0.5]], shift: [{x:e}, {y:e}]}}")
@@ -40,7 +40,7 @@ fn gasket(s: f64, t: [f64; 2]) -> String {
     format!("kind: ifs\nmaps: [{}]\n", maps.join(", "))
 }
 
-/// Maps that turn: half as large by a quarter turn about one corner.
+/// A system with a rotation: a map of ratio 1/2 and a quarter turn about one corner.
 fn leaning(s: f64, [x, y]: [f64; 2]) -> String {
     let t = [x, y];
     let turned = format!(
@@ -172,7 +172,8 @@ fn numbers_in_tables_are_those_of_the_file() {
             assert!((bounds.min().x / s - 1024.0).abs() < 2.0, "{bounds:?}");
         }
         for (one, other) in here.iter().zip(rows(&there)) {
-            // The images of (0, 0) and (1, 0) of the file's plane are told of maps, not of places.
+            // The images of (0, 0) and (1, 0) of the file's plane depend on the linear parts, not on the
+            // position.
             if one.len() > 10 {
                 assert_eq!(one[10..14], other[10..14]);
                 let linear = [[one[10], one[12]], [one[11], one[13]]];
@@ -233,7 +234,7 @@ fn what_grows_beyond_the_range_of_numbers_is_refused() {
         let growth = Growth::steps(steps);
         render::write(graph, &growth, &options(format), &mut bytes).map(|picture| picture.size)
     };
-    // Every step is 10^10 times as large as the one before, and turned by an eighth.
+    // Every step is 10^10 times as large as the preceding one, and rotated by an eighth of a turn.
     let shape = |steps| {
         let graph = model.compile_near(steps, 0, Model::MOST_ELEMENTS).unwrap();
         draw(&graph, steps, render::Format::Png).unwrap()
@@ -241,13 +242,13 @@ fn what_grows_beyond_the_range_of_numbers_is_refused() {
     assert_eq!(shape(2), [16, 64]);
     assert_eq!(shape(18), [16, 64]);
     assert_eq!(shape(26), [16, 64]);
-    // No graph, no file of any format.
+    // There is no graph, and so no file of any format.
     for steps in [31, 33, 40, 200] {
         let error = model.compile_near(steps, 0, Model::MOST_ELEMENTS);
         let refused = CompileError::OutOfRange(OutOfRange::Growth { step: steps });
         assert_eq!(error.unwrap_err(), refused);
     }
-    // Where numbers are drawn, what has been grown tells.
+    // Where numbers are drawn, the grown elements decide.
     let drawn = text.replace(
         "generator:\n",
         "generator:\n  random:\n    r: uniform(0, 1)\n  elements:\n",

@@ -1,4 +1,4 @@
-//! Random rules, as the YAML that a person would write.
+//! Random rules, as YAML in the form that users write.
 
 use std::fmt::Write;
 
@@ -6,14 +6,14 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// What a random rule may have.
+/// Features that a random rule may have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Features {
-    /// Random functions and selection at random.
+    /// Random functions and selection by weight.
     pub draws: bool,
-    /// Conditions that count elements and cannot be resolved.
+    /// Conditions on the index that cannot be resolved.
     pub free_index: bool,
-    /// Parts that seed.
+    /// Seed parts.
     pub seeds: bool,
 }
 
@@ -35,7 +35,7 @@ impl Features {
     };
 }
 
-/// A random rule.
+/// Generates random rules.
 pub(crate) fn rule(features: Features) -> impl Strategy<Value = String> {
     let initiator = (chain(1..4, None), any::<bool>());
     (initiator, vec(generator(features), 1..4)).prop_flat_map(
@@ -57,7 +57,7 @@ pub(crate) fn rule(features: Features) -> impl Strategy<Value = String> {
     )
 }
 
-/// A coordinate that may depend on the moment.
+/// Generates coordinates that may depend on the moment.
 fn moving(features: Features) -> impl Strategy<Value = String> {
     let free = if features.free_index { "i/50" } else { "0" };
     let moments = [
@@ -110,7 +110,7 @@ fn element(features: Option<Features>) -> impl Strategy<Value = String> {
     )
 }
 
-/// The entries of a list of elements, from (0, 0) and, for a generator, to (1, 0).
+/// Generates the entries of a list of elements, from (0, 0) and, for a generator, to (1, 0).
 fn chain(
     count: std::ops::Range<usize>,
     features: Option<Features>,
@@ -120,7 +120,7 @@ fn chain(
     (vec(element(features), count), 0..5u8, 1..5u8).prop_map(move |(elements, end, direction)| {
         let mut text = format!("{indent}- [0, 0]\n");
         for (number, element) in elements.iter().enumerate() {
-            // Points differ by a little that tells them apart, so that no element has no length.
+            // Every point has a small offset of its own, so that no element has length 0.
             let element = element.replacen("to: [", &format!("to: [1/{} + ", number + 7), 1);
             writeln!(text, "{indent}- {element}").unwrap();
         }

@@ -12,7 +12,7 @@ use super::common::{document, document_of, grown};
 use super::picture::Picture;
 use super::{check_paths, entries};
 
-/// Every L-system with its name.
+/// Iterates over all L-systems, with their names.
 fn systems() -> impl Iterator<Item = (String, Arc<LSystem>)> {
     let names = entries(Shelf::LSystems).into_iter();
     names.map(|entry| {
@@ -110,7 +110,7 @@ fn printing_and_reading_again_is_the_identity() {
     }
 }
 
-/// A new individual with every seed, the same one with the same seed.
+/// Every seed gives a different individual, and the same seed the same one.
 #[test]
 fn meadows_grow_wild() {
     let system = system(&document("wild-meadow").to_yaml());

@@ -1,28 +1,28 @@
-//! What a test needs to know of an SVG file.
+//! Pictures in SVG, as far as tests need them.
 
 /// A picture as a reader of SVG sees it.
 pub(crate) struct Picture {
     pub(crate) title: String,
     pub(crate) metadata: String,
-    /// Width and height of the coordinates.
+    /// Width and height in units of the coordinates.
     pub(crate) extent: [i64; 2],
-    /// The subpaths of all paths.
+    /// Subpaths of all paths.
     pub(crate) subpaths: Vec<Subpath>,
 }
 
 #[derive(Default)]
 pub(crate) struct Subpath {
-    /// The vertices; between two of them may be a curve, whose control points are not told.
+    /// Vertices; a curve may lie between two of them, whose control points are dropped.
     pub(crate) vertices: Vec<[i64; 2]>,
-    /// Whether each vertex but the first ends a curve.
+    /// Whether each vertex except the first ends a curve.
     pub(crate) is_curved: Vec<bool>,
     pub(crate) is_closed: bool,
-    /// Whether it says of itself that it has no length.
+    /// Whether the subpath is written as one of length 0.
     pub(crate) is_dot: bool,
 }
 
 impl Picture {
-    /// Reads a file, which must be well-formed and hold nothing but what kfrac writes.
+    /// Reads a file, which must be well-formed and contain nothing but what kfrac writes.
     pub(crate) fn read(text: &str) -> Self {
         let document = roxmltree::Document::parse(text).unwrap();
         let root = document.root_element();
@@ -66,13 +66,13 @@ impl Picture {
     }
 }
 
-/// Reads path data of the commands M, l, h, c and z.
+/// Parses path data with the commands M, l, h, c and z.
 fn subpaths(data: &str) -> Vec<Subpath> {
     let mut subpaths: Vec<Subpath> = Vec::new();
     let mut rest = data;
     let mut command = ' ';
     while let Some(first) = rest.chars().next() {
-        // Long paths go on in a new line, which XML makes a space, with a new letter.
+        // Long paths continue on a new line, which XML turns into a space, with a new command letter.
         let line = rest.strip_prefix(' ');
         if let Some(line) = line.filter(|line| line.starts_with(char::is_alphabetic)) {
             rest = line;
@@ -97,7 +97,7 @@ fn subpaths(data: &str) -> Vec<Subpath> {
                 vertices: vec![[number(), number()]],
                 ..Subpath::default()
             });
-            // A second pair would be a line.
+            // A second pair of numbers would be a line.
             command = ' ';
             continue;
         }

@@ -13,7 +13,7 @@ use super::common::{document, document_of, grown};
 use super::picture::Picture;
 use super::{check_paths, entries};
 
-/// Every structure with its name and the number of steps that it is drawn by.
+/// Returns all structures with their names and the numbers of steps that they are drawn with.
 fn structures() -> Vec<(String, Arc<Instancing>, u32)> {
     let names = entries(Shelf::Instancing).into_iter();
     let structures = names.map(|entry| {

@@ -68,7 +68,7 @@ fn contexts_look_over_branches_and_into_them() {
     }
 }
 
-/// A branch of a context is the first that fits, and those after it are looked for behind it.
+/// A branch of a context matches the first that fits, and later ones are matched behind it.
 #[test]
 fn several_branches_are_looked_at_in_order() {
     let replaced = |context: &str| {
@@ -98,7 +98,7 @@ fn symbols_can_be_ignored() {
     assert_eq!(words(text, 1)[1], "F1+FX-F1");
 }
 
-/// No scan is repeated and no stack is used up, however deep and wide brackets are.
+/// Deep and wide brackets need neither repeated scans nor the call stack.
 #[test]
 fn deep_and_wide_words_take_little_time() {
     let start = Instant::now();

@@ -1,12 +1,12 @@
-//! Random words and contexts, held against matching by recursion on trees.
+//! Random words and contexts, against matching by recursion on trees.
 
 use kfrac::lsystem::LSystem;
 use proptest::prelude::*;
 
 use super::{MOST, system};
 
-/// A branch: letters one after the other, each with the branches behind it; what stands before the
-/// first letter is a branch of nothing.
+/// A branch: a sequence of letters, each with the branches after it, preceded by branches without a letter of
+/// their own.
 #[derive(Clone, Debug, Default)]
 struct Tree {
     first: Vec<Tree>,
@@ -28,7 +28,7 @@ impl Tree {
     }
 }
 
-/// Trees of the letters a, b and c, and of + and -, which contexts do not see.
+/// Generates trees of the letters a, b and c, and of + and -, which contexts ignore.
 fn tree(letters: &'static str) -> impl Strategy<Value = Tree> {
     let letter = || proptest::sample::select(letters.chars().collect::<Vec<_>>());
     let leaf = proptest::collection::vec((letter(), Just(Vec::new())), 0..4);
@@ -43,7 +43,7 @@ fn tree(letters: &'static str) -> impl Strategy<Value = Tree> {
     })
 }
 
-/// A tree without what contexts do not see: its branches go to what stands before it.
+/// Returns a tree without the letters that contexts ignore: their branches belong to the preceding letter.
 fn seen(tree: &Tree) -> Tree {
     let mut kept = Tree {
         first: tree.first.iter().map(seen).collect(),
@@ -62,7 +62,7 @@ fn seen(tree: &Tree) -> Tree {
     kept
 }
 
-/// Whether a context fits what begins with some branches and goes on with letters.
+/// Returns whether a context fits a sequence that begins with branches and continues with letters.
 fn fits(context: &Tree, branches: &[Tree], rest: &[(char, Vec<Tree>)]) -> bool {
     let mut branches = branches.iter();
     let found = context
@@ -82,7 +82,7 @@ fn fits(context: &Tree, branches: &[Tree], rest: &[(char, Vec<Tree>)]) -> bool {
     }
 }
 
-/// All letters in the order of the text: each `a` with both contexts is an X.
+/// Appends all letters in the order of the text, with an X for each `a` with both contexts.
 fn replaced(tree: &Tree, above: &str, left: &str, right: &Tree, text: &mut String) {
     let mut above = above.to_owned();
     for branch in &tree.first {
@@ -129,7 +129,7 @@ proptest! {
         prop_assert_eq!(letters, expected, "{}", text);
     }
 
-    /// What is written is what is read, and what nothing replaces stays.
+    /// A word is read as it is written, and modules without a production are kept.
     #[test]
     fn words_are_read_as_they_are_written(word in tree("aF+-|")) {
         let axiom = format!("F(1, -0.5){}", word.text());

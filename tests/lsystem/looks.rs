@@ -1,4 +1,4 @@
-//! Colours and widths in words leave limit sets and dimensions as they are.
+//! Colours and widths in words leave limit sets and dimensions unchanged.
 
 use std::process::Command;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::system;
 
-/// Angle, axiom and what replaces F, of systems that rewrite edges.
+/// Angle, axiom and successor of F, for systems that rewrite edges.
 const EDGES: [[&str; 3]; 4] = [
     ["60", "F--F--F", "F+F--F+F"],
     ["90", "F", "F+F-F-FF+F+F-F"],
@@ -20,7 +20,7 @@ fn text([angle, axiom, word]: [&str; 3]) -> String {
     format!("angle: {angle}\naxiom: \"{axiom}\"\nproductions: {{F: \"{word}\", f: fff}}\n")
 }
 
-/// The box of the limit set, and the dimension.
+/// Returns the bounds of the limit set, and the dimension.
 fn limit(text: &str) -> [f64; 5] {
     let graph = Model::LSystem(system(text)).of_limit().compile(64).unwrap();
     let bounds = graph.limit_bounds().expect(text);
@@ -29,7 +29,7 @@ fn limit(text: &str) -> [f64; 5] {
     [min.x, min.y, max.x, max.y, dimension]
 }
 
-/// A word with looks here and there.
+/// Inserts modules that change the appearance between the modules of a word.
 fn adorned(word: &str, looks: &[&str]) -> String {
     let mut looks = looks.iter().cycle();
     let module = |module: char| format!("{}{module}", looks.next().unwrap());
@@ -76,7 +76,7 @@ fn commands_tell_the_limit_sets_of_words_with_looks() {
     let plain = file("plain.yaml", ["F--F--F", "F+F--F+F"]);
     let known = told(&["info", &plain]);
     assert!(known["limit_bounds"].is_object() && known["dimension"]["hausdorff"].is_object());
-    // The colours of one of them are others at every step.
+    // The colours of one of the systems change at every step.
     for looks in [
         ["'(1)F--!(w)F--F", "F+F--F+F"],
         ["F--F--F", "F'+F--!(w)F+F"],

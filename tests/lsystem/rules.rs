@@ -1,4 +1,4 @@
-//! Curves that are in the library as rules and as L-systems are the same up to one similarity a step.
+//! Curves that the library has as rules and as L-systems agree up to a similarity for each step.
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
@@ -27,7 +27,7 @@ fn lsystem(name: &str, steps: u32) -> Vec<[DVec2; 2]> {
         .collect()
 }
 
-/// The ends of the elements of a rule, in the order of traversal.
+/// Returns the ends of the elements of a rule, in the order of traversal.
 fn rule(name: &str, steps: u32) -> Vec<[DVec2; 2]> {
     let rule = resolved(&document(name), &[]);
     let graph = compiled(&rule, steps);
@@ -39,7 +39,7 @@ fn rule(name: &str, steps: u32) -> Vec<[DVec2; 2]> {
         .collect()
 }
 
-/// A complex product.
+/// Returns a complex product.
 fn times(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
@@ -48,7 +48,8 @@ fn conjugate(z: DVec2) -> DVec2 {
     DVec2::new(z.x, -z.y)
 }
 
-/// The similarity that takes two points to two others is applied to all points.
+/// Asserts that the similarity that takes the ends of one list of points to those of another takes all
+/// points.
 fn assert_similar(what: &str, ours: &[DVec2], others: &[DVec2]) {
     assert_eq!(ours.len(), others.len(), "{what}");
     let chord = |points: &[DVec2]| points[points.len() - 1] - points[0];
@@ -82,7 +83,7 @@ fn curves_agree_with_their_rules() {
     }
 }
 
-/// A rule's element is a cell, whose cup the L-system draws in its next step.
+/// The element of the rule is a cell, whose cup the L-system draws a step later.
 #[test]
 fn the_hilbert_curve_agrees_a_step_later() {
     let hilbert = resolved(&document("hilbert"), &[]);

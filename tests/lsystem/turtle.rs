@@ -1,4 +1,4 @@
-//! What the turtle does.
+//! Actions of the turtle.
 
 use kfrac::geometry::DVec2;
 use kfrac::lsystem::{Drawing, Placed};
@@ -7,7 +7,7 @@ use kfrac::style::{ColorBy, Palette};
 
 use super::{MOST, system};
 
-/// What an axiom draws, with more keys.
+/// Returns the drawing of an axiom, with additional keys in the file.
 fn drawn(axiom: &str, more: &str) -> Drawing {
     let system = system(&format!("axiom: \"{axiom}\"\nproductions: {{}}\n{more}"));
     system.draw(&system.word(0, 0, MOST).unwrap())
@@ -38,7 +38,7 @@ fn a_word_outlines_a_plus_sign() {
     assert!(!joined[0] && joined[1..].iter().all(|joined| *joined));
 }
 
-/// 4999 turns by a sixth or a seventh of a whole one are as good as one.
+/// 4999 turns by a sixth or a seventh of a full turn equal one such turn exactly.
 #[test]
 fn headings_stay_exact() {
     for (angle, turns) in [
@@ -115,7 +115,7 @@ fn a_symbol_may_do_several_things_with_its_arguments() {
     assert_eq!(all, [[[0.0, 0.0], [0.0, 2.0]], [[0.0, 0.0], [0.0, 3.0]]]);
 }
 
-/// The leaf of figure 1.25: a hexagon that closes itself; what is in a polygon draws no lines.
+/// The leaf of figure 1.25 is a hexagon that closes itself; inside a polygon no lines are drawn.
 #[test]
 fn polygons_are_filled() {
     let drawing = drawn("F{-f+f+f-|-f+f+f}F[+{F+F+F}]", "angle: 60\n");
@@ -133,7 +133,7 @@ fn polygons_are_filled() {
     assert_eq!(polygons[0].frame.map.translation, DVec2::X);
 }
 
-/// Equal polygons share an outline, wherever they stand and however large they are.
+/// Equal polygons share an outline, regardless of their frames.
 #[test]
 fn equal_polygons_are_one() {
     let word = "{f+f+f}f+S{f+f+f}R{f+f+f}[{ff+f+f}]";
@@ -164,7 +164,7 @@ fn what_has_no_extent_is_no_element() {
     assert_eq!(drawing.elements.len(), 1);
 }
 
-/// Colours are those of the palette, beginning again behind the last, and the file is drawn by them.
+/// Colours are those of the palette, with indices that wrap around, and the file is drawn with them.
 #[test]
 fn colours_are_those_of_the_palette() {
     let drawn = |palette: &str| {
@@ -188,7 +188,7 @@ fn colours_are_those_of_the_palette() {
     );
 }
 
-/// A symbol that means a whole polygon is another one than the next.
+/// A symbol whose meaning is a whole polygon differs from another such symbol.
 #[test]
 fn polygons_of_one_symbol_are_told_apart() {
     let outline = |corners: u16| {

@@ -5,8 +5,8 @@ use std::f64::consts::{PI, SQRT_2};
 type Count = fn(u32) -> u64;
 type Measure = fn(i32) -> f64;
 
-/// What is known of a rule of the reference for every n: the number of elements, their total
-/// length, and the area that its outlines enclose where all of them are closed.
+/// Closed forms for a rule of the reference: its identifier, the number of elements, their total length, and
+/// the area that its outlines enclose where all of them are closed.
 pub(crate) type ClosedForm = (&'static str, Count, Measure, Option<Measure>);
 
 fn sqrt3() -> f64 {
@@ -17,18 +17,18 @@ fn phi() -> f64 {
     (1.0 + 5f64.sqrt()) / 2.0
 }
 
-/// The area of a regular polygon of side 1.
+/// Returns the area of a regular polygon of side 1.
 fn polygon(corners: f64) -> f64 {
     corners / (4.0 * (PI / corners).tan())
 }
 
-/// 1 + q + … + q^(n − 1).
+/// Returns 1 + q + … + q^(n − 1).
 fn sum(q: f64, n: i32) -> f64 {
     (0..n).map(|k| q.powi(k)).sum()
 }
 
-/// A tree whose two branches are q times as long as the side that they stand on, on a trunk of two
-/// sides that stay.
+/// Returns the length of a tree whose two branches are q times as long as the side that they grow on, on a
+/// trunk of two sides that are kept.
 fn tree(q: f64, n: i32) -> f64 {
     q.powi(n) + 2.0 * sum(q, n)
 }
@@ -37,8 +37,8 @@ fn tree_count(n: u32) -> u64 {
     3 * 2u64.pow(n) - 2
 }
 
-/// The reference gives these; the area of a set of polygons is the sum of theirs, and that of the
-/// self-seeding squares adds, for every side that seeds, a square of a third.
+/// Closed forms of the reference. The area of a set of polygons is the sum of theirs, and that of the
+/// self-seeding squares increases, for every side that seeds, by a square of side 1/3.
 pub(crate) const CLOSED_FORMS: &[ClosedForm] = &[
     (
         "kaandorp_fig1_quadric_koch",
@@ -273,8 +273,8 @@ pub(crate) const CLOSED_FORMS: &[ClosedForm] = &[
         |n| sum(2.0, n + 1),
         Some(|n| f64::from(n + 1)),
     ),
-    // Each of the two sides has a triangle of 1/4 on its left at n = 1; what n adds from there on is
-    // added and taken away.
+    // Each of the two sides has a triangle of 1/4 on its left at n = 1; later steps add and subtract equal
+    // areas.
     (
         "twindragon",
         |n| 2 * 2u64.pow(n),

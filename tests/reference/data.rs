@@ -1,5 +1,5 @@
-//! The reference's facts as `rules.json` holds them. They were computed without kfrac, from exact
-//! expressions, and are given here as doubles.
+//! The facts of the reference, from `rules.json`. They were computed independently of kfrac from exact
+//! expressions, and are given as doubles.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use crate::common;
 
-/// Everything that is known.
+/// The whole reference.
 #[derive(Deserialize)]
 pub(crate) struct Reference {
     /// Sequences of turns, by name.
@@ -19,12 +19,13 @@ pub(crate) struct Reference {
     pub(crate) rules: Vec<Entry>,
 }
 
-/// A rule.
+/// A rule of the reference.
 #[derive(Deserialize)]
 pub(crate) struct Entry {
     pub(crate) id: String,
-    /// The rule of the library that it is, and the parameters to set.
+    /// Name of the library's rule.
     rule: String,
+    /// Parameters to set.
     set: BTreeMap<String, f64>,
     pub(crate) connected: bool,
     /// Whether the initiator is closed.
@@ -46,8 +47,8 @@ pub(crate) struct Polygon {
     pub(crate) points: Vec<[f64; 2]>,
 }
 
-/// An element as listed: from x, from y, to x, to y, direction, whether it is fertile (0 or 1),
-/// part (0: it stays; k: it belongs to the seed k).
+/// An element as listed: from x, from y, to x, to y, direction, whether it is fertile (0 or 1), and part (0
+/// if it does not seed, k for the k-th seed part).
 #[derive(Clone, Copy, Deserialize)]
 pub(crate) struct Listed(
     pub(crate) f64,
@@ -65,7 +66,7 @@ impl Listed {
     }
 }
 
-/// What is known of approximant n.
+/// Facts about approximant n.
 #[derive(Deserialize)]
 pub(crate) struct Step {
     pub(crate) n: u32,
@@ -73,9 +74,9 @@ pub(crate) struct Step {
     pub(crate) fertile: u64,
     pub(crate) fractals: Option<u64>,
     pub(crate) length: f64,
-    /// Of the elements' end points: least x and y, largest x and y.
+    /// Bounds of the elements' end points: least x and y, largest x and y.
     pub(crate) bbox: [f64; 4],
-    /// Of the base elements where it differs.
+    /// Bounds of the base elements where they differ.
     pub(crate) base_bbox: Option<[f64; 4]>,
 }
 
@@ -87,12 +88,12 @@ pub(crate) struct Counts {
 }
 
 impl Entry {
-    /// The name of the library's rule.
+    /// Returns the name of the library's rule.
     pub(crate) fn rule_name(&self) -> &str {
         &self.rule
     }
 
-    /// The library's rule.
+    /// Returns the library's rule, with the parameters set.
     pub(crate) fn rule(&self) -> Arc<Rule> {
         let settings = self.set.iter().map(|(name, &value)| Setting {
             name: name.clone(),
@@ -103,12 +104,12 @@ impl Entry {
         common::resolved(&common::document(&self.rule), &settings.collect::<Vec<_>>())
     }
 
-    /// Its graph.
+    /// Returns the rule's graph for a number of steps.
     pub(crate) fn graph(&self, steps: u32) -> Graph {
         common::compiled(&self.rule(), steps)
     }
 
-    /// Whether places depend on draws, so that the reference fixes the counts only.
+    /// Returns whether positions depend on draws, so that the reference fixes the counts only.
     pub(crate) fn is_random(&self) -> bool {
         self.rule().is_random()
     }

@@ -1,4 +1,4 @@
-//! Rules with random functions: the reference fixes what does not depend on the draws.
+//! Rules with random functions: the reference fixes the facts that do not depend on draws.
 
 use kfrac::document::Setting;
 use kfrac::graph::Count;

@@ -1,5 +1,5 @@
-//! A rule that no paper has, with what the reference's rules have only one at a time: three
-//! generators by index, all directions, infertile elements, and several seeds of an element.
+//! An artificial rule that combines the features of the reference's rules: three generators by index, all
+//! directions, infertile elements, and several seeds of an element.
 
 use kfrac::grow::Growth;
 
@@ -26,7 +26,7 @@ generators:
 select: {by_index: [bend, sow, stop]}
 ";
 
-/// The same as data.
+/// The rule as an entry of the reference.
 const DATA: &str = r#"{
   "id": "invented", "rule": "", "set": {}, "connected": true, "closed": false, "by_index": true,
   "dimension": null, "base_element": {"closed": false, "points": [[0, 0], [1, 0]]},

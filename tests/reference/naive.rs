@@ -1,5 +1,5 @@
-//! A second engine, after Kaandorp's algorithm: lists of elements that are replaced step by step,
-//! with no graph. It knows the reference's data and nothing of kfrac.
+//! A second engine, after Kaandorp's algorithm: lists of elements are replaced step by step, without a graph.
+//! It uses the data of the reference and no code of kfrac.
 
 use crate::data::{Entry, Listed};
 
@@ -14,18 +14,18 @@ pub(crate) struct Placed {
     pub(crate) fertile: bool,
 }
 
-/// A fractal and those that it has seeded, in the order of their birth.
+/// A fractal and the fractals that it has seeded, in the order of their birth.
 pub(crate) struct Tree {
     pub(crate) born: u32,
     pub(crate) elements: Vec<Placed>,
     seeds: Vec<Tree>,
 }
 
-/// The product of directions.
+/// Products of directions.
 const PRODUCT: [[u8; 4]; 4] = [[1, 2, 3, 4], [2, 1, 4, 3], [3, 4, 1, 2], [4, 3, 2, 1]];
 
 impl Placed {
-    /// M(z) = p0 + (p1 − p0)·τ(z).
+    /// Returns the image of a point: M(z) = p0 + (p1 − p0)·τ(z).
     pub(crate) fn map(&self, [x, y]: Point) -> Point {
         let [x, y] = match self.direction {
             1 => [x, y],
@@ -42,7 +42,7 @@ impl Placed {
         self.direction > 2
     }
 
-    /// The elements of a list in this element's place, in order of traversal.
+    /// Returns the elements of a list in the place of this element, in order of traversal.
     fn replaced<'a>(&self, list: impl Iterator<Item = &'a Listed>) -> Vec<Self> {
         let child = |listed: &Listed| {
             let mut ends = [[listed.0, listed.1], [listed.2, listed.3]].map(|end| self.map(end));
@@ -106,7 +106,7 @@ impl Tree {
     }
 }
 
-/// The fractals of an approximant, in the order of the walk.
+/// Returns the fractals of an approximant, in the order of the walk.
 pub(crate) fn grow(entry: &Entry, steps: u32) -> Vec<Tree> {
     let unit = Placed {
         ends: [[0.0, 0.0], [1.0, 0.0]],

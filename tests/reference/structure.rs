@@ -1,4 +1,4 @@
-//! What the rules list, and how it is connected.
+//! The listed elements of rules, and their connection.
 
 use std::collections::BTreeSet;
 
@@ -125,7 +125,7 @@ fn elements_of_a_connected_rule_share_their_end_points() {
                         k + 2
                     );
                 }
-                // What a seed of the library's rules starts is closed, too.
+                // The fractals seeded by the library's rules are closed, too.
                 let (first, last) = (&grown.elements[0], grown.elements.last().unwrap());
                 assert_eq!(grown.is_ring, joins && entry.closed, "{what}");
                 assert_eq!(first.joined, joins && entry.closed, "{what}");

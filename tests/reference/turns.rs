@@ -6,7 +6,7 @@ use crate::common::grown;
 use crate::data::reference;
 use crate::elements;
 
-/// Whether the path turns left, from element to element.
+/// Returns for each element of the path, except the first, whether the path turns left there.
 fn left_turns(id: &str, steps: u32) -> Vec<bool> {
     let reference = reference();
     let entry = reference.rules.iter().find(|entry| entry.id == id).unwrap();
