@@ -1,4 +1,4 @@
-//! Names, folders, devices and pipes that are not as one would wish.
+//! Unusual names, folders, devices and pipes.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
@@ -25,7 +25,7 @@ fn kfrac(folder: &Path) -> Command {
     command
 }
 
-/// Exit status and standard error.
+/// Returns exit status and standard error.
 fn ended(output: &Output) -> (Option<i32>, String) {
     let said = String::from_utf8(output.stderr.clone()).unwrap();
     (output.status.code(), said)
@@ -48,7 +48,7 @@ fn bytes(name: &[u8]) -> &OsStr {
     OsStr::from_bytes(name)
 }
 
-/// File systems that take no such names have no such trouble.
+/// File systems that refuse such names are not affected.
 #[cfg(target_os = "linux")]
 #[test]
 fn names_of_files_need_not_be_text() {
@@ -60,7 +60,7 @@ fn names_of_files_need_not_be_text() {
     fs::write(own.join("base.yaml"), RULE).unwrap();
     fs::write(own.join("bent.yaml"), "extends: base.yaml\n").unwrap();
 
-    // The picture is called after the rule, to the byte.
+    // The picture has the name of the rule, to the byte.
     let grown = kfrac(folder.path())
         .args([OsStr::new("grow"), rule])
         .output();
@@ -73,7 +73,7 @@ fn names_of_files_need_not_be_text() {
     let picture = fs::read_to_string(folder.path().join(bytes(b"k\xff.svg"))).unwrap();
     assert!(picture.contains("# kfrac grow 'k\u{fffd}.yaml' --steps=7"));
 
-    // A folder of one's own, a parent beside the file, an output.
+    // A folder of the user's, a parent beside the file, an output.
     let from_own = kfrac(folder.path())
         .args([
             OsStr::new("grow"),

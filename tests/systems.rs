@@ -1,5 +1,5 @@
-//! Iterated function systems from the file to the elements: held against the reference's maps, fixed
-//! points and dimensions, and against images that are worked out here, without a graph.
+//! Iterated function systems from the file to the elements, against the reference's maps, fixed points and
+//! dimensions, and against images computed here without a graph.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -39,7 +39,7 @@ fn read(source: &Arc<Source>) -> Result<(Arc<System>, Diagnostics), Diagnostics>
     Ok((system, doubts))
 }
 
-/// A system that is written in a test.
+/// Returns a system from text.
 #[track_caller]
 fn system(text: &str) -> Arc<System> {
     let source = Source::new("test.yaml", format!("kind: ifs\n{text}"));
@@ -48,7 +48,7 @@ fn system(text: &str) -> Arc<System> {
     system
 }
 
-/// All systems of the library, by name.
+/// Returns all systems of the library, with their names.
 fn library() -> Vec<(String, Arc<System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
@@ -66,7 +66,7 @@ fn named(name: &str) -> Arc<System> {
     system
 }
 
-/// The elements of an approximant.
+/// Returns the elements of an approximant.
 fn elements(graph: &Graph, steps: u32) -> Vec<Element> {
     struct All(Vec<Element>);
     impl Visitor for All {
@@ -87,7 +87,7 @@ fn elements(graph: &Graph, steps: u32) -> Vec<Element> {
     all.0
 }
 
-/// Those of them that are visible.
+/// Returns the visible elements of an approximant.
 fn drawn(graph: &Graph, steps: u32) -> Vec<Element> {
     let mut all = elements(graph, steps);
     all.retain(|element| graph.objects()[element.object].visible);
@@ -98,14 +98,15 @@ fn maps(system: &System) -> Vec<DAffine2> {
     system.ifs().maps().iter().map(|map| map.affine).collect()
 }
 
-/// All products of so many maps that the digraph admits, the map that is applied last first.
+/// Returns all products of `length` maps that the digraph admits, with the index of the map that is applied
+/// last.
 fn products(system: &System, length: u32) -> Vec<(usize, DAffine2)> {
     let maps = maps(system);
     let follows = |from: usize, to: usize| match system.ifs().edges() {
         Some(mut edges) => edges.any(|(edge, _)| (edge.from, edge.to) == (from, to)),
         None => true,
     };
-    // Each with the map that was applied last.
+    // Each product with the map that was applied last.
     let mut all: Vec<(usize, DAffine2)> = maps.iter().copied().enumerate().collect();
     for _ in 1..length {
         all = all
@@ -145,7 +146,7 @@ fn the_library_is_held_against_the_reference() {
         for (map, expected) in maps(&system).iter().zip(&entry.maps) {
             let [a, b, c, d, e, f] = *expected;
             let size = 1e-12 * (1.0 + map.translation.length());
-            // What lies on a line is there given along the line only.
+            // A system on a line is given along the line only.
             let line = entry
                 .maps
                 .iter()
@@ -199,7 +200,7 @@ fn approximants_are_the_images_under_all_products() {
     }
 }
 
-/// An edge from 1 to 2 says that map 2 may be applied after map 1.
+/// An edge from 1 to 2 means that map 2 may be applied after map 1.
 #[test]
 fn an_edge_leads_from_what_is_applied_before() {
     let system = system(
@@ -219,7 +220,7 @@ fn an_edge_leads_from_what_is_applied_before() {
     assert!(!all.contains(&(maps[0] * maps[1])));
 }
 
-/// Boxes of limit sets that are known in closed form.
+/// Limit sets with bounds in closed form.
 #[test]
 fn limit_sets_have_their_boxes() {
     let third = 3f64.sqrt() / 6.0;
@@ -248,7 +249,7 @@ fn limit_sets_have_their_boxes() {
     }
 }
 
-/// Images of a point of the limit set, under as many products as there is time for.
+/// The bounds are compared with images of a point of the limit set, under as many products as time permits.
 #[test]
 fn limit_boxes_hold_the_orbits_and_no_more() {
     for (name, system) in library() {
@@ -324,7 +325,7 @@ fn condensation_sets_are_drawn_at_every_level() {
             }
         }
     }
-    // Of two sets without an initial set, both are there from the beginning.
+    // Without an initial set, both condensation sets exist from the beginning.
     let graph = Graph::of_system(&named("tree-libeskind-hadas"));
     let counts = [0, 1, 2].map(|steps| drawn(&graph, steps).len());
     assert_eq!(counts, [2, 8, 26]);
@@ -348,7 +349,8 @@ fn elements_tell_their_first_and_last_maps() {
     assert_eq!(plain.bounds(4), graph.bounds(4));
 }
 
-/// Every map stands inside every map, for every map that is applied last.
+/// A graph that distinguishes the map applied last is refused for many maps: it has an instance of every map
+/// inside every map, for every last map.
 #[test]
 fn many_maps_are_not_told_apart() {
     let maps = "{scale: 1/2}, ".repeat(200);
@@ -388,7 +390,7 @@ fn tables_have_the_maps_of_elements() {
     );
 }
 
-/// Where colours tell ranks, nothing is left out of the walk; the picture is the same.
+/// With colours by index no element is skipped; the picture is the same.
 #[test]
 fn what_is_left_out_beside_a_window_is_not_seen() {
     for (name, window, steps) in [
@@ -449,7 +451,7 @@ fn points_may_be_in_a_file() {
     );
 }
 
-/// What is written in several ways is one map.
+/// Different notations give equal maps.
 #[test]
 fn maps_may_be_written_in_several_ways() {
     let system = system(
@@ -468,8 +470,8 @@ fn maps_may_be_written_in_several_ways() {
     assert_eq!(image, DVec2::new(1.0, 0.5));
 }
 
-/// The best norm for these maps has a square for its unit disk, which only long products tell from an
-/// ellipse: hulls tell more of them.
+/// The unit disc of the best norm for these maps is a square, which only long products distinguish from an
+/// ellipse: convex hulls decide where products do not.
 #[test]
 fn what_is_not_decided_is_said() {
     let maps = "maps:\n  - {matrix: [[s, s], [0, 0]]}\n  \
@@ -496,7 +498,7 @@ fn what_overlaps_too_much_to_be_grown_can_be_drawn_at_random() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("full.yaml"), text).unwrap();
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
-    // Cells draw it, by some thousand lines and dots.
+    // The system is drawn by cells, as some thousand lines and dots.
     let arguments = "grow full.yaml --max-elements 1000 -o full.png";
     let output = command
         .current_dir(&folder)
@@ -507,7 +509,7 @@ fn what_overlaps_too_much_to_be_grown_can_be_drawn_at_random() {
     assert!(said.contains("--method chaos --points 10M"), "{said}");
 }
 
-/// The status of the program, its output, and what it says beside that.
+/// Returns the status of the program, its standard output, and its standard error.
 fn kfrac(arguments: &[&str]) -> (Option<i32>, String, String) {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_kfrac"));
     let output = command.args(arguments).output().unwrap();
@@ -573,7 +575,7 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     assert_eq!(info["contraction"]["contracts"], true);
 }
 
-/// A complex parameter is two real ones, which maps take together.
+/// A complex parameter is a pair of real ones, which maps use together.
 #[test]
 fn parameters_may_be_complex() {
     let written = system(

@@ -47,7 +47,7 @@ impl Session {
         }
     }
 
-    /// Reads on; `false` once nobody writes to the terminal any more.
+    /// Reads further output; returns `false` once no process can write to the terminal.
     fn read(&mut self) -> bool {
         let mut bytes = [0; 4096];
         match self.terminal.read(&mut bytes) {
@@ -59,14 +59,14 @@ impl Session {
         }
     }
 
-    /// What the terminal received, and the exit status.
+    /// Returns the terminal's output, and the exit status.
     fn end(mut self) -> (String, Option<i32>) {
         while self.read() {}
         (self.seen, self.child.wait().unwrap().code())
     }
 }
 
-/// All that a terminal receives from a command that fails in an empty folder.
+/// Returns the terminal's output of a command that fails in an empty folder.
 fn complaint(arguments: &[&str], environment: &[(&str, &str)]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let (seen, status) = Session::start(folder.path(), arguments, environment).end();

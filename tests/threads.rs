@@ -1,4 +1,4 @@
-//! Many threads make what one makes, to the last bit.
+//! Many threads give the results of one, to the last bit.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -30,13 +30,13 @@ fn threads(number: usize) -> NonZero<usize> {
     NonZero::new(number).unwrap()
 }
 
-/// Everything that a walk tells, to the last bit.
+/// A visitor that records everything that a walk reports, to the last bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     takes_runs: bool,
-    /// The length below which nothing is replaced; a little more is not visited on one side.
+    /// Length below which nothing is replaced; elements on one side are skipped up to a larger length.
     cuts: Option<f64>,
-    /// Whether the first fractal had begun before.
+    /// Whether the first fractal began in an earlier span.
     goes_on: bool,
     fractals: Vec<(Fractal, Vec<Place>, bool)>,
 }
@@ -106,7 +106,7 @@ impl Visitor for Seen {
 }
 
 impl Seen {
-    /// Adds what has been seen of the next span.
+    /// Appends the record of the next span.
     fn add(&mut self, span: Self, seam: Seam) {
         let mut fractals = span.fractals.into_iter();
         if span.goes_on {
@@ -134,7 +134,7 @@ fn in_spans(
     none: &Seen,
 ) -> Seen {
     let mut all = none.clone();
-    // A visitor that sees everything goes on where it has been.
+    // A visitor that sees everything continues where it was.
     let mut whole = false;
     let walked = walk_in_spans(
         graph,
@@ -163,7 +163,7 @@ fn in_spans(
     all
 }
 
-/// Holds walks in spans of all sizes against one that is not divided.
+/// Asserts that walks in spans of all sizes agree with one that is not divided.
 fn spans_agree(graph: &Graph, growth: &Growth<'_>, sizes: &[Option<u64>]) {
     for (takes_runs, cuts) in [(false, None), (true, None), (false, Some(0.04))] {
         let none = Seen {
@@ -183,7 +183,7 @@ fn spans_agree(graph: &Graph, growth: &Growth<'_>, sizes: &[Option<u64>]) {
     }
 }
 
-/// Holds what is counted against what is seen element by element.
+/// Asserts that counts agree with elements counted one by one.
 fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
     let counted = count(graph, growth, threads(1)).unwrap();
     assert_eq!(count(graph, growth, threads(3)).unwrap(), counted);
@@ -204,7 +204,8 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
     }
 }
 
-/// All of the library that can be grown, for a step of no more than so many elements.
+/// Iterates over all fractals of the library with their graphs, at the deepest step within a limit of
+/// elements.
 fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
     let catalogue = Catalogue::embedded();
     let mut entries = catalogue.entries();
@@ -220,7 +221,7 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
             let most = (20 * most_elements / pieces).min(most_elements);
             match graph.check_size(steps, most) {
                 Ok(Some(_)) => Some((graph, steps)),
-                // Draws decide.
+                // The draws decide the counts.
                 Ok(None) => {
                     let steps = model.heading().steps.unwrap_or(4);
                     Some((compile(steps)?, steps))
@@ -276,7 +277,7 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
         let mut by_index = own.clone();
         by_index.style.color_by = ColorBy::Index;
         let mut pictures = PICTURES.map(|format| (format, &own)).to_vec();
-        // A walk for every colour: some rules will do.
+        // Every colour takes a walk: some of the rules suffice.
         if number % 5 == 0 {
             pictures.push((render::Format::Svg, &by_index));
         }
@@ -335,12 +336,12 @@ fn limits_and_failures_are_met_on_any_number_of_threads() {
             },
         );
         assert_eq!(failed, Err(WalkError::Visitor("here")));
-        // In order: what comes before is taken, what comes after is not.
+        // In order: results before the error are taken, later ones are not.
         assert_eq!(taken, 0);
     }
 }
 
-/// Fails in every span.
+/// A visitor that fails in every span.
 struct Fails {
     seen: u64,
 }
@@ -412,7 +413,7 @@ proptest! {
         counts_agree(&graph, &growth);
     }
 
-    /// Seams in the middle of paths, of rules of all kinds.
+    /// Seams fall into the middle of paths, in rules of all kinds.
     #[test]
     fn files_do_not_depend_on_the_number_of_threads(text in rules::rule(Features::ALL), seed in 0..3u64) {
         let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();

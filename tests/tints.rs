@@ -1,4 +1,4 @@
-//! Tints of structures: what the pictures show is what the equations of Hart 1992, section 5, say.
+//! Tints of structures: pictures agree with the equations of Hart 1992, section 5.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -32,13 +32,13 @@ fn model(text: &str) -> Model {
     document_of(text).resolve(&[]).unwrap().0
 }
 
-/// What follows each mark up to the next quotation mark.
+/// Returns the text after each mark up to the next quotation mark.
 fn values<'t>(text: &'t str, mark: &str) -> Vec<&'t str> {
     let after = text.split(mark).skip(1);
     after.map(|rest| rest.split('"').next().unwrap()).collect()
 }
 
-/// A square that is tinted twice on one way, once on another and not at all on a third.
+/// A square that is tinted twice on one path, once on another and not at all on a third.
 const SQUARES: &str = "kind: instancing
 objects:
   square: [{polygon: [[0, 0], [1, 0], [1, 1], [0, 1]], tint: {color: lime, alpha: 0.5}}]
@@ -54,7 +54,7 @@ steps: 2
 style: {stroke: \"#404040\", fill: none}
 ";
 
-/// c and α by the paper's equations, from the outermost tint to the innermost, which is opaque.
+/// Returns c and α by the paper's equations, from the outermost tint to the innermost, which is opaque.
 fn composed(tints: &[([f64; 3], f64)]) -> String {
     let (mut colour, mut alpha) = ([0.0; 3], 0.0);
     for (own, weight) in tints {
@@ -103,13 +103,13 @@ fn colours_that_are_asked_for_are_not_tinted() {
     let written = model(&written);
     assert_eq!(written.heading().style.color_by, ColorBy::None);
     assert_eq!(svg(&written, 2), plain);
-    // Without tints there is nothing to draw by.
+    // Without tints there are no colours to draw by.
     let bare = model("kind: instancing\nobjects: {a: [{point: [0, 0]}]}\nscene: [a]\n");
     assert_eq!(bare.heading().style.color_by, ColorBy::None);
 }
 
-/// Elements come by blocks where nothing is cut, one by one where a detail cuts, and from spans on
-/// several threads.
+/// Elements arrive in blocks where nothing is cut, one by one where a detail cuts, and from spans on several
+/// threads.
 #[test]
 fn however_a_structure_is_walked_its_colours_are_the_same() {
     for name in ["pound-sign-tinted", "ternary-tree-levels"] {
@@ -142,7 +142,7 @@ fn however_a_structure_is_walked_its_colours_are_the_same() {
     }
 }
 
-/// Hart's figure 5 in the plane: the colour of a quadrant is that of the instance that it is.
+/// Hart's figure 5 in the plane: the colour of a quadrant is that of its instance.
 #[test]
 fn the_pound_sign_has_a_colour_for_every_quadrant() {
     let model = document("pound-sign-tinted").resolve(&[]).unwrap().0;

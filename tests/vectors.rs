@@ -1,5 +1,4 @@
-//! What other programs read in our vector graphics, SVG, PDF and DXF, as they are and as plots, and in
-//! tables.
+//! Vector graphics in SVG, PDF and DXF, pictures and plots, and tables, as other programs read them.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -22,7 +21,7 @@ use kfrac::render::{self, Format, Options, Picture, Size, Unit};
 use kfrac::rule::Rule;
 use kfrac::style::{Style, Width};
 
-/// A rule of the library.
+/// Returns a rule of the library.
 fn library(name: &str) -> Arc<Rule> {
     common::document(name)
         .resolve(&[])
@@ -32,12 +31,12 @@ fn library(name: &str) -> Arc<Rule> {
         .unwrap()
 }
 
-/// A rule that is written in a test.
+/// Returns a rule from text.
 fn written(text: &str) -> Arc<Rule> {
     common::resolved(&common::document_of(text), &[])
 }
 
-/// A picture of one colour and its bytes.
+/// Draws a rule in one colour; returns the picture and its bytes.
 fn draw(rule: &Arc<Rule>, steps: u32, change: impl FnOnce(&mut Options)) -> (Picture, Vec<u8>) {
     let graph = Graph::compile(rule, steps).unwrap();
     let mut options = Options {
@@ -54,7 +53,7 @@ fn draw(rule: &Arc<Rule>, steps: u32, change: impl FnOnce(&mut Options)) -> (Pic
     (picture, bytes)
 }
 
-/// A plot, 200 mm on the long side.
+/// Plots a rule, 200 mm on the long side.
 fn plot(rule: &Arc<Rule>, steps: u32, format: Format) -> (Picture, Vec<u8>) {
     draw(rule, steps, |options| {
         options.format = format;
@@ -64,12 +63,12 @@ fn plot(rule: &Arc<Rule>, steps: u32, format: Format) -> (Picture, Vec<u8>) {
     })
 }
 
-/// A stroke that has been read: its vertices in millimetres, y down, and whether it is closed.
+/// A stroke as read: its vertices in millimetres, y down, and whether it is closed.
 #[derive(Clone, Debug, Default)]
 struct Read {
     vertices: Vec<[f64; 2]>,
     closed: bool,
-    /// What is said of its colour.
+    /// Colour of the stroke as text.
     ink: String,
 }
 
@@ -89,7 +88,7 @@ fn total(strokes: &[Read]) -> f64 {
     strokes.iter().flat_map(Read::edges).map(length).sum()
 }
 
-/// The box of all vertices: least x and y, greatest x and y.
+/// Returns the bounds of all vertices: least x and y, greatest x and y.
 fn bounds(strokes: &[Read]) -> [f64; 4] {
     let mut bounds = [f64::INFINITY, f64::INFINITY, -f64::INFINITY, -f64::INFINITY];
     for [x, y] in strokes.iter().flat_map(|stroke| &stroke.vertices) {

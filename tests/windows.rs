@@ -1,4 +1,4 @@
-//! Windows are cut out of what is drawn as a whole.
+//! Windows are details of the whole picture.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -10,7 +10,7 @@ use kfrac::render::{self, Detail, Format, Options, Size};
 use kfrac::style::{ColorBy, View};
 use resvg::tiny_skia::Pixmap;
 
-/// However little of it is visited, a window shows what the whole picture does there.
+/// A window shows that part of the whole picture although little is visited.
 #[test]
 fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
     for (name, steps, pixels) in [

@@ -1,4 +1,4 @@
-//! Zooming without end: what lies in a window is what exact arithmetic says, at any depth.
+//! Unlimited zooms: windows agree with exact arithmetic, at any depth.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -25,8 +25,9 @@ use kfrac::rule::draw::Path;
 use kfrac::rule::{Moment, Rule};
 use kfrac::zoom::{Growth, Source, Window, ZoomError, zoom};
 
-/// The picture's side in pixels, and the length of the unit frame at a zoom of 1.
+/// Side of the picture, in pixels.
 const SIDE: u32 = 512;
+/// Length of the unit frame at a zoom of 1, in pixels.
 const SCALE: f64 = 512.0;
 
 fn model(document: &Document) -> Model {
@@ -67,11 +68,11 @@ fn window(factor: &str, at: &str) -> Window {
     }
 }
 
-/// Elements down to a length that may reach into a square about the middle.
+/// A visitor that collects elements down to a length that may reach into a square about the middle.
 struct Seen {
     half: f64,
     shortest: f64,
-    /// From the walk's units to pixels about the middle.
+    /// Map from the walk's units to pixels about the middle.
     place: DAffine2,
     reaches: Vec<f64>,
     middle: DVec2,
@@ -99,7 +100,7 @@ impl Seen {
         seen
     }
 
-    /// Where it is not known how far things reach, they are taken to reach far.
+    /// Limits reaches that are unknown and assumed to be large.
     fn within_likely_reaches(mut self) -> Self {
         for reach in &mut self.reaches {
             *reach = reach.min(100.0);
@@ -143,7 +144,7 @@ impl Visitor for Seen {
     }
 }
 
-/// The elements in the window, in pixels from its middle.
+/// Returns the elements in the window, in pixels from its middle.
 fn zoomed(of: &(Document, Model), graph: &Graph, window: &Window, seed: u64) -> Seen {
     let source = source(of);
     let growth = Growth {
@@ -158,10 +159,10 @@ fn zoomed(of: &(Document, Model), graph: &Graph, window: &Window, seed: u64) -> 
     Seen::of(&found.graph, &growth, DAffine2::IDENTITY, SHORTEST)
 }
 
-/// The square root of 2, to more digits than its powers below need.
+/// The square root of 2, with more digits than its powers below need.
 const ROOT: &str = "1.4142135623730950488016887242096980785696718753769480731766797379907";
 
-/// Elements shorter than this many pixels are not replaced.
+/// Length in pixels below which elements are not replaced.
 const SHORTEST: f64 = 5.17;
 
 /// Elements by the pixel that they start in.
@@ -177,7 +178,7 @@ impl Places {
         Self(places)
     }
 
-    /// Whether an element stands here, give or take some part of a pixel.
+    /// Returns whether an element has this map, within a tolerance in pixels.
     fn hold(&self, map: &DAffine2, off: f64) -> bool {
         let [x, y] = cell(map.translation);
         let around = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| [x, y]));
@@ -200,7 +201,7 @@ fn cell(point: DVec2) -> [i64; 2] {
     [point.x, point.y].map(|it| it.floor() as i64)
 }
 
-/// All elements well inside of one window are in another that is turned, and the reverse.
+/// Asserts that all elements well inside one window are in another, rotated one, and conversely.
 fn assert_same(a: &Seen, b: &Seen, turn: &DAffine2, off: f64, what: &str) {
     let near = |element: &&Element| {
         let middle = element.frame.map.transform_point2(a.middle);
@@ -226,8 +227,8 @@ fn production(graph: &Graph, object: usize) -> &Production {
     }
 }
 
-/// The point in the middle is the fixed point of a child, away from the rest: zooming by the child's
-/// ratio to the power k shows the same for any k, turned and mirrored with it.
+/// The point in the middle is the fixed point of a child, away from the rest: zooms by the child's ratio to
+/// the power k show the same for any k, rotated and mirrored with it.
 #[test]
 fn fixed_points_look_the_same_at_any_depth() {
     let fern = "kind: ifs\nmaps:\n  - {scale: 4/5, rotate: 12, fixed: [1/3, 1/7]}\n  \
@@ -238,7 +239,7 @@ fn fixed_points_look_the_same_at_any_depth() {
     let trunks = "initiator: segment\ngenerator:\n  - [0, 0]\n  - {to: [0, 1], fertile: false}\n  \
                   - [1/3, 1]\n  - {to: [2/3, 1], fertile: false}\n  - [1, 1]\n  \
                   - {to: [1, 0], fertile: false}\n";
-    // The rule, the child, its ratio as written, the first power: the window is small enough then.
+    // The rule, the child, its ratio as written, and the first power, for which the window is small enough.
     let cases = [
         ("koch", library("koch"), 0, "3", 3),
         ("dragon", library("dragon"), 0, ROOT, 9),
@@ -260,7 +261,7 @@ fn fixed_points_look_the_same_at_any_depth() {
         for more in [1, 1999, 2000] {
             let factor = format!("{ratio}^{}", first + more);
             let deep = zoomed(&rule, &graph, &window(&factor, &at), 0);
-            // Angles of rounded turns would add up.
+            // Rounding errors of repeated rotations would accumulate.
             let mut turned = DAffine2::IDENTITY;
             for _ in 0..more {
                 turned = turn * turned;
@@ -280,7 +281,7 @@ fn fixed_points_look_the_same_at_any_depth() {
     }
 }
 
-/// The point that a way leads to, in doubles, and the seed's part in it.
+/// Returns the point that a path of positions leads to, in doubles.
 fn point(graph: &Graph, positions: &[usize]) -> DVec2 {
     let root = &graph.initiator(0).instances[positions[0]];
     let (mut map, mut object) = (root.frame.map, root.object);
@@ -294,18 +295,18 @@ fn point(graph: &Graph, positions: &[usize]) -> DVec2 {
     map.translation
 }
 
-/// Other points at every age, and other generators.
+/// A rule with different points at every age, and different generators.
 const AGES: &str = "initiator: segment\ngenerators:\n  \
                     a: [[0, 0], ['if(age % 3 == 0, 1/3, 1/4)', 1/(4 + age)], [1, 0]]\n  \
                     b: [[0, 0], [1/2, 'if(odd(step), -1/5, -1/6)'], {to: [1, 0], direction: 2}]\n\
                     select: [{when: step % 4 == 2, use: b}, {use: a}]\n";
 
-/// Other points for every third element.
+/// A rule with different points for every third element.
 const PLACES: &str = "initiator: segment\ngenerator:\n  \
                       [[0, 0], ['if(i % 3 == 1, 1/3, 1/5)', '1/(3 + i % 3)'], {to: [3/5, '(i % 3)/7'], direction: 3}, [1, 0]]\n";
 
-/// A zoom that doubles can hold shows what everything shows there that is grown the plain way, with
-/// births, lengths and directions.
+/// A zoom within the range of doubles shows the elements that plain growing shows there, with births, lengths
+/// and directions.
 #[test]
 fn shallow_zooms_are_windows_of_the_whole() {
     for (name, way) in [
@@ -355,7 +356,7 @@ fn shallow_zooms_are_windows_of_the_whole() {
     }
 }
 
-/// The same of a rule that draws: the seed, the path, the births and lengths are those of the whole.
+/// In a rule that draws numbers, the seed, paths, births and lengths of a zoom are those of the whole, too.
 #[test]
 fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
     let text = "initiator: segment\ngenerators:\n  a:\n    \
@@ -399,7 +400,7 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
     }
 }
 
-/// The point that a way into a random rule leads to, replacement by replacement.
+/// Returns the point that a path into a random rule leads to, replacement by replacement.
 fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
     let listed = &rule.initiator().elements[way[0] as usize];
     let [from, to] = [listed.from, listed.to].map(|point| rule.initiator_points()[point]);
@@ -424,7 +425,7 @@ fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
     frame.map.translation
 }
 
-/// Copies that stand in each other's place are one, however many there are.
+/// Copies with equal maps are drawn once, regardless of their number.
 #[test]
 fn exact_overlaps_are_met_once() {
     let map = |x: u32, y: u32| format!("  - {{scale: 1/3, shift: [{x}/3, {y}/3]}}\n");

@@ -1,4 +1,4 @@
-//! Disks that are full, and files that are not to be replaced.
+//! Full disks, and files that must not be replaced.
 
 use std::fs;
 use std::process::Command;
@@ -84,7 +84,7 @@ fn what_is_read_is_not_replaced() {
             "{arguments:?}"
         );
     }
-    // What standard input comes from is known where the system has names for it.
+    // The source of standard input is known where the system has names for it.
     #[cfg(target_os = "linux")]
     {
         let output = kfrac(path)
@@ -95,7 +95,7 @@ fn what_is_read_is_not_replaced() {
     }
     assert_eq!(fs::read_to_string(path.join("k.yaml")).unwrap(), RULE);
     assert_eq!(files(path), before);
-    // Another name is none of them.
+    // A different name is not affected.
     assert_eq!(
         run(path, &["grow", "k.yaml", "-q", "-o", "k.svg"]).0,
         Some(0)
@@ -140,7 +140,7 @@ fn what_may_have_no_end_is_not_read() {
             "{arguments:?}: {said}"
         );
     }
-    // What standard input is does not matter, and how long it is, is known soon.
+    // The kind of standard input does not matter, and a length beyond the limit is noticed early.
     for command in ["grow", "dim", "check"] {
         let zero = fs::File::open("/dev/zero").unwrap();
         let output = kfrac(folder.path())

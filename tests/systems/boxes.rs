@@ -1,4 +1,4 @@
-//! Boxes of systems that contract little, or by their products only, against other ways to find them.
+//! Bounds of systems that contract little, or by their products only, against other methods.
 
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::graph::Graph;
@@ -6,7 +6,7 @@ use kfrac::ifs::{Definition, Ifs, Map};
 
 use crate::system;
 
-/// Numbers from -1 to 1, by a linear congruence.
+/// A generator of pseudorandom numbers from −1 to 1, by a linear congruence.
 struct Numbers(u64);
 
 impl Numbers {
@@ -25,8 +25,8 @@ fn written(maps: &[DAffine2]) -> String {
     format!("maps:\n{}", lines.collect::<String>())
 }
 
-/// How far some point of the limit set is along a direction: of the maps that may come next, those are
-/// followed that lead farthest (beam search) to some points of the limit set.
+/// Returns the reach of the limit set along a direction, from below: a beam search follows the maps that lead
+/// farthest, and ends at known points of the limit set.
 fn reached(maps: &[DAffine2], points: &[DVec2], direction: DVec2) -> f64 {
     const FOLLOWED: usize = 400;
     let far = |vector: DVec2, offset: f64| {
@@ -50,7 +50,7 @@ fn reached(maps: &[DAffine2], points: &[DVec2], direction: DVec2) -> f64 {
     beam[0].0
 }
 
-/// Of a random orbit, the points that are farthest along some directions.
+/// Returns the points of a random orbit that are farthest along several directions.
 fn orbit(maps: &[DAffine2], numbers: &mut impl FnMut() -> f64) -> Vec<DVec2> {
     let directions = (0..24).map(|turn| DVec2::from_angle(f64::from(turn) * 0.2618));
     let directions: Vec<DVec2> = directions.collect();
@@ -83,7 +83,7 @@ fn assert_near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * (1.0 + b.abs()), "{a} and {b}");
 }
 
-/// Of maps x → A x ± t, points are Σ ± Aᵏ t: how far they reach is a series.
+/// For the maps x → A x ± t, points of the limit set are Σ ± Aᵏ t, and their reach is a series.
 #[test]
 fn boxes_of_pairs_are_sums_of_series() {
     for radius in [0.5, 0.9, 0.97, 0.99, 0.995] {
@@ -107,7 +107,7 @@ fn boxes_of_pairs_are_sums_of_series() {
     }
 }
 
-/// Maps whose own norms are above 1, made to have a radius by the bound from below.
+/// Maps whose own norms are above 1, scaled to a spectral radius by its lower bound.
 #[test]
 fn boxes_hold_what_products_contract() {
     let mut numbers = Numbers(7);

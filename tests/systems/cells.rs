@@ -1,5 +1,4 @@
-//! Limit sets that are drawn by cells, held against random points and against the copies that come near a
-//! pixel.
+//! Limit sets drawn by cells, against random points and against the copies that come near a pixel.
 
 use std::num::NonZero;
 
@@ -37,7 +36,7 @@ fn drawn(graph: &Graph, options: &Options) -> (Vec<u8>, render::Picture) {
     (bytes, picture)
 }
 
-/// How opaque the pixels are, by rows.
+/// Returns the opacities of the pixels, by rows.
 fn opacities(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
@@ -50,7 +49,7 @@ fn opacities(bytes: &[u8]) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Whether a pixel or one beside it has ink that can be seen.
+/// Returns whether a pixel or a neighbour of it has visible ink.
 fn is_near_ink(opacities: &[Vec<u8>], at: DVec2) -> bool {
     let around = |at: f64, most: usize| {
         (0..most).filter(move |&pixel| (pixel as f64 + 0.5 - at).abs() <= 1.5)
@@ -62,7 +61,7 @@ fn is_near_ink(opacities: &[Vec<u8>], at: DVec2) -> bool {
     })
 }
 
-/// Whether a copy of the set that is smaller than a quarter of a pixel comes near a point.
+/// Returns whether a copy of the set that is smaller than a quarter of a pixel comes near a point.
 fn is_near_set(maps: &[DAffine2], ball: (DVec2, f64), at: DVec2, near: f64, pixel: f64) -> bool {
     let mut open = vec![DAffine2::IDENTITY];
     let mut work = 0;
@@ -83,16 +82,16 @@ fn is_near_set(maps: &[DAffine2], ball: (DVec2, f64), at: DVec2, near: f64, pixe
     false
 }
 
-/// Draws a system by cells, and holds the picture against points that come by random iteration, and ink
-/// against copies of the set.
+/// Draws a system by cells, and compares the picture with points of random iteration, and ink with copies of
+/// the set.
 fn hold(name: &str, system: &System, points: usize) {
     let (picture, opacities) = hold_points(name, system, points, &[]);
     assert!(picture.is_limit, "{name}");
     hold_ink(name, system, &opacities);
 }
 
-/// Draws a system, and holds the picture against points that come by random iteration, now and then from a
-/// line between two points again.
+/// Draws a system, and compares the picture with points of random iteration, which restarts now and then from
+/// a line between two points.
 fn hold_points(
     name: &str,
     system: &System,
@@ -124,7 +123,7 @@ fn hold_points(
     (picture, opacities)
 }
 
-/// Holds ink against copies of a set.
+/// Compares ink with copies of a set.
 fn hold_ink(name: &str, system: &System, opacities: &[Vec<u8>]) {
     let bounds = graph(system).limit_bounds().unwrap();
     let canvas = Canvas::fit(&bounds, Size::Long(SIZE), 0.5).unwrap();
@@ -133,7 +132,7 @@ fn hold_ink(name: &str, system: &System, opacities: &[Vec<u8>]) {
     let middle = bounds.min().midpoint(bounds.max());
     let ball = (middle, middle.distance(bounds.min()));
     let pixel = 1.0 / canvas.scale();
-    // Not every pixel: this is slow.
+    // Only a sample of the pixels, for every one takes long.
     for number in (0..SIZE * SIZE).step_by(41) {
         let [x, y] = [number % SIZE, number / SIZE].map(|place| place as usize);
         let opacity = opacities.get(y).and_then(|row| row.get(x));
@@ -155,7 +154,7 @@ fn random_systems_are_drawn_where_they_are() {
     }
 }
 
-/// By elements or by cells.
+/// Random systems of similarities may be drawn by elements or by cells.
 #[test]
 fn random_similar_systems_are_drawn_where_they_are() {
     for seed in 0..12 {
@@ -176,7 +175,7 @@ fn condensation_sets_are_drawn_in_random_systems() {
     }
 }
 
-/// Maps that leave a line or a point of everything: nothing of these has an area.
+/// Maps that flatten everything to a line or a point: their images have no area.
 #[test]
 fn flat_copies_are_drawn() {
     let trunk = "maps:\n  - {matrix: [[0, 0], [0, 0.5]]}\n  - {times: [0.42, 0.42], shift: [0, 0.2]}\n  \
@@ -187,7 +186,7 @@ fn flat_copies_are_drawn() {
     hold("a point", &system(point), 30_000);
 }
 
-/// What becomes flat in the library.
+/// Systems of the library whose copies become flat.
 #[test]
 fn the_librarys_systems_are_drawn_where_they_are() {
     let mut drawn = 0;
@@ -203,7 +202,7 @@ fn the_librarys_systems_are_drawn_where_they_are() {
     assert!(drawn >= 3, "{drawn}");
 }
 
-/// Trunks of which each carries two that are lower, in the colours of their steps.
+/// Trunks that each carry two lower ones, in colours by step.
 #[test]
 fn cells_tell_steps() {
     let tree = system(
@@ -238,7 +237,8 @@ fn cells_tell_steps() {
     assert_eq!(colour(-0.3, 0.5)[3], 0);
 }
 
-/// Copies that lie all over each other are nearly all of the last step, and what they do not meet is not.
+/// Where many copies overlap, nearly all pixels have the colour of the last step; the trunk, which copies do
+/// not cover, keeps its own.
 #[test]
 fn cells_tell_the_steps_of_copies_that_overlap() {
     let style = "style: {color_by: step, palette: [\"#ff0000\", \"#0000ff\"]}\n";

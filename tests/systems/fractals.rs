@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What a polyline says, a fractal that draws it says in fewer words.
+/// A polyline and a fractal that draws it are equal sets.
 #[test]
 fn a_fractal_is_what_it_draws() {
     let maps = "maps: [{scale: 0.5}, {scale: 0.5, shift: [1, 1]}]\n";
@@ -37,7 +37,8 @@ fn a_fractal_is_what_it_draws() {
     }
 }
 
-/// All compositions of the maps, of all that the initial set is made of; the limit is that of the maps.
+/// An approximant consists of all compositions of maps applied to all outlines; the limit set is that of the
+/// maps.
 #[test]
 fn an_initial_set_may_have_several_outlines() {
     let maps = "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}\n";
@@ -57,12 +58,12 @@ fn an_initial_set_may_have_several_outlines() {
     let recurrent = format!("{text}edges: {{1: [1, 2], 2: [3], 3: [1]}}\n");
     let graph = Graph::of_system(&system(&recurrent));
     let counts = [0, 1, 2, 3].map(|steps| elements(&graph, steps).len());
-    // So many ways of maps there are.
+    // The number of admitted words of maps.
     let ways = |length| products(&system(&recurrent), length).len();
     assert_eq!(counts, [9, 27, 9 * ways(2), 9 * ways(3)]);
 }
 
-/// The moments of what is drawn in place of points: four lines of the same length.
+/// Moments of the set that is drawn in place of points: four lines of equal lengths.
 #[test]
 fn a_fractal_is_drawn_from_by_length_or_by_area() {
     let mean = |set: &str| {
@@ -91,7 +92,7 @@ fn the_draws_of_a_fractal_hang_on_its_seed() {
     assert_ne!(of(""), of(", seed: 1"));
 }
 
-/// Parameters are set as a file that extends the fractal's sets them, by formulas of the naming file.
+/// Parameters are set as in a file that extends the fractal's, by expressions of the naming file.
 #[test]
 fn the_parameters_of_a_fractal_are_set() {
     let of = |fractal: &str| {
@@ -107,7 +108,7 @@ fn the_parameters_of_a_fractal_are_set() {
     let written = "{kind: ifs, extends: complex-pair, params: {s: [0.5, 0.2]}}";
     assert_eq!(set, of(&format!("{{fractal: {written}, steps: 2}}")));
     assert_ne!(set, of("{fractal: complex-pair, steps: 2}"));
-    // As an object's, too.
+    // As an object's shape, too.
     let objects = |fractal: &str| {
         let text = format!("kind: instancing\nobjects: {{a: [{fractal}]}}\nscene: [a]\n");
         let source = Source::new("test.yaml", text);

@@ -1,4 +1,4 @@
-//! Maps that are listed twice, sets of every level, and frames of a family.
+//! Maps listed twice, sets of every level, and frames of a family.
 
 use kfrac::document::Setting;
 
@@ -6,7 +6,7 @@ use super::*;
 
 const TWICE: &str = "maps:\n  - {scale: 1/3}\n  - {scale: 1/3, shift: [2/3, 0]}\n  - {scale: 1/3, shift: [2/3, 0]}\n";
 
-/// It makes nothing that is not there; but it is picked twice as often.
+/// A map listed twice adds no elements, but is picked twice as often.
 #[test]
 fn a_map_that_is_listed_twice_is_one() {
     let twice = system(TWICE);
@@ -31,7 +31,7 @@ fn a_map_that_is_listed_twice_is_one() {
         2.0 / 3.0,
         1e-12,
     );
-    // Not if other maps may be applied before it.
+    // The elements differ if other maps may be applied before the copy.
     let apart = system(&format!("{TWICE}edges: {{1: [1, 2], 2: [1, 3], 3: [2]}}\n"));
     assert_eq!(elements(&Graph::of_system(&apart), 2).len(), 5);
     let alike = system(&format!("{TWICE}edges: {{1: [1, 2, 3], 2: [1], 3: [1]}}\n"));
@@ -41,7 +41,7 @@ fn a_map_that_is_listed_twice_is_one() {
     assert_eq!(alike, fewer);
 }
 
-/// All sets of level k are born in step k, the first one of several as the others.
+/// All sets of level k are born in step k, also the first of several.
 #[test]
 fn the_sets_of_a_level_are_born_in_one_step() {
     let maps = "maps: [{scale: 1/2}, {scale: 1/2, shift: [1, 0]}]\n";
@@ -98,7 +98,7 @@ fn the_tree_bends_as_the_frames_of_the_paper() {
             for (own, expected) in map.to_cols_array().into_iter().zip(expected) {
                 assert_close("frame", own, expected, 1e-12);
             }
-            // The angle alone turns, and moves nothing.
+            // The angle rotates without a translation.
             assert!(bent[number].matrix2.abs_diff_eq(map.matrix2, 1e-12));
         }
     }

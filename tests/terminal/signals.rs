@@ -1,5 +1,4 @@
-//! Signals: every command ends at once and leaves nothing, unless the signal was ignored from the
-//! start.
+//! Signals: every command ends at once and leaves no file, unless the signal was ignored from the start.
 
 use std::fs::{self, File};
 use std::io::{Read, Write};
@@ -26,20 +25,20 @@ fn make_pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
 }
 
-/// The mask of signals that a process catches or ignores.
+/// Returns the mask of signals that a process catches or ignores.
 fn mask(process: &str, of: &str) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix(of));
     mask.map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).unwrap())
 }
 
-/// Whether the tests themselves are to survive signals, as all that they start then does.
+/// Returns whether the tests themselves ignore signals, which their child processes inherit.
 fn are_ignored() -> bool {
     let bit = |signal: Signal| 1 << (signal.as_raw() - 1);
     mask("self", "SigIgn:") & (bit(Signal::INT) | bit(Signal::TERM) | bit(Signal::HUP)) != 0
 }
 
-/// Waits, for a time that is long even on a busy machine.
+/// Waits, up to a time that is long even on a busy machine.
 fn until(what: &str, mut happens: impl FnMut() -> bool) {
     for _ in 0..6000 {
         if happens() {
@@ -54,7 +53,7 @@ fn send(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).unwrap();
 }
 
-/// Waits until it listens to signals.
+/// Waits until a process listens to signals.
 fn listens(child: &mut Child) {
     let bit = 1 << (Signal::INT.as_raw() - 1);
     until("listening", || {
@@ -86,7 +85,7 @@ fn every_command_that_waits_for_input_ends_when_interrupted() {
     for name in ["rule.yaml", "file.l"] {
         make_pipe(&folder.path().join(name));
     }
-    // Nobody writes to the pipes.
+    // No process writes to the pipes.
     for (arguments, signal) in [
         (&["grow", "rule.yaml"][..], Signal::INT),
         (&["grow", "rule.yaml", "--method", "chaos"], Signal::INT),
@@ -190,7 +189,7 @@ fn signals_that_are_ignored_from_the_start_stay_ignored() {
     let mut pipe = File::open(folder.path().join("pipe")).unwrap();
     let mut text = vec![0; 10];
     pipe.read_exact(&mut text).unwrap();
-    // It has begun to write, and waits for the pipe to be read.
+    // The command has begun to write, and waits for the pipe to be read.
     for signal in [Signal::HUP, Signal::INT] {
         let bit = 1 << (signal.as_raw() - 1);
         assert!(mask(&child.id().to_string(), "SigIgn:") & bit != 0);
@@ -238,7 +237,7 @@ fn what_a_killed_run_leaves_is_removed_by_the_next() {
     assert_eq!(names(folder.path()).len(), 2);
     let small = kfrac(folder.path(), &["grow", "koch", "-o", "k.svg"]).output();
     assert!(small.unwrap().status.success());
-    // One is that of the run that goes on.
+    // One of the files is that of the run that continues.
     let left = names(folder.path());
     assert_eq!(left.len(), 2, "{left:?}");
     assert!(

@@ -92,7 +92,7 @@ fn a_pdf_is_the_same_on_any_number_of_threads() {
         })
     };
     let one = with(1);
-    // Of several pieces, of which each begins where the one before ended.
+    // The file consists of several streams, each of which continues the preceding one.
     assert!(one.1.windows(6).filter(|it| it == b"stream").count() > 6);
     assert!(one == with(2) && one == with(3));
     let edges: usize = read(Format::Pdf, &one.1)
@@ -105,7 +105,7 @@ fn a_pdf_is_the_same_on_any_number_of_threads() {
 #[test]
 fn sizes_are_what_is_asked_for() {
     for format in [Format::Svg, Format::Pdf, Format::Dxf] {
-        // A page of 30 m is larger than a PDF's units reach.
+        // A page of 30 m exceeds the units of a PDF.
         for long in [1505, 300_000] {
             let (picture, bytes) = draw(&library("koch"), 3, |options| {
                 options.format = format;
@@ -155,7 +155,7 @@ fn the_command_line_has_millimetres() {
         assert_eq!(code, Some(2), "{said}");
         assert!(said.contains(message), "{said}");
     }
-    // Colours that nobody asked for have one pen, where they are not few.
+    // Default colours share one pen if there are many of them.
     let levy = ["grow", "levy", "--steps", "8", "-o", "levy.dxf"];
     for (options, told, note) in [
         (&[][..], " strokes of", true),

@@ -1,4 +1,4 @@
-//! Plots: nothing is drawn twice, nothing is left out, and the pen goes short ways.
+//! Plots: nothing is drawn twice, nothing is omitted, and the pen is carried over short distances.
 
 use std::collections::BTreeSet;
 use std::num::NonZero;
@@ -16,7 +16,7 @@ const FORMATS: [Format; 3] = [Format::Svg, Format::Pdf, Format::Dxf];
 /// An edge on a lattice, from its lesser end.
 type Edge = [[i64; 2]; 2];
 
-/// Lines between points of a lattice, by its unit, from the lower left corner of all.
+/// Returns lines between points of a lattice in its unit, relative to the lower left corner of all.
 fn on_lattice(edges: impl IntoIterator<Item = [[f64; 2]; 2]>, unit: f64) -> Vec<Edge> {
     let edges: Vec<_> = edges.into_iter().collect();
     let least = |axis: usize| {
@@ -104,7 +104,7 @@ fn the_pen_is_not_carried_farther_than_before() {
         let (picture, bytes) = plot(&rule, steps, Format::Dxf);
         let plotted = picture.plotted.unwrap();
         assert!(plotted.carried <= plotted.carried_as_drawn, "{name}");
-        // As the reader sees it, from the upper left corner.
+        // As the reader computes it, from the upper left corner.
         let mut at = [0.0; 2];
         let mut carried = 0.0;
         for stroke in read(Format::Dxf, &bytes) {
@@ -149,13 +149,13 @@ fn colours_are_layers() {
         let (_, bytes) = draw(format);
         let mut inks: Vec<_> = read(format, &bytes).into_iter().map(|it| it.ink).collect();
         inks.dedup();
-        // One after another, and none again.
+        // One ink after another, each only once.
         assert_eq!(inks.len(), layers, "{format:?}");
     }
 }
 
-/// The labels of the layers of a plot, held against what programs for plotters go by: layers lie at the
-/// top of the document, nothing else is drawn, and names begin with the number of the pen.
+/// Returns the labels of a plot's layers, and asserts the conventions of programs for plotters: layers lie at
+/// the top of the document, nothing else is drawn, and names begin with the number of the pen.
 fn top_level_layers(svg: &str) -> Vec<String> {
     let inkscape = "http://www.inkscape.org/namespaces/inkscape";
     let document = roxmltree::Document::parse(svg).unwrap();
@@ -198,7 +198,7 @@ fn pens_share_colours() {
             let (picture, bytes) = draw(format, pens);
             let plotted = picture.plotted.unwrap();
             assert_eq!((plotted.layers, plotted.colours), (layers, 64));
-            // All is drawn, with less to carry.
+            // Everything is drawn, and the pen is carried over shorter distances.
             assert!((plotted.drawn - whole.drawn).abs() < 1e-6 * whole.drawn);
             assert!(plotted.carried < whole.carried / 2.0);
             let strokes = read(format, &bytes);

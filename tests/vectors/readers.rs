@@ -6,9 +6,9 @@ use resvg::usvg;
 
 use crate::Read;
 
-/// Millimetres to a pixel.
+/// Length of a CSS pixel in millimetres.
 const PIXEL: f64 = 25.4 / 96.0;
-/// Millimetres to a point.
+/// Length of a point in millimetres.
 const INCH_72: f64 = 25.4 / 72.0;
 
 pub(crate) fn read(format: Format, bytes: &[u8]) -> Vec<Read> {
@@ -60,7 +60,7 @@ fn group(of: &usvg::Group, strokes: &mut Vec<Read>) {
     }
 }
 
-/// The operators on a PDF's one page, with their operands, and its resources.
+/// Returns the operators on a PDF's only page, with their operands, and its resources.
 pub(crate) fn operators(bytes: &[u8]) -> Vec<(String, Vec<lopdf::Object>)> {
     let document = lopdf::Document::load_mem(bytes).unwrap();
     let page = document.page_iter().next().unwrap();
@@ -77,7 +77,7 @@ pub(crate) fn pdf(bytes: &[u8]) -> Vec<Read> {
     let media = page.get(b"MediaBox").unwrap().as_array().unwrap();
     let unit = page.get(b"UserUnit").map_or(1.0, number);
     let top = number(&media[3]);
-    // Maps that are scaled and moved alone.
+    // Only maps that scale and translate occur.
     let mut map = [1.0, 0.0, 1.0, 0.0];
     let mut outer = Vec::new();
     let mut strokes = Vec::<Read>::new();

@@ -1,4 +1,4 @@
-//! Tables: CSV and JSON say the same, to readers that are not ours.
+//! Tables: independent readers find the same data in CSV and JSON.
 
 use std::num::NonZero;
 

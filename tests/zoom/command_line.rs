@@ -1,8 +1,8 @@
-//! `--zoom` and `--at`.
+//! `--zoom` and `--at` on the command line.
 
 use crate::common;
 
-/// What `kfrac grow` says, and its status.
+/// Returns status and standard error of `kfrac grow`.
 fn said(arguments: &[&str]) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
     common::said(folder.path(), &[&["grow"], arguments].concat())
@@ -95,7 +95,7 @@ fn mistakes_are_told() {
             1,
             "zoom into",
         ),
-        // Its words are never written down: they are long.
+        // The words of the system are never stored: they are long.
         (
             &["signals-a", "--zoom", "10", "--at", "0.(0)"],
             1,
@@ -117,7 +117,7 @@ fn a_zoom_writes_pictures_of_both_formats() {
     }
 }
 
-/// What lies off the set is an empty picture, which is said, with where there is something.
+/// A window off the set gives an empty picture, which is reported with the distance of the set.
 #[test]
 fn a_window_beside_the_set_is_said_to_be_empty() {
     let note = "note: nothing of koch lies within the window";
@@ -126,7 +126,7 @@ fn a_window_beside_the_set_is_said_to_be_empty() {
         let (code, text) = said(&[&beside[..], &[file]].concat());
         assert_eq!(code, Some(0), "{text}");
         let (first, _) = text.split_once('\n').unwrap();
-        // From the nearest corners, which stand at (4/9, √3/9) and its mirror image.
+        // From the nearest corners, which lie at (4/9, √3/9) and its mirror image.
         let nearest =
             "; the nearest of it is about 0.11 from the middle, and --zoom 1.3 shows that";
         assert_eq!(first, format!("{note}{nearest}"), "{text}");
@@ -142,13 +142,13 @@ fn a_window_beside_the_set_is_said_to_be_empty() {
     assert!(text.starts_with(&format!("{note}\n")), "{text}");
     let (_, text) = said(&["koch", "--view", "5,5,1,1", "-o", "view.png"]);
     assert!(text.starts_with(&format!("{note}\n")), "{text}");
-    // What a chain encloses shows, for it is filled.
+    // The area that a chain encloses is visible, for it is filled.
     let inside = ["koch-snowflake", "--zoom", "50", "--at", "0.5,-0.2"];
     let (code, text) = said(&[&inside[..], &["--fill", "teal", "-o", "inside.png"]].concat());
     assert!(code == Some(0) && !text.contains("note"), "{text}");
 }
 
-/// A rule whose own style tells elements by their number is drawn in one colour, and says so.
+/// A rule whose style colours elements by index is drawn in one colour, which is reported.
 #[test]
 fn rules_that_colour_by_index_are_zoomed_into_in_one_colour() {
     for name in ["dragon", "levy", "hilbert"] {

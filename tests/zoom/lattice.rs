@@ -1,4 +1,4 @@
-//! The dragon's points at step 200 are whole numbers: exact arithmetic says where they lie.
+//! The dragon's points at step 200 are integers in a suitable unit: exact arithmetic gives their positions.
 
 use kfrac::geometry::DAffine2;
 use kfrac::grow::Growth;
@@ -18,7 +18,7 @@ struct Element {
 }
 
 impl Element {
-    /// The two elements of the next step, as the rule lists them; both run to the corner or from it.
+    /// Returns the two elements of the next step, as the rule lists them; both run to the corner or from it.
     fn children(self) -> [Self; 2] {
         let [x, y] = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
         let [across, up] = if self.left { [-y, x] } else { [y, -x] };
@@ -37,7 +37,7 @@ impl Element {
         ]
     }
 
-    /// How far it starts from another one.
+    /// Returns the distance between the starts of two elements.
     fn away(self, other: Self) -> f64 {
         let [x, y] = [0, 1].map(|axis| (self.from[axis] - other.from[axis]) as f64);
         x.hypot(y)
@@ -61,7 +61,7 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
             .cycle()
             .take(STEPS as usize)
             .collect();
-        // Along the way, and beside it what may be near its end.
+        // Along the path, and beside it the elements that may be near its end.
         let (mut on_way, mut near) = (whole, vec![whole]);
         for (step, &position) in way.iter().enumerate() {
             on_way = on_way.children()[position];
@@ -81,7 +81,7 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
         let found = zoom(&source, &graph, &growth, &window).unwrap();
         let seen = Seen::of(&found.graph, &Growth::steps(STEPS), DAffine2::IDENTITY, 0.0);
         let pixel = SCALE * (2.0_f64).powi(-4);
-        // The limit point lies somewhere in the element; all else is told from there.
+        // The limit point lies within the element; all other positions are relative to it.
         let ends = |from: Point, to: Point, origin: Point| {
             [from, to].map(|point| [0, 1].map(|axis| ((point[axis] - origin[axis]) as f64) * pixel))
         };
@@ -111,12 +111,13 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
     }
 }
 
-/// Where the way leads to from the start of an element, in pixels: it goes on as it began.
+/// Returns the end of the path relative to the start of an element, in pixels: the path continues as it
+/// began.
 fn limit(repeated: &[usize], element: Element, pixel: f64) -> [f64; 2] {
     let mut point = [0.0; 2];
     let mut along = [0, 1].map(|axis| (element.to[axis] - element.from[axis]) as f64 * pixel);
     let mut left = element.left;
-    // The way has been gone a whole number of times, or goes on where it stopped.
+    // The path continues after a whole number of periods, or where it stopped.
     let start = 200 % repeated.len();
     for &position in repeated.iter().cycle().skip(start).take(120) {
         let [x, y] = along;
@@ -133,7 +134,7 @@ fn limit(repeated: &[usize], element: Element, pixel: f64) -> [f64; 2] {
     point
 }
 
-/// On which side the first element is replaced.
+/// Returns whether the first element is replaced on its left.
 fn is_left(graph: &kfrac::graph::Graph) -> bool {
     let root = graph.initiator(0).instances[0].object;
     super::production(graph, root).body.instances[0]

@@ -15,7 +15,7 @@ use super::{library, point, read, source};
 
 type Rule = (Document, Model);
 
-/// Black lines on white.
+/// Returns options of black lines on white.
 fn options(rule: &Rule) -> Options {
     let style = Style {
         width: Width::Pixels(1.5),
@@ -36,7 +36,7 @@ fn options(rule: &Rule) -> Options {
     }
 }
 
-/// The values of a picture's pixels, of one channel.
+/// Returns the pixel values of a picture with one channel.
 fn values(picture: Vec<u8>) -> Vec<u8> {
     let mut decoder = png::Decoder::new(Cursor::new(picture));
     decoder.set_transformations(Transformations::EXPAND | Transformations::STRIP_16);
@@ -64,7 +64,7 @@ fn drawn(rule: &Rule, factor: &str, at: &str) -> Vec<u8> {
     zoomed(rule, &options(rule), factor, at)
 }
 
-/// Pixels of one picture that differ by more than a sixteenth from those of another.
+/// Returns the number of pixels that differ by more than a sixteenth between two pictures.
 fn apart(a: &[u8], b: &[u8]) -> usize {
     assert_eq!(a.len(), b.len());
     a.iter()
@@ -77,7 +77,7 @@ fn apart(a: &[u8], b: &[u8]) -> usize {
 fn a_zoom_by_a_power_of_the_ratio_shows_the_same_picture() {
     for (name, ratio, at, steps) in [
         ("koch", "3", "0.(0)", [3, 4, 2004]),
-        // Eight turns by 45 degrees are a whole one.
+        // Eight rotations by 45 degrees are a full turn.
         (
             "dragon",
             "1.4142135623730950488016887242096980785696718753769480731766797379907",
@@ -94,7 +94,7 @@ fn a_zoom_by_a_power_of_the_ratio_shows_the_same_picture() {
     }
 }
 
-/// An L-system that rewrites edges is the rule that it is, as deep as one likes.
+/// An L-system that rewrites edges and the equal rule give equal zooms at any depth.
 #[test]
 fn a_rule_and_its_l_system_are_zoomed_alike() {
     let [rule, system] = ["koch", "koch-lsystem"].map(library);
@@ -107,7 +107,7 @@ fn a_rule_and_its_l_system_are_zoomed_alike() {
     }
 }
 
-/// What is infertile, and ever so much larger than the window, is drawn as it is seen in it.
+/// Infertile elements much larger than the window are drawn as far as they are visible in it.
 #[test]
 fn large_infertile_elements_are_clipped() {
     let line = "initiator: segment\ngenerator:\n  - [0, 0]\n  - [1/3, 0]\n  \
@@ -126,7 +126,7 @@ fn large_infertile_elements_are_clipped() {
             );
         }
     }
-    // The middle lies inside of the filled half of one square, on its lower side.
+    // The middle lies inside the filled half of one square, on its lower side.
     let square = "initiator: segment\nstyle: {fill: black}\ngenerator:\n  - [0, 0]\n  - [1/3, 0]\n  \
                   - {from: [-1, 0], to: [1, 0], fertile: false, base_element: square}\n";
     for factor in ["10", "1e6", "1e300"] {
@@ -142,7 +142,7 @@ fn large_infertile_elements_are_clipped() {
     }
 }
 
-/// The same of a square window.
+/// Returns the options for a square window.
 fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
     Options {
         view: View {
@@ -153,7 +153,7 @@ fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
     }
 }
 
-/// A closed chain encloses in a zoom what it does in a window of the whole.
+/// A closed chain encloses in a zoom the area that it encloses in a window of the whole.
 #[test]
 fn areas_are_those_of_the_whole() {
     let rule = library("koch-snowflake");
@@ -190,8 +190,7 @@ fn areas_are_those_of_the_whole() {
     }
 }
 
-/// Fractals that are seeded are coloured by their ages and filled as in a window of the whole, in the same
-/// order.
+/// Seeded fractals are coloured by their ages and filled as in a window of the whole, in the same order.
 #[test]
 fn seeds_are_drawn_as_in_the_whole() {
     let square = library("self-seeding-square");

@@ -1,4 +1,4 @@
-//! Rules whose elements seed new fractals.
+//! Zooms of rules whose elements seed new fractals.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -12,7 +12,7 @@ use kfrac::zoom::{Growth, zoom};
 
 use super::{SCALE, SHORTEST, SIDE, Seen, assert_same, library, read, source, window, zoomed};
 
-/// Islands that throw off islets in every third step, at random, and open lines that seed open lines,
+/// A rule of islands that seed islets in every third step, at random, and of open lines that seed open lines,
 /// some of them backwards.
 pub(super) const ISLANDS: &str = "initiator:\n  closed: true\n  elements: [[0, 0], [1/2, 3/4], [1, 0]]\ngenerators:\n  \
     break:\n    random: {out: 'uniform(-1/5, 1/5)', along: 'uniform(2/5, 3/5)'}\n    \
@@ -23,7 +23,7 @@ pub(super) const ISLANDS: &str = "initiator:\n  closed: true\n  elements: [[0, 0
       - seeds: true\n        elements: [[x, -y], {to: [x + wide, -y], direction: 3}, [x + wide, -y - wide]]\n\
     select: [{when: age % 3 == 1 and i % 2 == 1, use: throw}, {use: break}]\n";
 
-/// All that an element seeds away, so that nothing stays.
+/// A rule in which elements consist of seed parts only, so that nothing is kept.
 const VANISHING: &str = "initiator: segment\ngenerators:\n  \
     sow:\n    parts:\n      - seeds: true\n        elements: [[0, 0], [1/3, 1/4], [2/3, 0]]\n      \
       - seeds: true\n        connected: false\n        elements:\n          - {from: [2/3, 0], to: [1, 0], direction: 2}\n          \
@@ -31,7 +31,7 @@ const VANISHING: &str = "initiator: segment\ngenerators:\n  \
     grow: [[0, 0], [1/2, -1/6], [1, 0]]\n\
     select: [{when: age == 2, use: sow}, {use: grow}]\n";
 
-/// Elements in the order of the walk, with the steps of birth of their fractals.
+/// A visitor that collects elements in the order of the walk, with the steps of birth of their fractals.
 struct Ordered {
     seen: Seen,
     steps: u32,
@@ -51,7 +51,7 @@ impl Ordered {
         for (element, _) in &mut ordered.all {
             element.frame.map = place * element.frame.map;
         }
-        // Those that lie well inside.
+        // Elements well inside the window.
         let middle = graph.middle();
         ordered.all.retain(|(element, _)| {
             element.frame.map.transform_point2(middle).length() < f64::from(SIDE) * 0.4
@@ -89,7 +89,7 @@ fn production(graph: &Graph, object: usize) -> &Production {
     }
 }
 
-/// An instance in the place of an object, or in what it seeds.
+/// Returns an instance in an object, or in the parts that it seeds.
 fn child(graph: &Graph, object: usize, position: u32) -> &Instance {
     let Production { body, seeds } = production(graph, object);
     let chains = std::iter::once(body).chain(seeds.iter().map(|seed| &seed.chain));
@@ -97,7 +97,7 @@ fn child(graph: &Graph, object: usize, position: u32) -> &Instance {
     instances.find(|it| it.position == position).unwrap()
 }
 
-/// The point that a way of positions leads to.
+/// Returns the point that a path of positions leads to.
 fn point(graph: &Graph, way: &[u32]) -> DVec2 {
     let root = &graph.initiator(0).instances[way[0] as usize];
     let (mut map, mut object) = (root.frame.map, root.object);
@@ -109,8 +109,8 @@ fn point(graph: &Graph, way: &[u32]) -> DVec2 {
     map.translation
 }
 
-/// What a zoom shows is what everything shows there, in the same order: elements with their births, their
-/// lengths, directions and joints, and the births of their fractals.
+/// Asserts that a zoom shows the elements of the whole in the same order, with their births, lengths,
+/// directions and joints, and the births of their fractals.
 fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, factor: &str) {
     let graph = rule.1.compile(64).unwrap();
     let growth = Growth {
@@ -122,7 +122,7 @@ fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, fa
         seed,
         ..kfrac::grow::Growth::steps(graph.depth().unwrap_or(200))
     };
-    // What is infertile and large may be clipped.
+    // Large infertile elements may be clipped.
     let own = graph.objects().len();
     let is_whole = |(element, _): &(Element, u32)| {
         let is_small = element.frame.map.matrix2.x_axis.length() < 100.0;
@@ -139,10 +139,10 @@ fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, fa
     assert_alike(&shown, &plain, 1e-12 * scale + 1e-6, &what);
 }
 
-/// The same elements in the same order, give or take some part of a pixel.
+/// Asserts that two lists have the same elements in the same order, within a tolerance in pixels.
 fn assert_alike(shown: &[(Element, u32)], plain: &[(Element, u32)], off: f64, what: &str) {
     if shown.len() < plain.len() {
-        // Of many in one place, one of the oldest fractal is shown.
+        // Of many elements in one place, one of the oldest fractal is shown.
         assert_eq!(oldest(shown), oldest(plain), "{what}");
         return;
     }
@@ -162,13 +162,14 @@ fn assert_alike(shown: &[(Element, u32)], plain: &[(Element, u32)], off: f64, wh
     }
 }
 
-/// A place, told by parts of a pixel that no place lies between.
+/// Returns a position in sixteenths of a pixel, with an offset such that no coordinate is close to a
+/// boundary.
 #[expect(clippy::cast_possible_truncation, reason = "a small number")]
 fn place(point: DVec2) -> [i64; 2] {
     point.to_array().map(|it| (it * 16.0 + 0.37).floor() as i64)
 }
 
-/// The birth of the oldest fractal in every place that an element takes.
+/// Returns the birth of the oldest fractal for each place that an element occupies.
 fn oldest(elements: &[(Element, u32)]) -> BTreeMap<[[i64; 2]; 2], u32> {
     let mut oldest = BTreeMap::new();
     for (element, born) in elements {
@@ -206,7 +207,7 @@ fn shallow_zooms_are_windows_of_the_whole() {
     }
 }
 
-/// The same about ends of elements of fractals that have been seeded, which are told by their coordinates.
+/// Asserts the same for windows about ends of elements of seeded fractals, given by coordinates.
 fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
     let graph = rule.1.compile(64).unwrap();
     for seed in 0..3 {
@@ -233,14 +234,14 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
     assert_windows(&read(ISLANDS), 7, &["2e1", "1e5"]);
 }
 
-/// Coasts of the library are drawn without limits, but do not reach far.
+/// Coasts of the library are drawn without bounds on their random numbers, but do not reach far.
 #[test]
 fn what_is_improbable_is_not_looked_for() {
     assert_windows(&library("archipelago"), 5, &["2e1", "1e3"]);
 }
 
-/// Of what is drawn, a deep zoom shows the middle of one that is less deep: draws, ages and order do not
-/// hang on where a zoom begins.
+/// A deep zoom of a random rule shows the middle of one that is less deep: draws, ages and order do not
+/// depend on where a zoom begins.
 #[test]
 fn deep_zooms_of_random_rules_agree() {
     let islands = read(ISLANDS);
@@ -271,8 +272,8 @@ fn deep_zooms_of_random_rules_agree() {
     }
 }
 
-/// The point in the middle is the fixed point of a child that is seeded: zooming by its ratio to the power
-/// k shows the same for any k, turned with it.
+/// The point in the middle is the fixed point of a seeded child: zooms by its ratio to the power k show the
+/// same for any k, rotated with it.
 #[test]
 fn fixed_points_of_seeds_look_the_same_at_any_depth() {
     for (name, rule, seed) in [
@@ -289,7 +290,7 @@ fn fixed_points_of_seeds_look_the_same_at_any_depth() {
         for more in [1, 200] {
             let factor = format!("3^{}", 4 + more);
             let deep = zoomed(&rule, &graph, &window(&factor, &at), 0);
-            // Turns are by right angles.
+            // Rotations are by right angles.
             let turned = (0..more % 4).fold(DAffine2::IDENTITY, |turned, _| turn * turned);
             let what = format!("{name} at {factor}");
             assert_same(&shallow, &deep, &turned, 1e-6, &what);
@@ -306,11 +307,12 @@ struct Side {
 }
 
 impl Side {
-    /// What the self-seeding square puts in its place in a step, and the square that it seeds.
+    /// Returns the sides that replace this one in a step of the self-seeding square, and those of the square
+    /// that it seeds.
     fn children(self, step: u32) -> [Self; 7] {
         let Self { from, to, born } = self;
         let [x, y] = [0, 1].map(|axis| (to[axis] - from[axis]) / 3);
-        // In thirds along the side and to its left.
+        // Coordinates in thirds along the side and to its left.
         let at =
             |along: i128, up: i128| [from[0] + along * x - up * y, from[1] + along * y + up * x];
         let side = |[from, to]: [[i128; 2]; 2], born| Self {
@@ -327,7 +329,7 @@ impl Side {
     }
 }
 
-/// Sides of step 70 stand where whole numbers say, and belong to squares as old as they say.
+/// Sides of step 70 have the positions that integer arithmetic gives, and belong to squares of the right age.
 #[test]
 fn sides_of_step_70_stand_where_whole_numbers_say() {
     const STEPS: u32 = 70;
@@ -359,7 +361,7 @@ fn sides_of_step_70_stand_where_whole_numbers_say() {
                 .map(|((from, to), born)| Side { from, to, born })
                 .collect();
         }
-        // The way goes on, in numbers that doubles hold: sides of step 70 are 19 pixels long.
+        // The path continues in numbers within the range of doubles: sides of step 70 are 19 pixels long.
         let pixel = SCALE / 27.0;
         let mut map = DAffine2::from_scale(DVec2::splat(pixel));
         let along = [0, 1].map(|axis| (on_way.to[axis] - on_way.from[axis]) as f64);
