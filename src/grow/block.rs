@@ -1,7 +1,8 @@
-//! Blocks: the elements that an object becomes in its last steps, worked out once and moved into
-//! place by a single map wherever the object stands. Where no element is replaced that is shorter than
-//! a length, its last steps are those that its own length allows: it has a block for every range of
-//! lengths that become the same.
+//! Blocks: expansions of objects over their last steps, computed once and placed by a single map wherever
+//! the object is instanced.
+//!
+//! If elements below a cutoff length are not replaced, the length of the object determines the number of its
+//! last steps: an object then has one block for each range of lengths with the same expansion.
 
 mod cut;
 mod made;
@@ -19,7 +20,7 @@ use crate::rule::Piece;
 
 use super::Element;
 
-/// An element of a block, as seen from the object whose place it takes.
+/// Element of a block, relative to the object that the block replaces.
 #[derive(Clone, Copy, Debug)]
 struct Leaf {
     map: DAffine2,
@@ -27,44 +28,45 @@ struct Leaf {
     length: f64,
     coat: Coat,
     object: usize,
-    /// The step of its birth, from that of the object.
+    /// Step of its birth, relative to that of the object.
     born: u32,
-    /// Whether it joins the leaf before; the first one: what was drawn before the block.
+    /// Whether it joins the preceding leaf; for the first leaf, whether it can join the element before the
+    /// block.
     joined: bool,
 }
 
-/// An element that is a line.
+/// Element that is a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Stick {
-    /// Where it starts and ends, in the order of traversal.
+    /// First and last point, in order of traversal.
     pub ends: [DVec2; 2],
-    /// The logarithm to base 2 of its length.
+    /// Base-2 logarithm of its length.
     pub octave: f64,
-    /// Whether it joins the element before.
+    /// Whether it joins the preceding element.
     pub joined: bool,
 }
 
-/// What an object becomes in a number of steps.
+/// Expansion of an object over a number of steps.
 #[derive(Debug)]
 pub(super) struct Block {
-    /// Its own.
+    /// Unique number of the block.
     number: u64,
     leaves: Vec<Leaf>,
-    /// The leaves as lines in the object's unit frame, if all of them are visible lines.
+    /// Leaves as lines in the object's unit frame, if all are visible lines.
     sticks: Option<Vec<Stick>>,
-    /// Where they end, if each joins the one before.
+    /// End points of the lines, if each joins the one before.
     line: Option<Vec<DVec2>>,
-    /// The corners of what is drawn, if it has no curves.
+    /// Corners of the outlines, if these have no curves.
     corners: Option<Corners>,
-    /// The number of fertile leaves.
+    /// Number of fertile leaves.
     fertile: u64,
-    /// The lengths of all leaves together.
+    /// Sum of the leaves' lengths.
     length: f64,
-    /// The numbers of the leaves, sorted by the steps of their birth,
+    /// Numbers of the leaves, sorted by birth step.
     by_birth: Vec<u32>,
-    /// and how many of them are born before each.
+    /// Number of leaves born before each step.
     births: Vec<usize>,
-    /// Whether the last leaf reaches the end of the object.
+    /// Whether the last leaf reaches the end point of the object.
     pub(super) meets_end: bool,
 }
 
@@ -74,83 +76,85 @@ impl Block {
     }
 }
 
-/// Elements in a row that come as one: a block in its place.
+/// Consecutive elements that a visitor receives at once: a block placed by a map.
 pub struct Run<'b> {
     pub(super) block: &'b Block,
     pub(super) object: usize,
-    /// Where the object stood.
+    /// Frame of the object that the block replaces.
     pub(super) frame: Frame,
     pub(super) length: f64,
-    /// What the object was tinted with.
+    /// Appearance of the object.
     pub(super) coat: Coat,
-    /// The step of its birth.
+    /// Step of the object's birth.
     pub(super) born: u32,
-    /// The rank of the first element.
+    /// Rank of the first element.
     pub(super) index: u128,
-    /// Whether what was drawn before reaches the object.
+    /// Whether the preceding element ends where the object starts.
     pub(super) joined: bool,
     pub(super) graph: &'b Graph,
 }
 
 impl Run<'_> {
-    /// The number of elements.
+    /// Returns the number of elements.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.block.len()
     }
 
-    /// The object that they take the place of.
+    /// Returns the number of the object that the elements replace.
     #[must_use]
     pub fn object(&self) -> usize {
         self.object
     }
 
-    /// A number that tells the run from others that are not the same but for their places.
+    /// Returns the number of the block; runs of equal blocks differ only in frame, appearance, birth and
+    /// rank.
     pub(crate) fn number(&self) -> u64 {
         self.block.number
     }
 
-    /// Where the object stood.
+    /// Returns the frame of the object that the elements replace.
     pub(crate) fn frame(&self) -> Frame {
         self.frame
     }
 
-    /// The step in which the object was born.
+    /// Returns the step in which the object was born.
     pub(crate) fn born(&self) -> u32 {
         self.born
     }
 
-    /// The same run in another place, with as many elements backwards.
+    /// Returns the run placed by another map, with the direction unchanged.
     pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
         let frame = Frame { map, ..self.frame };
         Self { frame, ..*self }
     }
 
-    /// The first element.
+    /// Returns the first element.
     #[must_use]
     pub fn first(&self) -> Option<Element> {
         self.elements().next()
     }
 
-    /// The last element.
+    /// Returns the last element.
     #[must_use]
     pub fn last(&self) -> Option<Element> {
         self.elements().next_back()
     }
 
-    /// The elements in order of traversal.
+    /// Iterates over the elements in order of traversal.
     pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element> {
         let leaves = self.block.leaves.iter().enumerate();
         leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map * leaf.map))
     }
 
-    /// The elements as [`Run::elements`] tells them, but all in the place of the run.
+    /// Iterates over the elements as [`Run::elements`] does, but with the run's map instead of their own.
     pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element> {
         let leaves = self.block.leaves.iter().enumerate();
         leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map))
     }
 
-    /// The elements that a test chooses by all but their places, and their numbers from 0.
+    /// Iterates over the elements that pass a test, with their numbers from 0. The test sees the run's map
+    /// instead of the elements'.
     pub(crate) fn chosen(
         &self,
         test: impl Fn(&Element) -> bool,
@@ -167,8 +171,8 @@ impl Run<'_> {
         })
     }
 
-    /// The elements that are born in some steps, and their numbers from 0, step by step and in order
-    /// of traversal in each.
+    /// Iterates over the elements born in a range of steps, with their numbers from 0: ordered by step, then
+    /// by traversal.
     pub(crate) fn born_in(
         &self,
         steps: RangeInclusive<u32>,
@@ -181,7 +185,7 @@ impl Run<'_> {
         })
     }
 
-    /// How many elements are born in some steps.
+    /// Returns the number of elements born in a range of steps.
     pub(crate) fn count_born_in(&self, steps: &RangeInclusive<u32>) -> u64 {
         self.births(steps).len() as u64
     }
@@ -215,27 +219,27 @@ impl Run<'_> {
         }
     }
 
-    /// Where the elements end, one after another, in the unit frame of [`Run::map`], if all are
-    /// visible lines of which each joins the one before.
+    /// Returns the end points of the elements in order of traversal, in the unit frame of [`Run::map`], if
+    /// all elements are visible lines and each joins the one before.
     #[must_use]
     pub fn line(&self) -> Option<&[DVec2]> {
         self.block.line.as_deref()
     }
 
-    /// The elements as lines, in the unit frame of [`Run::map`], if all are visible lines. Whether
-    /// the first one joins what was drawn before is told by [`Run::first`].
+    /// Returns the elements as lines in the unit frame of [`Run::map`], if all are visible lines. Whether the
+    /// first one joins the preceding element is a field of [`Run::first`].
     #[must_use]
     pub fn sticks(&self) -> Option<&[Stick]> {
         self.block.sticks.as_deref()
     }
 
-    /// The number of elements that are replaced in the next step.
+    /// Returns the number of elements that are replaced in the next step.
     #[must_use]
     pub fn fertile(&self) -> u64 {
         self.block.fertile
     }
 
-    /// The lengths |p1 − p0| of all elements together.
+    /// Returns the sum of |p1 − p0| over all elements.
     #[must_use]
     pub fn length(&self) -> f64 {
         if self.graph.is_affine() {
@@ -246,7 +250,7 @@ impl Run<'_> {
         }
     }
 
-    /// Adds what is drawn, without strokes, to a box.
+    /// Extends a box by the outlines of all visible elements, without strokes.
     pub fn add_to(&self, bounds: &mut Bounds) {
         if let Some(corners) = &self.block.corners {
             corners.add_to(bounds, &self.frame.map);
@@ -261,14 +265,14 @@ impl Run<'_> {
         }
     }
 
-    /// The map from the block's unit frame to the plane.
+    /// Returns the map from the block's unit frame to the plane.
     #[must_use]
     pub fn map(&self) -> &DAffine2 {
         &self.frame.map
     }
 }
 
-/// The direction of the frame that a block is worked out in.
+/// Returns the direction of the frame in which a block is computed.
 fn unit(reversed: bool) -> Direction {
     if reversed {
         Direction::XReflected
@@ -277,7 +281,8 @@ fn unit(reversed: bool) -> Direction {
     }
 }
 
-/// How many leaves are born before each step from the object's, up to where all are.
+/// Returns the number of leaves born before each step, counted from the object's birth, up to the step by
+/// which all are born.
 fn births(leaves: &[Leaf]) -> Vec<usize> {
     let last = leaves.iter().map(|leaf| leaf.born).max().unwrap_or(0);
     let mut births = vec![0; last as usize + 2];
@@ -290,18 +295,18 @@ fn births(leaves: &[Leaf]) -> Vec<usize> {
     births
 }
 
-/// The corners of outlines, by coordinate, so that many are moved at once.
+/// Corners of outlines, stored by coordinate for vector instructions.
 #[derive(Debug, Default)]
 struct Corners {
     xs: Vec<f64>,
     ys: Vec<f64>,
 }
 
-/// So many corners are moved at once: with their boxes they fit into the registers.
+/// Number of corners that are mapped at once: their boxes fit into the vector registers.
 const LANES: usize = 4;
 
 impl Corners {
-    /// With those of another outline; `None` if it has curves.
+    /// Adds the mapped corners of an outline; `None` if it has curves.
     fn with(mut self, start: DVec2, pieces: &[Piece], map: &DAffine2) -> Option<Self> {
         self.add(map.transform_point2(start));
         for piece in pieces {
@@ -314,14 +319,14 @@ impl Corners {
     }
 
     fn add(&mut self, corner: DVec2) {
-        // Where a line goes on its corner is there already.
+        // A line that continues from the last corner adds no new start.
         if self.xs.last() != Some(&corner.x) || self.ys.last() != Some(&corner.y) {
             self.xs.push(corner.x);
             self.ys.push(corner.y);
         }
     }
 
-    /// Moves all corners and adds them to a box.
+    /// Extends a box by the images of all corners under a map.
     fn add_to(&self, bounds: &mut Bounds, map: &DAffine2) {
         let [x, y] = [map.matrix2.row(0), map.matrix2.row(1)];
         let mut wide = [[f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]];
@@ -343,13 +348,13 @@ impl Corners {
     }
 }
 
-/// Makes room for one coordinate of moved corners.
+/// Extends a range by one coordinate of mapped corners.
 #[inline]
 fn stretch(range: &mut [[f64; LANES]; 2], xs: &[f64; LANES], ys: &[f64; LANES], row: DVec2) {
     let [low, high] = range;
     for lane in 0..LANES {
         let value = row.x * xs[lane] + row.y * ys[lane];
-        // In this form it is one instruction.
+        // Each comparison of this form compiles to a single instruction.
         low[lane] = if value < low[lane] { value } else { low[lane] };
         high[lane] = if value > high[lane] {
             value

@@ -1,8 +1,8 @@
-//! What kinds of elements there are at every step, and how many come of each, without a walk.
+//! Numbers of elements by kind and step, and of their descendants, computed without a walk.
 //!
-//! What becomes of an element depends on its object, and on its length where that decides what is
-//! replaced, if all maps are fixed (and similarities): elements that have these in common are counted
-//! as one.
+//! If all maps are fixed, the descendants of an element depend only on its object and, where a cutoff length
+//! decides about replacement (all maps must then be similarities), on its length. Elements that agree in
+//! these are counted as one kind.
 
 use std::collections::BTreeMap;
 
@@ -11,58 +11,57 @@ use crate::graph::{Chain, Graph, Instance, Replacement};
 
 use super::Subtree;
 
-/// More kinds than this, at all steps together, are left to the walk.
+/// Maximum number of kinds, over all steps; beyond it no census is made.
 const MOST_KINDS: usize = 1 << 18;
 
-/// The bits of a length that rounding may change.
+/// Number of low bits of a length that are rounded away.
 const ROUNDED: u32 = 12;
 
-/// Lengths that differ by no more than this part of them may be the same, however they have been
-/// worked out.
+/// Relative difference below which two lengths may be equal except for rounding.
 const NEAR: f64 = 1e-10;
 
-/// More elements than this are not counted: multiples of the number are still numbers.
+/// Largest number of elements that is reported; small multiples of it do not overflow.
 const MOST: u128 = 1 << 120;
 
-/// What elements have in common that become the same; directions are told apart as well.
+/// Key of a kind: properties that determine an element's descendants, and its direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     object: usize,
-    /// Bits of the length, with room for rounding.
+    /// Upper bits of the length, rounded.
     length: u64,
     direction: Direction,
 }
 
-/// Elements of one step that become the same.
+/// Elements of one step with equal descendants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kind {
     pub(crate) object: usize,
-    /// As if seeds that are placed as the initiator were not.
+    /// Direction, composed along the path through seeds of any placement.
     pub(crate) direction: Direction,
-    /// How many there are, or the largest number that this can tell.
+    /// Number of elements, saturated at the largest integer.
     pub(crate) count: u64,
     /// Whether they are replaced in the next step.
     pub(crate) is_replaced: bool,
-    /// How long one of them is; 0 where that does not matter.
+    /// Length of one of them; 0 if lengths do not matter.
     length: f64,
-    /// How many elements of its fractal stand in the end for each of them.
+    /// Number of descendants of each in its own fractal at the last step.
     becomes: u128,
 }
 
 type Standing = BTreeMap<Key, Kind>;
 
-/// The kinds of elements at every step of a growth.
+/// Kinds of elements at every step of a growth.
 #[derive(Debug)]
 pub(crate) struct Census {
     steps: Vec<Standing>,
-    /// The length below which nothing is replaced; 0 if there is none.
+    /// Length below which elements are not replaced; 0 if there is no such length.
     shortest: f64,
     largest: Option<u128>,
 }
 
 impl Census {
-    /// Of a number of steps, in which nothing is replaced that is shorter than a length; `None` where
-    /// the graph does not tell what becomes of elements, or where there are too many kinds of them.
+    /// Counts the elements of `steps` steps, where elements shorter than `shortest` are not replaced. `None`
+    /// if the graph does not determine the descendants of elements, or if there are too many kinds.
     pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Option<Self> {
         let tells = graph.is_plain()
             && !graph.counts_index()
@@ -118,7 +117,7 @@ impl Census {
         Some(census)
     }
 
-    /// The element that the initiator stands in the place of.
+    /// Returns the kind of the unit frame, in which the initiator stands.
     fn whole(&self) -> Kind {
         Kind {
             object: 0,
@@ -130,8 +129,8 @@ impl Census {
         }
     }
 
-    /// Counts what kinds become, from the last step up; tells the number of elements of the largest
-    /// fractal.
+    /// Counts the descendants of all kinds, from the last step backwards, and returns the number of elements
+    /// of the largest fractal.
     fn count_up(&mut self, graph: &Graph, start: &Chain) -> u128 {
         let mut largest = 0;
         for step in (0..self.steps.len()).rev() {
@@ -145,7 +144,7 @@ impl Census {
                         }
                         sum(below, kind, &production.body)
                     }
-                    // Nothing comes of it.
+                    // The replacement has no instances.
                     _ if kind.is_replaced => 0,
                     _ => 1,
                 };
@@ -156,18 +155,19 @@ impl Census {
         largest.max(first)
     }
 
-    /// The kinds of elements that are born in each step.
+    /// Iterates over the kinds of elements born in each step.
     pub(crate) fn steps(&self) -> impl Iterator<Item = impl Iterator<Item = &Kind>> {
         self.steps.iter().map(BTreeMap::values)
     }
 
-    /// The number of elements of the largest fractal, if it is certain that a walk comes to as many, of
-    /// every kind, and if that is no more than some 10^36.
+    /// Returns the number of elements of the largest fractal, if rounding of lengths cannot change it and it
+    /// does not exceed 2¹²⁰.
     pub(crate) fn largest(&self) -> Option<u128> {
         self.largest
     }
 
-    /// How many elements of its fractal stand in the end for one that is not the last of its line.
+    /// Returns the number of descendants, in its own fractal at the last step, of an element that can be
+    /// replaced.
     pub(super) fn becomes(&self, subtree: &Subtree) -> u128 {
         let length = if self.shortest > 0.0 {
             subtree.frame.stretch()
@@ -201,7 +201,7 @@ fn rounded(length: f64) -> u64 {
     (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED
 }
 
-/// What an instance is in the place of an element of a kind, and how long.
+/// Returns the key and the length of an instance in the place of an element of a kind.
 fn child(parent: &Kind, instance: &Instance) -> (Key, f64) {
     let length = parent.length * instance.frame.stretch();
     let key = Key {
@@ -225,7 +225,7 @@ fn add(standing: &mut Standing, parent: &Kind, instance: &Instance) {
     kind.count = kind.count.saturating_add(parent.count);
 }
 
-/// What the instances of a chain become in the place of an element of a kind.
+/// Returns the number of descendants of a chain in the place of an element of a kind.
 fn sum(standing: &Standing, parent: &Kind, chain: &Chain) -> u128 {
     let children = chain.instances.iter().map(|instance| {
         let (key, _) = child(parent, instance);

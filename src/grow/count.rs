@@ -1,3 +1,5 @@
+//! Exact counts and the bounding box of an approximant, by a walk over all of its elements.
+
 use std::convert::Infallible;
 use std::num::NonZero;
 
@@ -6,30 +8,30 @@ use crate::graph::Graph;
 
 use super::{Element, Fractal, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
 
-/// Counting is fast: spans must be long to be worth while.
+/// Number of elements in a span. Counting is fast: only long spans are worth the overhead.
 const MANY: u64 = 1 << 16;
 
-/// What an approximant is found to have, by walking over all of it.
+/// Result of [`count`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counted {
-    /// The numbers of elements and of fractals.
+    /// Numbers of elements and of fractals.
     pub walked: Walked,
-    /// The number of elements that are replaced in the next step.
+    /// Number of elements that are replaced in the next step.
     pub fertile: u64,
-    /// The sum of |p1 − p0| over all elements.
+    /// Sum of |p1 − p0| over all elements.
     pub length: f64,
-    /// The box of what is drawn, without strokes; empty if nothing is visible.
+    /// Bounding box of the outlines, without strokes; empty if nothing is visible.
     pub bounds: Bounds,
 }
 
-/// Walks over an approximant on several threads, and tells what it has.
+/// Counts the elements of an approximant and computes its bounding box, on several threads.
 ///
-/// This knows nothing of forecasts and of what the graph tells of bounds: it puts every element in
-/// its place. The result does not depend on the number of threads, to the last bit.
+/// Neither the forecast nor the bounds of the graph are used: every element is placed. The result does not
+/// depend on the number of threads, to the last bit.
 ///
 /// # Errors
 ///
-/// If the walk ends early.
+/// Returns an error if the walk ends early.
 pub fn count(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -64,7 +66,7 @@ pub fn count(
     })
 }
 
-/// Counts what it sees.
+/// Visitor that counts elements and extends a box.
 #[derive(Clone, Copy)]
 struct Counter<'g> {
     graph: &'g Graph,

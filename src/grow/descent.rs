@@ -1,4 +1,4 @@
-//! One fractal at one step: its elements in order of traversal, depth-first.
+//! Depth-first traversal of one fractal at one step.
 
 use crate::geometry::{Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
@@ -11,83 +11,82 @@ use super::sizes::Sizes;
 use super::start::{Standing, Start, StartChain, birth, planted};
 use super::{Enter, Subtree};
 
-/// An element that a descent has found.
+/// Element that a descent has reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub(super) standing: Standing,
     pub(super) object: usize,
-    /// The step of its birth.
+    /// Step of its birth.
     pub(super) level: u32,
     pub(super) joined: bool,
-    /// Its rank at its level, where ranks are counted; else 0.
+    /// Rank at its level; 0 unless ranks are counted.
     pub(super) rank: u64,
-    /// Its rank in its fractal, from 1; of an element that is replaced, that of the first one that comes
-    /// of it.
+    /// Rank in its fractal, from 1; for an element that is replaced, the rank of its first descendant.
     pub(super) index: u128,
 }
 
-/// A block that a descent has come to instead of its elements.
+/// Block that a descent has reached in place of its elements.
 pub(super) struct FoundRun<'b> {
     pub(super) block: &'b Block,
     pub(super) object: usize,
     pub(super) frame: Frame,
     pub(super) length: f64,
     pub(super) coat: Coat,
-    /// The step of birth of the object that became the block.
+    /// Step of birth of the object that the block replaces.
     pub(super) level: u32,
-    /// Whether the pen stands where the object starts.
+    /// Whether the preceding element ends where the object starts.
     pub(super) joined: bool,
-    /// The rank of the first element.
+    /// Rank of the first element.
     pub(super) index: u128,
 }
 
-/// An element that a descent has come to and leaves to another one.
+/// Element that a descent has reached and whose subtree it leaves to another descent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundSubtree {
-    /// The element; it is joined if the pen stands where it starts.
+    /// Root of the subtree; `joined` is whether the preceding element ends where it starts.
     pub(super) root: Found,
-    /// How many elements may come of it at most.
+    /// Upper bound of its number of descendants.
     pub(super) size: u64,
-    /// Whether what ends it ends what ends with it.
+    /// Whether its end point is also that of every replaced ancestor of which it is the last part.
     pub(super) meets_end: bool,
-    /// The rank of the last element that comes of it, where that is known.
+    /// Rank of its last descendant, if a census is available.
     pub(super) last: u128,
 }
 
-/// What a descent comes to.
+/// Next position of a descent.
 pub(super) enum Next<'b> {
-    /// An element of the approximant.
+    /// Element of the approximant.
     Element(Found),
-    /// Elements in a row, where it stops at blocks.
+    /// Consecutive elements, if the descent stops at blocks.
     Run(FoundRun<'b>),
-    /// An element that is replaced, where it stops at those. Whatever follows is taken to be joined
-    /// to it.
+    /// Element to be replaced, if the descent stops at subtrees. The descent assumes that its last
+    /// descendant reaches its end point.
     Subtree(FoundSubtree),
-    /// Elements that have been replaced, many of them: a chance to stop.
+    /// Many elements were replaced since the last result: an opportunity to stop.
     Pause,
-    /// The end of the fractal.
+    /// End of the fractal.
     End,
 }
 
-/// Where a descent stops short of the elements.
+/// Condition under which a descent does not replace an element.
 #[derive(Clone, Copy)]
 pub(super) enum Stop<'b> {
     Nowhere,
-    /// Where a block stands for them.
+    /// The element is replaced by a block.
     AtBlocks(&'b Blocks),
-    /// Where they are few.
+    /// The number of descendants is known to be small.
     AtSubtrees(&'b Sizes),
 }
 
-/// Visits between two chances to stop.
+/// Number of visits between two opportunities to stop.
 pub(super) const PATIENCE: u64 = 1 << 12;
 
-/// The chain that a level of the stack goes through.
+/// Source of the chain of a stack entry.
 #[derive(Clone, Copy)]
 enum Source<'g> {
     Start,
     Fixed(&'g Chain),
-    /// In the pool of evaluated productions.
+    /// Chain in the pool of evaluated productions.
     Pooled(usize),
 }
 
@@ -95,38 +94,39 @@ struct Entry<'g> {
     standing: Standing,
     source: Source<'g>,
     reversed: bool,
-    /// How many instances have been visited.
+    /// Number of instances visited.
     next: usize,
-    /// Whether what ends this chain ends all the elements that were replaced on the way to it.
+    /// Whether the end of the chain is the end point of all replaced elements that end with it.
     meets_end: bool,
-    /// The step of birth of the chain's elements.
+    /// Step of birth of the chain's elements.
     level: u32,
 }
 
-/// A depth-first walk over one fractal of approximant `target`.
+/// Depth-first traversal of one fractal of approximant `target`.
 pub(super) struct Descent<'g> {
     graph: &'g Graph,
     born: u32,
     target: u32,
     stack: Vec<Entry<'g>>,
-    /// Whether the pen stands at the end of the element before, free to go on.
+    /// Whether the preceding element ends where the next one starts.
     joined: bool,
     ranks: Ranks,
-    /// What tells how many elements come of those that are left out or left to others, if it is to.
+    /// Census that supplies the number of descendants of elements that are skipped, kept or left to other
+    /// descents.
     pub(super) census: Option<&'g Census>,
-    /// The number of elements of the fractal so far.
+    /// Number of elements of the fractal so far.
     pub(super) index: u128,
     pool: Vec<Production>,
     free: Vec<usize>,
     evaluator: Evaluator,
-    /// The number of visits since the caller has last taken it.
+    /// Number of visits since the caller last reset it.
     pub(super) visited: u64,
 }
 
-/// The numbers of elements of every level that have been visited so far.
+/// Numbers of elements visited so far, by level.
 ///
-/// An infertile element counts at its level and at all later ones: what it adds there is passed
-/// down when the walk next goes there.
+/// An infertile element counts at its level and at all later ones: the increment of the later levels is
+/// propagated when the walk next enters them.
 #[derive(Default)]
 struct Ranks {
     counts: Vec<u64>,
@@ -134,7 +134,7 @@ struct Ranks {
 }
 
 impl Ranks {
-    /// Counts an element at a level, and tells its rank from 1.
+    /// Counts an element at a level, and returns its rank from 1.
     fn count(&mut self, level: usize, kept: bool) -> u64 {
         self.counts[level] += 1;
         if kept && level + 1 < self.pending.len() {
@@ -143,7 +143,7 @@ impl Ranks {
         self.counts[level]
     }
 
-    /// The walk goes down to a level.
+    /// Enters a level: applies its pending increment and propagates it to the next level.
     fn enter(&mut self, level: usize) {
         let pending = std::mem::take(&mut self.pending[level]);
         self.counts[level] += pending;
@@ -187,8 +187,8 @@ impl<'g> Descent<'g> {
         }
     }
 
-    /// A walk over what an object becomes in a number of steps, alone in the unit frame. The pen
-    /// stands where the object starts.
+    /// Creates a descent over the expansion of an object in a number of steps, alone in the unit frame, as if
+    /// a preceding element ended where the object starts.
     pub(super) fn below(graph: &'g Graph, object: usize, steps: u32, direction: Direction) -> Self {
         let mut start = Start::initiator(graph, steps, 0);
         start.standing.frame.direction = direction;
@@ -196,27 +196,26 @@ impl<'g> Descent<'g> {
         descent.stack.clear();
         descent.joined = true;
         if let Replacement::Fixed(_) = graph.objects()[object].replacement {
-            // Fixed productions are there without being worked out.
+            // Fixed productions need no evaluation, which could fail.
             let _ = descent.push(start.standing, object, 0, 0, true);
         }
         descent
     }
 
-    /// A walk over what comes of other walks' subtrees, one after another, with nothing to begin
-    /// with.
+    /// Creates a descent over subtrees that other walks have reached; initially it has none.
     pub(super) fn over_subtrees(graph: &'g Graph, target: u32) -> Self {
         let mut descent = Self::new(graph, &Start::initiator(graph, target, 0), target);
         descent.stack.clear();
         descent
     }
 
-    /// The same with a census of the approximant, so that ranks count what is not visited.
+    /// Attaches a census of the approximant, so that ranks include elements that are not visited.
     pub(super) fn counting(self, census: Option<&'g Census>) -> Self {
         Self { census, ..self }
     }
 
-    /// Comes to an element that another walk has found, and tells its rank: as the other walk has it
-    /// where that counts what is not visited.
+    /// Takes over an element from another descent, and returns its rank: the other descent's, if a census
+    /// counts the elements that are not visited.
     pub(super) fn come_to(&mut self, found: &Found) -> u128 {
         self.index = match self.census {
             Some(_) => found.index,
@@ -225,8 +224,8 @@ impl<'g> Descent<'g> {
         self.index
     }
 
-    /// Goes down into a subtree of a fractal that was born in a step, once the one before is done.
-    /// `joined` tells whether the pen stands where it starts.
+    /// Enters a subtree of a fractal born in step `born`, after the preceding subtree is exhausted. `joined`
+    /// is whether the preceding element ends where it starts.
     pub(super) fn enter<'b>(
         &mut self,
         subtree: &FoundSubtree,
@@ -255,7 +254,7 @@ impl<'g> Descent<'g> {
         Ok(None)
     }
 
-    /// The block that stands for what comes of an element, if there is one.
+    /// Returns the block that replaces an element, if there is one.
     #[inline]
     fn run<'b>(
         &mut self,
@@ -282,12 +281,12 @@ impl<'g> Descent<'g> {
         })
     }
 
-    /// Whether the last element joins the first one of a ring; to be asked at the end.
+    /// Returns whether the last element reaches the end of the fractal's chain; valid at the end only.
     pub(super) fn ends_joined(&self) -> bool {
         self.joined
     }
 
-    /// Goes on to the next element of approximant `target`, or to where it stops; `enter` is asked
+    /// Advances to the next element of approximant `target`, or to where the descent stops; `enter` is called
     /// before an element is replaced.
     #[inline]
     pub(super) fn next<'b>(
@@ -310,7 +309,7 @@ impl<'g> Descent<'g> {
             };
             let count = chain.instances.len();
             if entry.next == count {
-                // Only an empty chain is still on the stack when it is done.
+                // An empty chain is the only one still on the stack when it is exhausted.
                 self.joined = false;
                 self.pop();
                 continue;
@@ -388,7 +387,7 @@ impl<'g> Descent<'g> {
                 }));
             }
             if last {
-                // The chain is done: what follows the child's last element follows the chain's.
+                // The chain is exhausted: the successor of the child's last element is that of the chain.
                 self.pop();
             }
             if entered == Enter::Skip {
@@ -438,7 +437,7 @@ impl<'g> Descent<'g> {
         }
     }
 
-    /// Goes down into what replaces an element.
+    /// Enters the production that replaces an element.
     fn push(
         &mut self,
         standing: Standing,
@@ -476,7 +475,7 @@ impl<'g> Descent<'g> {
         Ok(())
     }
 
-    /// Works out the production of an object where it stands, into the pool.
+    /// Computes the production of an element into the pool, and returns its number there.
     fn evaluate(
         &mut self,
         standing: &Standing,
@@ -499,7 +498,7 @@ impl<'g> Descent<'g> {
         Ok(number)
     }
 
-    /// The fractals that an element of approximant `target` seeds when it is replaced.
+    /// Returns the fractals that an element of approximant `target` seeds when it is replaced.
     pub(super) fn seeds(&mut self, found: &Found) -> Result<Vec<Start<'g>>, CompileError> {
         let standing = found.standing;
         let graph = self.graph;

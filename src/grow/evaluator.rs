@@ -1,22 +1,24 @@
+//! Productions that are computed for each element.
+
 use crate::geometry::DVec2;
 use crate::graph::{CompileError, Evaluated, Graph, Production, Replacement};
 use crate::rule;
 
 use super::start::Standing;
 
-/// When an element is replaced.
+/// Circumstances of a replacement, as far as they do not depend on the place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
-    /// The step in which its fractal was born,
+    /// Step in which the element's fractal was born.
     pub(crate) born: u32,
-    /// and that in which it was.
+    /// Step in which the element was born.
     pub(crate) level: u32,
-    /// Its rank in its fractal, where ranks are counted; else 0.
+    /// Rank of the element in its fractal; 0 unless the walk counts ranks.
     pub(crate) rank: u64,
 }
 
 impl Moment {
-    /// What the expressions of a rule see of it, where an element stands.
+    /// Returns the values that a rule's expressions see of the element.
     #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
     pub(crate) fn seen(self, standing: &Standing) -> rule::Moment {
         rule::Moment {
@@ -28,7 +30,7 @@ impl Moment {
     }
 }
 
-/// Works out productions where elements stand; memory is used again.
+/// Evaluator of productions, with buffers that are reused.
 #[derive(Default)]
 pub(crate) struct Evaluator {
     slots: Vec<f64>,
@@ -36,7 +38,7 @@ pub(crate) struct Evaluator {
 }
 
 impl Evaluator {
-    /// Overwrites a production with that of an object that is [`Replacement::Evaluated`].
+    /// Computes the production of an object that is [`Replacement::Evaluated`], and overwrites `production`.
     pub(crate) fn evaluate(
         &mut self,
         graph: &Graph,

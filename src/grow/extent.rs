@@ -1,3 +1,5 @@
+//! Bounding box of an approximant, by a search or a walk.
+
 use std::convert::Infallible;
 
 use crate::geometry::Bounds;
@@ -8,14 +10,14 @@ use super::{Element, Enter, Fractal, Growth, Reaches, Visitor, WalkError, search
 #[cfg(test)]
 mod tests;
 
-/// The box of what an approximant draws, without stroke width: by a search for what reaches
-/// farthest, where the graph tells how far things reach, or by walking over all of it.
+/// Computes the bounding box of an approximant, without stroke width: by branch and bound if the graph
+/// bounds all subtrees, otherwise by a walk over all elements.
 ///
-/// [`Graph::bounds`] tells it without either where it can.
+/// [`Graph::bounds`] returns the box without either, where it can.
 ///
 /// # Errors
 ///
-/// If the walk ends early.
+/// Returns an error if the walk ends early.
 pub fn extent(graph: &Graph, growth: &Growth<'_>) -> Result<Bounds, WalkError<Infallible>> {
     let reaches = Reaches {
         all: &graph.reaches(|object| graph.outline_radius(object)),

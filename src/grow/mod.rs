@@ -1,13 +1,14 @@
-//! Growing: the walk over the elements of an approximant, in order, streamed.
+//! Growth: depth-first walks that stream the elements of an approximant in order.
 //!
-//! The walk goes depth-first through the graph. It holds one entry a level, so its memory grows
-//! with the number of steps and not with the number of elements. Where new fractals are seeded, a
-//! fractal is walked once for its own elements and again, to ever greater depth, for its seeds. What
-//! an object becomes in its last steps, or before it is too short to be replaced, is worked out once, as a
-//! block, for visitors that take elements by [`Run`]s. Many threads walk over the subtrees of one walk, and what they make of
-//! them comes in order. Who only wants to know the box of it all has no need of a walk where the graph
-//! tells how far things reach: a search replaces only what may reach farther than what it has found. A
-//! limit set whose copies overlap is found without elements, by cells of the plane.
+//! A walk holds one entry for each level of the graph: its memory grows with the number of steps, not with
+//! the number of elements. A fractal that seeds new fractals is walked once for its own elements, and again,
+//! to increasing depth, for its seeds. The expansion of an object over its last steps, or down to a cutoff
+//! length, is computed once, as a block, for visitors that accept elements in [`Run`]s. Several threads can
+//! walk over subtrees of one walk; their results are taken in order.
+//!
+//! A bounding box needs no walk where the graph bounds all subtrees: a search replaces only elements whose
+//! subtrees may extend beyond the box found before. A limit set whose copies overlap is computed without
+//! elements, on cells of the plane.
 
 mod block;
 mod cells;
@@ -46,30 +47,30 @@ use crate::geometry::Frame;
 use crate::graph::CompileError;
 use crate::instancing::Coat;
 
-/// An element of an approximant.
+/// Element of an approximant.
 #[derive(Clone, Copy, Debug)]
 pub struct Element {
-    /// Where it stands.
+    /// Frame, in the graph's coordinates.
     pub frame: Frame,
-    /// Its length as a multiple of the initiator element's that it descends from.
+    /// Length as a multiple of that of the initiator's element from which it descends.
     pub length: f64,
-    /// What it is tinted with.
+    /// Appearance composed of its own and those of its ancestors.
     pub coat: Coat,
-    /// Its rank in its fractal, from 1.
+    /// Rank in its fractal, from 1.
     pub index: u128,
-    /// The object that it is.
+    /// Number of its object.
     pub object: usize,
-    /// The step of its birth: 0 for the initiator's elements.
+    /// Step of its birth: 0 for the initiator's elements.
     pub born: u32,
     /// Whether it is replaced in the next step.
     pub fertile: bool,
-    /// Whether its first point of traversal joins the last one of the element before it; the first
-    /// element of a fractal joins the last one if the fractal is a ring.
+    /// Whether its first point of traversal joins the last one of the preceding element; the first element
+    /// of a fractal joins the last one if the fractal is a ring.
     pub joined: bool,
 }
 
 impl Element {
-    /// The element as one that may be replaced.
+    /// Returns the element as the root of a subtree.
     #[must_use]
     pub fn subtree(&self) -> Subtree {
         Subtree {
@@ -80,126 +81,127 @@ impl Element {
     }
 }
 
-/// A fractal of an approximant: a list of elements of one age.
+/// Fractal of an approximant: the elements that descend from the initiator, or from one seed part, without
+/// the fractals that they seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fractal {
-    /// Its number in the order of the walk, from 0.
+    /// Number in the order of the walk, from 0.
     pub number: u64,
-    /// Its age: the number of times that it has been replaced.
+    /// Age: the number of steps since its birth.
     pub age: u32,
-    /// Whether it began as a closed chain.
+    /// Whether the chain from which it starts is closed.
     pub is_ring: bool,
 }
 
-/// An element that the walk is about to replace.
+/// Element that a walk is about to replace, as the root of a subtree.
 #[derive(Clone, Copy, Debug)]
 pub struct Subtree {
-    /// Where it stands.
+    /// Frame, in the graph's coordinates.
     pub frame: Frame,
-    /// The object that it is.
+    /// Number of its object.
     pub object: usize,
-    /// The step of its birth: 0 for the initiator's elements.
+    /// Step of its birth: 0 for the initiator's elements.
     pub born: u32,
 }
 
-/// What a walk does with an element that can be replaced.
+/// Decision of a visitor about an element that can be replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enter {
-    /// It is replaced.
+    /// Replaces the element.
     Replace,
-    /// It is visited as an element, as if its approximant were the last; it seeds nothing.
+    /// Visits the element itself, as in the last approximant; it seeds nothing.
     Keep,
-    /// Nothing of it is visited. The elements before and after it are not joined.
+    /// Visits neither the element nor its subtree. The elements before and after it are not joined.
     Skip,
 }
 
-/// What receives the elements of a walk.
+/// Receiver of the elements of a walk.
 pub trait Visitor {
-    /// What may go wrong in it.
+    /// Error that ends a walk.
     type Error;
 
-    /// A fractal begins.
+    /// Begins a fractal.
     ///
     /// # Errors
     ///
-    /// Whatever ends the walk.
+    /// Returns an error to end the walk.
     fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
 
-    /// A visitor of a span of a walk begins in the middle of a fractal.
+    /// Resumes a fractal that an earlier span of the walk began.
     fn go_on(&mut self, _: Fractal) {}
 
-    /// A visitor of a span of a walk sees these ranks of one fractal, where that is known before.
+    /// Announces the ranks that the visitor of a span receives. Called only if they are known before the
+    /// walk and belong to one fractal.
     fn expect(&mut self, _: Range<u128>) {}
 
-    /// Says what is done with an element that can be replaced. An element may be asked about more
-    /// than once, where fractals are walked again for their seeds: the answer must be the same, unless
-    /// nothing that becomes of the element matters any more.
+    /// Decides about an element that can be replaced. Walks for seeds repeat the call for an element; the
+    /// result must be the same each time, unless the subtree of the element no longer matters.
     ///
-    /// Not asked where a walk counts indices ([`Graph::counts_index`](crate::graph::Graph)): what
-    /// is not visited could not be counted.
+    /// Not called if the walk counts indices ([`Graph::counts_index`](crate::graph::Graph)), because elements
+    /// that are not visited could not be counted.
     #[inline]
     fn enter(&mut self, _: &Subtree) -> Enter {
         Enter::Replace
     }
 
-    /// The length below which nothing is replaced, if [`Visitor::enter`] may say anything but
-    /// [`Enter::Replace`]; 0 if there is none. A walk on several threads is divided by it; objects
-    /// that lead to seeds which are placed as the initiator may be replaced at any length.
+    /// Returns the length below which elements are not replaced, if [`Visitor::enter`] may return anything
+    /// but [`Enter::Replace`]; 0 if no length is the limit. A walk on several threads is divided by this
+    /// length; objects that lead to seeds placed as the initiator may be replaced at any length.
     fn cuts(&self) -> Option<f64> {
         None
     }
 
-    /// An element of the fractal, in order of traversal.
+    /// Receives an element of the fractal, in order of traversal.
     ///
     /// # Errors
     ///
-    /// Whatever ends the walk.
+    /// Returns an error to end the walk.
     fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
 
-    /// Whether elements whose places are fixed come by runs, as many of them do then, without being
-    /// asked for one by one: only a length, if anything, says what [`Visitor::enter`] keeps. Their frames
-    /// may differ in the last bits from those of elements that come one by one.
+    /// Returns whether the visitor accepts runs of elements whose frames are fixed. [`Visitor::enter`] is not
+    /// called for the elements of a run, so it may keep elements only for being shorter than
+    /// [`Visitor::cuts`]. Frames of elements in runs may differ by rounding from those of single elements.
     fn takes_runs(&self) -> bool {
         false
     }
 
-    /// The most elements that a run should have, of those that it may have.
+    /// Returns the largest number of elements that a run should have.
     fn longest_run(&self) -> u64 {
         u64::MAX
     }
 
-    /// Elements of the fractal in a row, if the visitor [takes runs](Visitor::takes_runs).
+    /// Receives consecutive elements of the fractal, if the visitor [accepts runs](Visitor::takes_runs).
     ///
     /// # Errors
     ///
-    /// Whatever ends the walk.
+    /// Returns an error to end the walk.
     fn run(&mut self, run: &Run<'_>) -> Result<(), Self::Error> {
         run.elements()
             .try_for_each(|element| self.element(&element))
     }
 
-    /// The fractal ends. `joined` tells whether its last element is drawn to the very end of the
-    /// chain that started it: the fractal is a closed path if its first element is joined as well.
+    /// Ends the fractal. `joined` is whether its last element reaches the end of the chain from which the
+    /// fractal starts: the fractal is a closed path if its first element is joined as well.
     ///
     /// # Errors
     ///
-    /// Whatever ends the walk.
+    /// Returns an error to end the walk.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
 }
 
-/// Why a walk ends early.
+/// Error of a walk.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WalkError<E> {
-    /// There are more elements than allowed.
+    /// The number of elements exceeds the limit.
     #[error("there are more than {limit} elements")]
     TooManyElements {
-        /// The largest number allowed.
+        /// Largest number of elements.
         limit: u64,
     },
-    /// The elements are few, but the way to them is long.
+    /// The number of replaced elements visited exceeds the limit, although few elements are drawn.
     #[error("more than {limit} elements that are replaced lie on the way to those that are drawn")]
     TooLong {
-        /// The largest number of replaced elements that are visited.
+        /// Largest number of elements visited, replaced ones included.
         limit: u64,
     },
     /// A generator has a point that is not finite.
@@ -208,7 +210,7 @@ pub enum WalkError<E> {
     /// The walk was cancelled.
     #[error("interrupted")]
     Cancelled,
-    /// What the visitor said.
+    /// Error that the visitor returned.
     #[error("{0}")]
     Visitor(E),
 }

@@ -1,4 +1,4 @@
-//! The outlines of an approximant: what it draws, as shapes.
+//! Outlines of an approximant as shapes.
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::graph::Graph;
@@ -6,13 +6,14 @@ use crate::rule::{BaseElement, Piece};
 
 use super::{Element, Fractal, Growth, Visitor, WalkError, walk};
 
-/// What an approximant draws, in the image of a map: elements that join are one open outline, those
-/// with closed base elements are closed ones. A fractal that is a closed chain is a closed outline if
-/// it `fills`.
+/// Computes the outlines of an approximant under a map. Elements that join form one open outline; closed
+/// base elements form closed ones. If `fills` is set, a fractal that is a closed path forms one closed
+/// outline.
 ///
 /// # Errors
 ///
-/// If the walk ends early, or if there are more than `most` pieces.
+/// Returns an error if the walk ends early, if there are more than `most` pieces, or if a point is not
+/// finite.
 pub(crate) fn outlines(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -33,13 +34,13 @@ pub(crate) fn outlines(
     Ok(outliner.done)
 }
 
-/// Why there are no outlines.
+/// Error of [`outlines`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum OutlineError {
-    /// There are too many pieces.
+    /// The number of pieces exceeds the limit.
     #[error("there are too many lines")]
     TooMany,
-    /// One of them is not finite.
+    /// A point is not finite.
     #[error("a line leads beyond all numbers")]
     NotFinite,
 }
@@ -48,10 +49,10 @@ struct Outliner<'g> {
     graph: &'g Graph,
     map: DAffine2,
     fills: bool,
-    /// How many more pieces there may be.
+    /// Number of pieces that may still be added.
     left: usize,
     is_ring: bool,
-    /// The lines of the fractal that is walked over; elements may join the last one.
+    /// Lines of the current fractal; the next element may continue the last one.
     lines: Vec<Line>,
     done: Vec<BaseElement>,
 }
@@ -60,9 +61,9 @@ struct Outliner<'g> {
 struct Line {
     start: DVec2,
     pieces: Vec<Piece>,
-    /// Whether its first element joins what comes before.
+    /// Whether its first element joins the preceding element.
     joined: bool,
-    /// Whether its last element ends where its frame does.
+    /// Whether its last element ends at the end point of its frame.
     meets_end: bool,
 }
 
@@ -141,7 +142,8 @@ impl Visitor for Outliner<'_> {
     }
 }
 
-/// Open outlines do not end where they start: one that does is two. What has no extent is a dot.
+/// Returns a path as open outlines, which must not end where they start: a path that returns to its start
+/// is split into two, and a path without extent becomes a dot.
 fn open(start: DVec2, mut pieces: Vec<Piece>) -> impl Iterator<Item = BaseElement> {
     let before = pieces.len().saturating_sub(1);
     let returns = pieces.last().is_some_and(|last| last.end() == start);

@@ -1,10 +1,12 @@
+//! Progress of walks, shared between threads.
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How far the walks of a job are, to be read from another thread while they go on.
+/// Progress of the walks of a job, readable from other threads.
 ///
-/// Walks count what they have met every few thousand elements. How much there is to be met, over
-/// all walks of the job, is announced by those who know: an exporter that walks once, a picture
-/// once its survey has told what there is to draw.
+/// A walk adds the number of elements visited every few thousand elements. The total over all walks of a job
+/// is announced by the code that knows it: by an exporter before its single walk, by a picture after its
+/// prepass has determined the number of elements to draw.
 #[derive(Debug, Default)]
 pub struct Progress {
     walked: AtomicU64,
@@ -12,26 +14,26 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Announces walks over so many elements, those that have been met already included.
+    /// Adds elements to the expected total, which includes those already visited.
     pub fn expect(&self, elements: u64) {
-        // Only ever shown: what is beyond all counting may as well wrap around.
+        // A wrapped sum is harmless: the value is only displayed.
         self.expected.fetch_add(elements, Ordering::Relaxed);
     }
 
-    /// The elements that have been met so far.
+    /// Returns the number of elements visited so far.
     #[must_use]
     pub fn walked(&self) -> u64 {
         self.walked.load(Ordering::Relaxed)
     }
 
-    /// The elements that are going to be met in all, once that is known.
+    /// Returns the total number of elements to be visited, if it has been announced.
     #[must_use]
     pub fn expected(&self) -> Option<u64> {
         let expected = self.expected.load(Ordering::Relaxed);
         (expected > 0).then_some(expected)
     }
 
-    /// Counts elements that have been met.
+    /// Adds elements that have been visited.
     pub(crate) fn count(&self, elements: u64) {
         self.walked.fetch_add(elements, Ordering::Relaxed);
     }

@@ -1,5 +1,5 @@
-//! The box of an approximant by branch and bound (Land & Doig 1960): only where elements may reach
-//! beyond what has been found are they replaced.
+//! Bounding box of an approximant by branch and bound (Land & Doig 1960): an element is replaced only if its
+//! subtree may extend beyond the box found so far.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -12,25 +12,26 @@ use super::evaluator::{Evaluator, Moment};
 use super::start::{Standing, planted};
 use super::{Enter, Growth, Subtree};
 
-/// More replacements than this are left to a walk.
+/// Maximum number of replacements; beyond it the search is abandoned.
 const MOST_WORK: usize = 1 << 18;
 
-/// How far things reach, by object.
+/// Radii of subtrees and padding, by object.
 pub(crate) struct Reaches<'a> {
-    /// What becomes of an object, about the middle of its frame: see [`Graph::reaches`].
+    /// Radius of the disc that contains the subtree of an object, about the middle of its unit frame: see
+    /// [`Graph::reaches`].
     pub(crate) all: &'a [f64],
-    /// What lies around the outline of an object, as a multiple of its length.
+    /// Padding around the outline of an object, as a multiple of its length.
     pub(crate) pads: &'a [f64],
 }
 
-/// An element that is to be replaced.
+/// Element to be replaced.
 struct Node {
     standing: Standing,
     object: usize,
-    /// The steps of birth of its fractal and of itself.
+    /// Step of birth of its fractal.
     born: u32,
     level: u32,
-    /// The farthest that what becomes of it may reach in the direction that is searched.
+    /// Upper bound of the subtree's extent in the direction of the search.
     farthest: f64,
 }
 
@@ -59,17 +60,17 @@ struct Search<'a, E> {
     steps: u32,
     reaches: &'a Reaches<'a>,
     enter: E,
-    /// What has been found.
+    /// Box of the elements found so far.
     bounds: Bounds,
-    /// The direction that is searched.
+    /// Direction in which the search maximises.
     direction: DVec2,
     heap: BinaryHeap<Node>,
 }
 
-/// The box of what a walk would come to with a visitor that enters so, to the bit the same.
+/// Computes the bounding box that a walk with `enter` as its visitor's decision would find, bit by bit.
 ///
-/// `None` where indices are counted, where not all reaches are known, where a generator yields
-/// points that are not finite, and where the work is as much as a walk's or is cancelled. The box is empty if nothing
+/// `None` if the walk counts indices, if a subtree is not bounded, if a generator yields points that are not
+/// finite, if the search takes more than 2¹⁸ replacements, or if it is cancelled. The box is empty if nothing
 /// is drawn.
 pub(crate) fn search(
     graph: &Graph,
@@ -129,7 +130,7 @@ pub(crate) fn search(
 }
 
 impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
-    /// How far what has been found reaches.
+    /// Returns the extent, in the direction of the search, of the box found so far.
     fn found(&self) -> f64 {
         if self.bounds.is_empty() {
             return f64::NEG_INFINITY;
@@ -153,9 +154,9 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
         }
     }
 
-    /// Adds an element: what it draws, or what may become of it.
+    /// Adds an element: extends the box by its outline, or queues it if its subtree may extend the box.
     fn add(&mut self, standing: Standing, object: usize, born: u32, level: u32) {
-        // Rounding must not hide what reaches just as far.
+        // The slack covers rounding in the bound, which could exclude an element that decides the box.
         const SLACK: f64 = 1.0 + 1e-9;
         let subtree = Subtree {
             frame: standing.frame,

@@ -1,43 +1,44 @@
-//! How many elements come of an object in a few steps.
+//! Numbers of descendants of objects over a few steps.
 
 use crate::graph::{Alternative, Graph, Object, Replacement};
 use crate::whole::whole;
 
-/// Steps beyond these are not counted.
+/// Largest number of steps for which sizes are computed.
 const MOST_STEPS: usize = 64;
 
-/// Of graphs with more objects than this no sizes are worked out.
+/// Maximum number of objects of a graph; for larger graphs no sizes are computed.
 const MOST_OBJECTS: usize = 1 << 14;
 
-/// Lengths are told apart by so many classes an octave, up to so many classes.
+/// Number of classes of lengths for a factor of 2.
 const LENGTHS_AN_OCTAVE: f64 = 32.0;
+/// Maximum number of classes of lengths.
 const MOST_LENGTHS: usize = 640;
 
-/// Part of a class: lengths that are as good as on its edge are on it.
+/// Tolerance in units of a class: a length this close to the edge of a class lies on it.
 const ROUNDING: f64 = 1e-6;
 
-/// The numbers of elements that objects become in their fractals, up to some size: exact where
-/// instances are fixed, the most that there can be where they are worked out.
+/// Numbers of descendants of objects in their own fractals, up to some size: exact if instances are fixed,
+/// upper bounds if they are computed for each element.
 pub(super) struct Sizes {
-    /// By object and number of steps.
+    /// Numbers by object and number of steps.
     counts: Vec<Vec<u64>>,
-    /// By object and length, as many classes above that below which nothing is replaced.
+    /// Numbers by object and class of lengths above the length below which elements are not replaced.
     by_length: Vec<Vec<u64>>,
     shortest: f64,
-    /// Whether objects know their number of steps: there is one number for each.
+    /// Whether the graph is time-indexed: an object then has a single number.
     is_levelled: bool,
 }
 
 impl Sizes {
-    /// Of what becomes no more than `most` elements by fixed instances.
+    /// Computes the sizes of expansions that have fixed instances and at most `most` elements.
     pub(super) fn fixed(graph: &Graph, most: u64) -> Self {
         Self::of(graph, most, |_, _| u64::MAX)
     }
 
-    /// Of what cannot become more than `most` elements.
+    /// Computes upper bounds of the sizes of expansions that cannot exceed `most` elements.
     pub(super) fn most(graph: &Graph, most: u64) -> Self {
         Self::of(graph, most, |alternatives, counts| {
-            // Seeds are counted as if they stayed.
+            // Seed parts are counted as if they stayed in the fractal.
             let of = |alternative: &Alternative| sum(alternative.objects.iter().copied(), counts);
             alternatives.iter().map(of).max().unwrap_or(u64::MAX)
         })
@@ -56,7 +57,7 @@ impl Sizes {
         };
         if graph.is_levelled() {
             let mut counts = vec![1; objects.len()];
-            // Objects only lead to those of larger numbers.
+            // Objects of time-indexed graphs refer only to objects of larger numbers.
             for object in (0..objects.len()).rev() {
                 counts[object] = count(&objects[object], 1, &counts);
             }
@@ -100,14 +101,14 @@ impl Sizes {
         }
     }
 
-    /// Where no element is replaced that is shorter than a length: also those of what becomes no
-    /// more than `most` elements down to it.
+    /// Adds the sizes of expansions of at most `most` elements in which elements shorter than `shortest` are
+    /// not replaced.
     pub(super) fn down_to(self, graph: &Graph, shortest: f64, most: u64) -> Self {
         if shortest <= 0.0 || graph.objects().len() > MOST_OBJECTS {
             return self;
         }
-        // Children, and by how many classes they are shorter; those that are kept are one element,
-        // however long.
+        // Children with the number of classes by which they are shorter. Infertile children count as one
+        // element at any length.
         let shorter = |(object, ratio): (usize, f64)| {
             let kept = matches!(graph.objects()[object].replacement, Replacement::Kept);
             let classes = whole(ROUNDING - classes(ratio));
@@ -123,7 +124,7 @@ impl Sizes {
         let mut by_length = vec![vec![1]; children.len()];
         for class in 1..=MOST_LENGTHS {
             let mut is_any = false;
-            // What is as long as its parent must be known before.
+            // Children of their parent's length belong to the class itself, so it is repeated until stable.
             while lengthen(&mut by_length, &children, class, most) {
                 is_any = true;
             }
@@ -138,8 +139,8 @@ impl Sizes {
         }
     }
 
-    /// How many elements an object becomes in a number of steps, if it is replaced in the first and
-    /// they are few.
+    /// Returns the number of descendants of an object after a number of steps, if the object is replaced and
+    /// the number is known.
     #[inline]
     pub(super) fn get(&self, object: usize, steps: u32) -> Option<u64> {
         self.counts
@@ -149,8 +150,8 @@ impl Sizes {
             .filter(|_| steps > 0)
     }
 
-    /// How many elements at most an object of a length becomes, likewise, in so many steps or
-    /// before it is too short to be replaced.
+    /// Returns an upper bound of the number of descendants of an object of a length after a number of steps,
+    /// or when all are too short to be replaced, if a bound is known.
     #[inline]
     pub(super) fn cut(&self, object: usize, steps: u32, length: f64) -> Option<u64> {
         let by_steps = self.get(object, steps);
@@ -164,25 +165,25 @@ impl Sizes {
         }
     }
 
-    /// Where what is known of an object in a number of steps has its place.
+    /// Returns the index under which the data of an object are stored for a number of steps.
     #[inline]
     pub(super) fn slot(&self, steps: u32) -> usize {
         if self.is_levelled { 0 } else { steps as usize }
     }
 
-    /// All sizes together.
+    /// Returns the sum of all sizes.
     pub(super) fn sum(&self) -> u64 {
         self.counts.iter().flatten().sum()
     }
 
-    /// By object, how many sizes are known.
+    /// Returns, for every object, the number of sizes that are known.
     pub(super) fn slots(&self) -> impl Iterator<Item = usize> {
         self.counts.iter().map(Vec::len)
     }
 }
 
-/// Adds the sizes of a class of lengths where those of all children are known; whether there are any.
-/// Children are given by object, and by how many classes they are shorter.
+/// Adds the sizes of a class of lengths to objects whose children's sizes are known, and returns whether
+/// there were any. Children are given with the number of classes by which they are shorter.
 fn lengthen(
     by_length: &mut [Vec<u64>],
     children: &[Option<Vec<(usize, usize)>>],
@@ -206,7 +207,7 @@ fn lengthen(
     grows
 }
 
-/// By how many classes a length is longer than another, from their ratio.
+/// Returns the number of classes by which a length is longer than another, given their ratio.
 fn classes(ratio: f64) -> f64 {
     LENGTHS_AN_OCTAVE * libm::log2(ratio)
 }
@@ -223,7 +224,7 @@ mod tests {
     use crate::document::Document;
     use crate::graph::Replacement;
 
-    /// Branches are turned first, and shrunk in the next step.
+    /// In this rule, branches turn at full length in one step and shrink in the next.
     #[test]
     fn sizes_are_known_where_children_are_as_long() {
         let catalogue = Catalogue::embedded();

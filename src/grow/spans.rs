@@ -1,10 +1,10 @@
-//! The walk on many threads.
+//! Walks on several threads.
 //!
-//! One thread walks down to where few elements come of an element, and leaves those subtrees to
-//! the others, many together as a span. What the others see is the same as what one would see, to
-//! the last bit, but for two things that hang on all that comes before: how many elements that is, if
-//! the graph does not tell, and whether the last of them reaches the end of its subtree. Spans come
-//! back in order, and so the one who takes them knows both.
+//! One thread descends to elements with few descendants, and submits their subtrees to the other threads,
+//! grouped into spans. A visitor of a span receives the same elements as in a sequential walk, to the last
+//! bit, except for two properties that depend on all preceding spans: the rank of the first element, unless
+//! the graph determines it, and whether the preceding element ends where the first one starts. Spans are
+//! taken in order, with both.
 
 use std::num::NonZero;
 use std::ops::Range;
@@ -22,24 +22,24 @@ use super::tally::Tally;
 use super::walk::{Sink, Visiting, send};
 use super::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};
 
-/// A span that only leads to others is handed on after so many visits, so that the walk can stop.
+/// Number of visits after which a span without elements is submitted, so that the walk can be stopped.
 const LONG: u64 = 1 << 16;
 
-/// The elements after which a visitor that sees everything is taken.
+/// Number of elements after which a visitor of the whole walk is taken.
 const WHOLE: u64 = 1 << 12;
 
-/// What a span goes on with that a visitor of it alone cannot know.
+/// Properties of a span that depend on the preceding spans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seam {
-    /// To be added to the ranks of the elements up to where the next fractal begins.
+    /// Number to be added to the ranks of the elements up to the beginning of the next fractal.
     pub before: u128,
-    /// Whether the first element of the span joins the one before if it says so. True where a
-    /// fractal begins.
+    /// Whether the first element of the span, if its visitor received it as joined, does join the preceding
+    /// element. True if the span begins with a fractal.
     pub joined: bool,
 }
 
 impl Seam {
-    /// Where nothing is to be put right.
+    /// Seam that changes nothing.
     const NONE: Self = Self {
         before: 0,
         joined: true,
@@ -48,25 +48,25 @@ impl Seam {
 
 /// Walks over the elements of an approximant as [`walk`] does, on several threads.
 ///
-/// Every span of the walk is visited by a visitor of its own, made by `fresh` or used before;
-/// `take` gets them one after another, in order, each with what it has to know of those before, and
-/// makes them ready to be used again. What the visitors see does not depend on the number of
-/// threads. Spans have about `span` elements, or more where they come by runs; where they begin and
-/// end is left open: in the middle of a fractal, too.
+/// Every span of the walk has its own visitor, created by `fresh` or reused. `take` receives the visitors in
+/// order, each with its seam, and resets them for reuse. The sequence of elements does not depend on the
+/// number of threads. Spans have about `span` elements, or more if elements come in runs; their limits are
+/// unspecified and may lie within a fractal.
 ///
-/// If they [cut](Visitor::cuts), all of them must say the same when they are asked to enter, but of
-/// what does not matter any more. One more is asked what no other is; it is taken last.
+/// If visitors have a [length of replacement](Visitor::cuts), all of them must decide equally about entering
+/// an element, unless the element's subtree no longer matters. One additional visitor decides about the
+/// elements above the spans; it is taken last.
 ///
-/// One visitor sees everything, and is taken from time to time, where a walk counts indices, and
-/// where `span` is `None`.
+/// A single visitor receives all elements, and is taken repeatedly, if the walk counts indices or if `span`
+/// is `None`.
 ///
 /// # Errors
 ///
-/// As [`walk`]; `take` may end it as well.
+/// Returns an error under the conditions of [`walk`], or if `take` returns one.
 ///
 /// # Panics
 ///
-/// If the graph was compiled for fewer steps, or if a visitor panics.
+/// Panics if the graph was compiled for fewer steps, or if a visitor panics.
 pub fn walk_in_spans<V: Visitor + Send>(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -85,27 +85,27 @@ where
     })
 }
 
-/// How a walk is divided.
+/// Division of a walk into spans.
 #[derive(Clone, Copy)]
 pub(crate) struct Division<'r> {
-    /// Spans have about so many elements; one visitor sees everything if there is no such number.
+    /// Approximate number of elements of a span; `None` for a single visitor of the whole walk.
     pub(crate) span: Option<u64>,
-    /// What visitors know of the ranks that they see.
+    /// Source of the ranks that visitors receive.
     pub(crate) ranks: Ranks<'r>,
 }
 
-/// What is known of ranks before a walk.
+/// Source of ranks.
 #[derive(Clone, Copy)]
 pub(crate) enum Ranks<'r> {
-    /// Nothing: they count what is visited.
+    /// Visited elements are counted.
     Unknown,
-    /// What a walk that was divided in the same way has told as [`Seam::before`] of its spans.
+    /// [`Seam::before`] of all spans, from an earlier walk with an equal division.
     Told(&'r [u128]),
-    /// How many elements come of those that are not visited, so that ranks count them all.
+    /// A census, whose counts include elements that are not visited.
     Counted(&'r Census),
 }
 
-/// The same with a team that has other work, too.
+/// Walks as [`walk_in_spans`] does, with a team that may have other work.
 pub(crate) fn walk_with<'w, V: Visitor + Send + 'w>(
     team: &Team<'w>,
     graph: &'w Graph,
@@ -129,7 +129,7 @@ where
     };
     let asked = fresh();
     let (takes_runs, cuts) = (asked.takes_runs(), asked.cuts());
-    // Blocks are the same as in a walk that is not divided.
+    // Spans at least as long as blocks keep the blocks of a walk that is not divided.
     let size = if takes_runs {
         size.max(MOST_LEAVES.min(asked.longest_run()))
     } else {
@@ -166,7 +166,7 @@ where
     };
     let sent = send(graph, growth, Stop::AtSubtrees(&sizes), census, &mut spans);
     if !spans.has_failed {
-        // Even if the walk to the spans has failed: what comes before may have failed as well.
+        // Spans submitted before a failure may have failed earlier in the order of the walk.
         spans.finish()?;
     }
     sent?;
@@ -177,41 +177,41 @@ where
     Ok(spans.order.tally.finish())
 }
 
-/// What a span is made of.
+/// Item of a span.
 enum Item {
-    /// A fractal that was born in a step.
+    /// Beginning of a fractal, with the step of its birth.
     Begin(Fractal, u32),
     Element(Found),
     Subtree(FoundSubtree),
-    /// The end of the fractal, and whether it is joined if what comes before is.
+    /// End of the fractal; the flag holds only if the preceding element ends where its subtree does.
     End(bool),
 }
 
-/// Where a span begins.
+/// Limit of a span.
 #[derive(Clone, Copy, Default)]
 struct Position {
     fractal: Fractal,
-    /// The step in which the fractal was born.
+    /// Step in which the fractal was born.
     born: u32,
-    /// The number of its elements before, if that is known.
+    /// Number of its elements before the limit, if known; otherwise 0.
     before: u128,
 }
 
-/// A stretch of a walk.
+/// Consecutive part of a walk.
 #[derive(Default)]
 struct Span {
     from: Position,
-    /// Where it ends.
+    /// Position where it ends.
     to: Position,
     items: Vec<Item>,
-    /// How many elements it may have at most, and what it takes to tell.
+    /// Upper bound of its number of elements, plus 1 for each subtree and each fractal that begins.
     size: u64,
-    /// The visits on the way to it.
+    /// Number of visits above its subtrees.
     visited: u64,
 }
 
 impl Span {
-    /// Goes on where another one ends.
+    /// Restarts at the end of another span.
     fn follow(&mut self, other: &Self) {
         self.items.clear();
         (self.from, self.to) = (other.to, other.to);
@@ -223,33 +223,33 @@ impl Span {
         self.size += size;
     }
 
-    /// Whether it begins in the middle of a fractal.
+    /// Returns whether the span begins within a fractal.
     fn goes_on(&self) -> bool {
         !matches!(self.items.first(), Some(Item::Begin(..)))
     }
 }
 
-/// A span, and the visitor that sees it.
+/// Span with its visitor.
 struct Job<'w, V: Visitor> {
     graph: &'w Graph,
     blocks: Option<Arc<Blocks>>,
     descent: Descent<'w>,
     span: Span,
-    /// The ranks that the visitor sees, if they are known before.
+    /// Range of ranks that the visitor receives, if known before.
     ranks: Option<Range<u128>>,
     visitor: V,
     outcome: Result<Outcome, WalkError<V::Error>>,
 }
 
-/// What a span comes to.
+/// Result of visiting a span.
 #[derive(Clone, Copy, Default)]
 struct Outcome {
     elements: u64,
     fractals: u64,
     visited: u64,
-    /// The rank of the last element in its fractal, as far as the visitor knows.
+    /// Rank of the last element in its fractal, as received by the visitor.
     index: u128,
-    /// Whether the next element may join the last one, if that is known.
+    /// Whether the last element ends where the next one starts, if known.
     joined: Option<bool>,
 }
 
@@ -310,7 +310,7 @@ impl<V: Visitor> Job<'_, V> {
             }
             joined = match item {
                 Item::Subtree(_) => self.descent.ends_joined(),
-                // What follows says itself whether it may join.
+                // The next item has its own flag.
                 _ => true,
             };
             outcome.joined = Some(joined);
@@ -322,12 +322,12 @@ impl<V: Visitor> Job<'_, V> {
     }
 }
 
-/// Takes spans in order.
+/// Consumer of finished spans, in order.
 struct Order<'v, T> {
     tally: Tally<'v>,
-    /// Whether visitors know the ranks of what they see,
+    /// Whether visitors receive final ranks.
     is_counted: bool,
-    /// or else the number of elements of the fractal so far.
+    /// Number of elements of the fractal so far; unused if ranks are final.
     index: u128,
     joined: bool,
     take: T,
@@ -347,7 +347,7 @@ impl<T> Order<'_, T> {
         let mut seam = Seam::NONE;
         if span.goes_on() {
             if !self.is_counted {
-                // Where less is seen than was told before, ranks mean nothing.
+                // Ranks are undefined if fewer elements are visited than in the earlier walk.
                 seam.before = self.index.wrapping_sub(span.from.before);
             }
             seam.joined = self.joined;
@@ -361,26 +361,26 @@ impl<T> Order<'_, T> {
     }
 }
 
-/// Makes spans of what a walk comes to, and hands them out.
+/// Sink that collects a walk into spans and submits them.
 struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
     graph: &'w Graph,
     steps: u32,
-    /// The elements of a span.
+    /// Approximate number of elements of a span.
     size: u64,
     blocks: Option<Arc<Blocks>>,
-    /// The visitor that is asked on the way to the subtrees.
+    /// Visitor that decides about elements above the subtrees.
     asked: V,
     span: Span,
-    /// The ranks before the spans that come, as far as they have been told,
+    /// [`Seam::before`] of the remaining spans, if known from an earlier walk.
     told: &'w [u128],
-    /// or what counts them.
+    /// Census for ranks that include elements that are not visited.
     census: Option<&'w Census>,
     /// Whether a fractal has begun and not ended.
     is_open: bool,
     line: Line<'t, 'w, Job<'w, V>>,
     order: Order<'v, T>,
     fresh: F,
-    /// Whether taking spans has failed.
+    /// Whether `take` or the work of a span has failed.
     has_failed: bool,
 }
 
@@ -417,7 +417,7 @@ where
         handed
     }
 
-    /// Makes room for what does not end something.
+    /// Submits the span if it is full.
     fn make_room(&mut self) -> Result<(), WalkError<V::Error>> {
         if self.span.size < self.size {
             return Ok(());
@@ -478,7 +478,7 @@ where
         Ok(())
     }
 
-    /// Always in the span of what it ends.
+    /// Ends the fractal in the span of its last item.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
         self.is_open = false;
         self.span.push(Item::End(joined), 0);
@@ -494,7 +494,7 @@ where
     }
 }
 
-/// A visitor that sees everything, and hands it over from time to time.
+/// Visitor of a whole walk that passes its visitor to `take` repeatedly.
 struct Whole<V, T> {
     visitor: V,
     take: T,

@@ -1,4 +1,4 @@
-//! Where elements stand, and the elements that fractals start with.
+//! Placement of elements, and the chains from which fractals start.
 
 use std::ops::Range;
 
@@ -8,21 +8,21 @@ use crate::instancing::Coat;
 use crate::rule::Placement;
 use crate::rule::draw::Path;
 
-/// Where an element stands, and what its descendants need to know of it.
+/// Placement of an element with all that its descendants inherit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Standing {
     pub(crate) frame: Frame,
-    /// Relative to the initiator element's that it descends from.
+    /// Length relative to that of the initiator's element from which it descends.
     pub(crate) length: f64,
-    /// That initiator element, by position.
+    /// Position of that element in the initiator.
     pub(crate) root: u32,
     pub(crate) path: Path,
-    /// What it and all that it descends from are tinted with.
+    /// Appearance composed of its own and those of its ancestors.
     pub(crate) coat: Coat,
 }
 
 impl Standing {
-    /// Where the initiator stands.
+    /// Returns the placement of the initiator.
     pub(crate) fn whole(seed: u64) -> Self {
         Self {
             frame: Frame::UNIT,
@@ -33,7 +33,7 @@ impl Standing {
         }
     }
 
-    /// Where an instance in the initiator stands.
+    /// Returns the placement of an instance of the initiator.
     #[inline]
     pub(crate) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
         let child = Self {
@@ -54,7 +54,7 @@ impl Standing {
         }
     }
 
-    /// Where an instance in what replaces an element stands.
+    /// Returns the placement of an instance that replaces part of this element.
     #[inline]
     pub(crate) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
         Self {
@@ -75,27 +75,27 @@ impl Standing {
     }
 }
 
-/// The elements that start a fractal, and where.
+/// Chain from which a fractal starts, and its placement.
 #[derive(Clone, Debug)]
 pub(super) struct Start<'g> {
     pub(super) chain: StartChain<'g>,
     pub(super) standing: Standing,
-    /// The step in which the fractal is born.
+    /// Step in which the fractal is born.
     pub(super) born: u32,
-    /// What it has seeded before it is walked over: numbers in [`Roots::sown`](crate::graph::Roots).
+    /// Fractals that it seeded before the growth of this graph: range in [`Roots::sown`](crate::graph::Roots).
     pub(super) sown: Range<usize>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) enum StartChain<'g> {
-    /// The initiator, or what has been seeded before: its instances are the roots.
+    /// Initiator, or a fractal seeded before: its instances are roots.
     Initiator(&'g Chain),
     Fixed(&'g Chain),
     Evaluated(Chain),
 }
 
 impl<'g> Start<'g> {
-    /// What a number of steps are grown out of.
+    /// Returns the start of growth by a number of steps.
     pub(super) fn initiator(graph: &'g Graph, steps: u32, seed: u64) -> Self {
         Self {
             chain: StartChain::Initiator(graph.initiator(steps)),
@@ -105,20 +105,20 @@ impl<'g> Start<'g> {
         }
     }
 
-    /// A fractal that has been seeded before.
+    /// Returns the start of a fractal that was seeded before.
     pub(super) fn sown(graph: &'g Graph, number: usize) -> Self {
         let sown = &graph.roots.sown[number];
         Self {
             chain: StartChain::Initiator(&sown.chain),
-            // Roots have paths of their own.
+            // Each root has its own path, so the seed is unused.
             standing: Standing::whole(0),
             born: sown.born,
             sown: graph.roots.sown_by(number + 1),
         }
     }
 
-    /// The steps after a step in which elements begin, or in which the last ones of what the fractal
-    /// has seeded before were replaced.
+    /// Returns the first step after `step` in which roots are born, or in which elements that seeded
+    /// fractals before were replaced.
     pub(super) fn next_after(&self, graph: &Graph, step: u32) -> Option<u32> {
         let StartChain::Initiator(chain) = self.chain else {
             return None;
@@ -137,13 +137,13 @@ impl<'g> Start<'g> {
     }
 }
 
-/// The step in which a root was born, if it is not the beginning.
+/// Returns the step in which a root was born, if growth begins with later approximants.
 pub(super) fn birth(graph: &Graph, instance: &Instance) -> Option<u32> {
     let root = graph.roots.elements.get(instance.position as usize);
     root.map(|root| root.level)
 }
 
-/// The standing of a part that an element seeds.
+/// Returns the placement of a part that an element seeds.
 pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
     if placement != Placement::SeedsAsInitiator {
         return *standing;

@@ -1,18 +1,20 @@
+//! Limits, cancellation and progress of a walk.
+
 use std::sync::atomic::Ordering;
 
 use super::descent::PATIENCE;
 use super::{Growth, WalkError, Walked};
 
-/// A walk may visit so many elements for each that is allowed, those on the way counted, or so many
-/// in all if that is more.
+/// Maximum number of visits, replaced elements included, for each element that is allowed.
 const VISITS_AN_ELEMENT: u64 = 20;
+/// Number of visits that is always allowed.
 const FEW_VISITS: u64 = 1 << 24;
 
-/// What a walk has met so far, held against its limits.
+/// Counters of a walk, compared with its limits.
 pub(super) struct Tally<'v> {
     growth: Growth<'v>,
     walked: Walked,
-    /// The elements that progress has been told of.
+    /// Number of elements already reported as progress.
     told: u64,
     visited: u64,
     next_look: u64,
@@ -34,7 +36,7 @@ impl<'v> Tally<'v> {
         self.walked.fractals += fractals;
     }
 
-    /// Counts elements that come next.
+    /// Counts elements of the approximant.
     #[inline]
     pub(super) fn count<E>(&mut self, elements: u64) -> Result<(), WalkError<E>> {
         self.walked.elements += elements;
@@ -46,7 +48,7 @@ impl<'v> Tally<'v> {
         Ok(())
     }
 
-    /// Counts elements that have been visited on the way.
+    /// Counts visits of elements, replaced ones included.
     #[inline]
     pub(super) fn visit<E>(&mut self, count: u64) -> Result<(), WalkError<E>> {
         self.visited += count;
@@ -76,7 +78,7 @@ impl<'v> Tally<'v> {
         }
     }
 
-    /// The walk is over.
+    /// Reports the remaining progress, and returns the totals.
     pub(super) fn finish(mut self) -> Walked {
         self.tell_progress();
         self.walked

@@ -1,29 +1,32 @@
+//! Ranges of lengths in which an object has the same expansion down to a cutoff length.
+
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::graph::{Graph, Instance, Replacement};
 
-/// Of graphs with more objects than this it is not worked out.
+/// Maximum number of objects of a graph; for larger graphs no ranges are computed.
 const MOST_OBJECTS: usize = 1 << 12;
 
-/// Ratios that differ by no more than rounding are one.
+/// Factor that allows for rounding: ratios of lengths that differ by less are taken to be equal.
 const ROUNDING: f64 = 1.0 - 1e-12;
 
-/// What an object of some lengths becomes where no element is replaced that is shorter than 1: the same
-/// elements for all of them.
+/// Range of lengths of an object, and its expansion down to length 1 (shorter elements are not replaced),
+/// which is the same throughout the range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
-    /// The shortest of these lengths,
+    /// Lower end of the range.
     pub(super) from: f64,
-    /// and one in their middle.
+    /// Length in the range: the geometric mean of its ends, or twice the lower end if the range is
+    /// unbounded.
     pub(super) length: f64,
-    /// The number of steps that it takes.
+    /// Number of steps of the expansion.
     pub(super) steps: u32,
-    /// The number of elements.
+    /// Number of elements of the expansion.
     pub(super) count: u64,
 }
 
-/// The cuts of an object, from length 1 on, and the length up to which they go.
+/// Consecutive ranges of lengths of an object, from 1, and the upper end of the last one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cuts {
     pub(super) all: Vec<Cut>,
@@ -31,8 +34,8 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// By object, the cuts that make no more than `most` elements, if similarities place them all; none of
-    /// objects whose instances are not fixed.
+    /// Computes, for every object, the ranges whose expansions have at most `most` elements. Objects whose
+    /// instances are not fixed have no ranges; the list is empty unless all maps are similarities.
     pub(super) fn of(graph: &Graph, most: u64) -> Vec<Self> {
         let knows = graph.objects().len() <= MOST_OBJECTS
             && !graph.is_levelled()
@@ -65,7 +68,7 @@ impl Cuts {
         }
         let mut from = 1.0;
         loop {
-            // The longest leaves are the next to be replaced, where the object is longer.
+            // As the object's length increases, the longest leaf is the next to be replaced.
             let next = leaves.fertile.peek().map_or(f64::INFINITY, Leaf::from);
             if next * ROUNDING > from {
                 let middle = if next.is_finite() {
@@ -102,7 +105,7 @@ impl Cuts {
         }
     }
 
-    /// The cut of a length, by number.
+    /// Returns the number of the range that contains a length.
     #[inline]
     pub(super) fn number(&self, length: f64) -> Option<usize> {
         if length >= self.end {
@@ -113,17 +116,17 @@ impl Cuts {
     }
 }
 
-/// A fertile element that an object becomes.
+/// Fertile element of an expansion.
 #[derive(Clone, Copy)]
 struct Leaf {
-    /// Its length as a multiple of the object's.
+    /// Length as a multiple of the object's.
     ratio: f64,
     object: usize,
     steps: u32,
 }
 
 impl Leaf {
-    /// How long the object is at least if the leaf is replaced.
+    /// Returns the length of the object from which on the leaf is replaced.
     fn from(&self) -> f64 {
         self.ratio.recip()
     }
@@ -149,7 +152,7 @@ impl PartialEq for Leaf {
 
 impl Eq for Leaf {}
 
-/// What an object becomes, as far as it has been replaced.
+/// Partial expansion of an object.
 struct Leaves {
     fertile: BinaryHeap<Leaf>,
     count: u64,
@@ -157,7 +160,7 @@ struct Leaves {
 }
 
 impl Leaves {
-    /// Replaces a leaf; whether that can be done, and they are not too many.
+    /// Replaces a leaf, and returns whether its instances are fixed and the limit of elements holds.
     fn replace(&mut self, graph: &Graph, leaf: Leaf, most: u64) -> bool {
         let Replacement::Fixed(production) = &graph.objects()[leaf.object].replacement else {
             return false;
@@ -177,7 +180,7 @@ impl Leaves {
                 steps: leaf.steps + 1,
             });
         }
-        // What does not get shorter is replaced in vain.
+        // The limit of steps ends the replacement of elements that do not shrink.
         self.count <= most && u64::from(self.steps) <= most
     }
 }

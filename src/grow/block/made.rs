@@ -1,4 +1,4 @@
-//! The blocks of a graph, made as they are reached.
+//! Blocks of a graph, computed on first use.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,38 +13,39 @@ use crate::grow::sizes::Sizes;
 use crate::grow::start::Start;
 use crate::grow::{Enter, Subtree};
 
-/// A block has this many elements at most: they stay in the fastest memory.
+/// Maximum number of elements of a block, so that it stays in the first-level cache.
 pub(in crate::grow) const MOST_LEAVES: u64 = 1024;
 
-/// All blocks that a graph may have together have no more elements than this.
+/// Maximum number of elements of all blocks of a graph.
 const MOST_MEMORY: u64 = 1 << 17;
 
-/// The number of the next block that is made.
+/// Number of the next block.
 static NEXT: AtomicU64 = AtomicU64::new(0);
 
-/// The blocks of a graph, made as they are reached, by whatever thread.
+/// Blocks of a graph, computed by whichever thread first uses them.
 ///
-/// Which ones may be made is known before: what a walk yields, to the last bit, does not depend on
-/// the order in which they are reached.
+/// The set of possible blocks is determined beforehand: the output of a walk, to the last bit, does not
+/// depend on the order in which they are computed.
 pub(in crate::grow) struct Blocks {
     known: Known,
-    /// Whether lines keep their share of widths, as they do not where they are sheared, and have no coats.
+    /// Whether all maps are similarities and no object changes its appearance. Otherwise blocks hold no lines,
+    /// because shear and appearance change stroke widths.
     are_plain: bool,
-    /// By object, direction and number.
+    /// Blocks by object, direction, and number of steps or range of lengths.
     made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
 }
 
-/// What is known before blocks are made.
+/// Sizes of all possible blocks.
 enum Known {
-    /// Where numbers of steps tell what is replaced: how many elements there are.
+    /// By number of steps: numbers of elements.
     BySteps(Sizes),
-    /// Where lengths do: what there is, and the length below which nothing is replaced.
+    /// By length: ranges of lengths, and the length below which elements are not replaced.
     ByLength(Vec<Cuts>, f64),
 }
 
 impl Blocks {
-    /// What there is to know before blocks of no more than `longest` elements are made. Elements that are
-    /// shorter than a length are not replaced, if there is one.
+    /// Determines the possible blocks of at most `longest` elements. If `shortest` is given, elements below
+    /// this length are not replaced.
     pub(in crate::grow) fn of(graph: &Graph, longest: u64, shortest: Option<f64>) -> Self {
         let known = |most: u64| match shortest.filter(|&shortest| shortest > 0.0) {
             None => Known::BySteps(Sizes::fixed(graph, most)),
@@ -56,7 +57,7 @@ impl Blocks {
             MOST_LEAVES.min(longest)
         };
         let mut all = known(most);
-        // In both directions.
+        // A block is computed for either direction.
         while most > 0 && 2 * all.sum() > MOST_MEMORY {
             most /= 2;
             all = known(most);
@@ -70,7 +71,7 @@ impl Blocks {
         }
     }
 
-    /// What an element of an object becomes in no more than a number of steps, if that makes a block.
+    /// Returns the expansion of an element over at most `steps` steps, if it is one of the blocks.
     #[inline]
     pub(in crate::grow) fn get(
         &self,
@@ -89,7 +90,7 @@ impl Blocks {
                 let cuts = cuts.get(object)?;
                 let number = cuts.number(frame.stretch() / shortest)?;
                 let cut = &cuts.all[number];
-                // Where steps run out there is less.
+                // With fewer steps left, the expansion ends before all elements are short.
                 if cut.steps > steps {
                     return None;
                 }
@@ -97,13 +98,13 @@ impl Blocks {
             }
         };
         let slot = &self.made[object][usize::from(reversed)][slot];
-        // What is not finite is for the walk itself to report.
+        // Points that are not finite are reported by the walk itself.
         slot.get_or_init(|| self.made(graph, object, steps, length, reversed).ok())
             .as_ref()
     }
 
-    /// What an object of a length becomes in a number of steps, where nothing is replaced that is shorter
-    /// than 1.
+    /// Computes the expansion of an object of a length over a number of steps, where elements shorter than 1
+    /// are not replaced.
     fn made(
         &self,
         graph: &Graph,
@@ -190,7 +191,7 @@ impl Blocks {
 }
 
 impl Known {
-    /// The elements of all blocks together.
+    /// Returns the number of elements of all blocks.
     fn sum(&self) -> u64 {
         match self {
             Self::BySteps(sizes) => sizes.sum(),
@@ -201,7 +202,7 @@ impl Known {
         }
     }
 
-    /// By object, how many blocks there are at most.
+    /// Returns, for every object, the maximum number of blocks for each direction.
     fn slots(&self) -> Vec<usize> {
         match self {
             Self::BySteps(sizes) => sizes.slots().collect(),

@@ -1,3 +1,5 @@
+//! Tests that runs agree with the same elements visited one by one.
+
 use std::convert::Infallible;
 
 use super::Run;
@@ -6,7 +8,7 @@ use crate::document::Document;
 use crate::graph::Graph;
 use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
 
-/// Asks runs for some of their elements.
+/// Visitor that compares selections of a run's elements with filters over all of them.
 #[derive(Default)]
 struct Asking {
     asked: usize,
@@ -70,7 +72,7 @@ fn some_elements_of_a_run_are_those_among_all() {
     }
 }
 
-/// Keeps elements that are shorter than a length, and sees them one by one or by runs.
+/// Visitor that keeps elements below a length, and collects elements one by one or from runs.
 struct Cutting {
     shortest: f64,
     takes_runs: bool,
@@ -136,7 +138,7 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
         if !graph.shrinks() {
             continue;
         }
-        // With a limit of steps as well.
+        // The second pair of values reaches the limit of steps as well.
         for (steps, shortest) in [(20, 0.04), (5, 0.01)] {
             let grown = |takes_runs| {
                 let mut cutting = Cutting {

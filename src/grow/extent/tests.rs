@@ -1,4 +1,4 @@
-//! The box that is searched for is the box of all that a walk comes to.
+//! Tests that a search and a walk find equal bounding boxes.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ fn read(source: &Arc<Source>) -> Arc<Rule> {
     document.resolve(&[]).unwrap().0.into_rule().unwrap()
 }
 
-/// Compares the box of a search with that of a walk; tells whether there was a search.
+/// Asserts that a search finds the bounding box of a walk; returns whether the search was possible.
 fn compare(rule: &Arc<Rule>, steps: u32, seed: u64, shortest: f64) -> bool {
     let graph = Graph::compile(rule, steps).unwrap();
     let growth = Growth {
@@ -51,7 +51,7 @@ fn compare(rule: &Arc<Rule>, steps: u32, seed: u64, shortest: f64) -> bool {
     true
 }
 
-/// Walks over all that is not too short, with a pad around every element.
+/// Visitor of all elements that are not too short, with padding around each.
 struct Walked<'g, E> {
     extent: Extent<'g>,
     enter: E,
