@@ -42,7 +42,7 @@ pub use system::write_system;
 pub struct Options {
     /// Format of the file; SVG by default.
     pub format: Format,
-    /// Size of the figure; by default, text is 13 pixels high.
+    /// Size of the figure; by default, text has a font size of 13 pixels.
     pub size: Option<Size>,
     /// Background colour; none by default.
     pub background: Option<Colour>,

@@ -33,7 +33,6 @@ impl Equations {
 
     /// Returns the unknowns, one list for each right-hand side, by Gaussian elimination with partial
     /// pivoting; `None` if the matrix is singular or the numbers leave the range of a double.
-    /// Returns the unknowns of the triangular matrix for a right-hand side, by back substitution.
     pub(super) fn solve(mut self) -> Option<Vec<Vec<f64>>> {
         let size = self.unknowns;
         for column in 0..size {
@@ -63,7 +62,7 @@ impl Equations {
         finite.then_some(solutions)
     }
 
-    /// The unknowns of a triangular matrix, from the last to the first.
+    /// Returns the unknowns of the triangular matrix for a right-hand side, by back substitution.
     fn substitute(&self, side: usize) -> Vec<f64> {
         let mut solution = vec![0.0; self.unknowns];
         for (index, row) in self.rows.iter().enumerate().rev() {

@@ -65,10 +65,9 @@ pub(super) fn fixed_point(affine: &DAffine2) -> Option<DVec2> {
 
 /// Returns the linear map that scales the x and the y axis, then rotates each by its own angle, in degrees
 /// and counter-clockwise (Demko, Hodges & Naylor 1985, section 4.3).
+///
 /// The image of (1, 0) is s_x (cos α, sin α) and that of (0, 1) is s_y (−sin β, cos β), so that equal angles
 /// rotate.
-///
-/// (1, 0) goes to s_x (cos α, sin α) and (0, 1) to s_y (−sin β, cos β), so that equal angles rotate.
 #[must_use]
 pub fn axes(scale: DVec2, angles: DVec2) -> DMat2 {
     DMat2::from_cols(

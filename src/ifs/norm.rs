@@ -30,7 +30,6 @@ pub(super) fn stretch(matrix: DMat2) -> f64 {
 /// stretch by at most a given factor form a convex set. Descent therefore leads to the least stretch. Steps
 /// are tried in directions that turn by the golden angle, which find the way out of an edge of the function.
 /// An imperfect minimum makes no bound wrong, only wider.
-/// Coordinates (x + shear · y, ratio · y).
 pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
     const DIRECTIONS: u32 = 8;
     const GOLDEN: f64 = 2.399_963_229_728_653;
@@ -64,7 +63,7 @@ pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
         .collect()
 }
 
-/// Coordinates (x + shear y, ratio y).
+/// Coordinates (x + shear · y, ratio · y).
 #[derive(Clone, Copy)]
 struct Coordinates {
     shear: f64,

@@ -116,7 +116,7 @@ fn used(axiom: &[Command], rules: &Rules) -> BTreeSet<char> {
     used
 }
 
-/// Returns the character of a command, by which rules replace it whatever its number.
+/// Returns the character of a command, by which rules replace it regardless of its number.
 fn symbol(command: Command) -> char {
     match command {
         Command::Step { heading, drawn } => letter(heading, drawn),
