@@ -1,5 +1,5 @@
-//! Pictures as another program renders them. It supports instances, but non-scaling strokes only as far as
-//! they are drawn here.
+//! Pictures as another program renders them. The program supports instances, but non-scaling strokes only
+//! as far as they are drawn here.
 
 use std::collections::BTreeSet;
 

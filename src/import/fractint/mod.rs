@@ -2,7 +2,7 @@
 //!
 //! A file has many entries, `Name { … }`, with comments from a semicolon to the end of a line. Each becomes a
 //! document of its own. Parts of an entry that cannot be converted are reported with their places, and the
-//! other entries are read all the same.
+//! other entries are read regardless.
 
 mod commands;
 mod entries;
