@@ -8,13 +8,13 @@
 //!
 //! # Direction of edges
 //!
-//! A *recurrent* system has a digraph too. An edge from i to j means that f_j may be applied **after** f_i in
-//! random iteration. Let A_i be the part of the attractor that holds the points that f_i has just moved. Then
-//! A_j = f_j(C) ∪ ⋃ f_j(A_i) over the edges i → j, and A = C ∪ A_1 ∪ … ∪ A_n. This is equation (2) of Hart
-//! ("The object instancing paradigm for linear fractal modeling", 1992). Barnsley, Elton & Hardin
+//! A *recurrent* system has a digraph too. An edge from i to j means that f_j may be applied **after** f_i
+//! in random iteration. Let A_i be the part of the attractor that holds the points that f_i has just moved.
+//! Then A_j = f_j(C) ∪ ⋃ f_j(A_i) over the edges i → j, and A = C ∪ A_1 ∪ … ∪ A_n. This is equation (2) of
+//! Hart ("The object instancing paradigm for linear fractal modeling", 1992). Barnsley, Elton & Hardin
 //! ("Recurrent iterated function systems", 1989) have the same convention: their p_ij is the probability of
-//! going from i to j. In the instancing graph the edge points backwards: object j holds an instance of object i under f_j.
-//! After a condensation set any map may follow.
+//! going from i to j. In the instancing graph the edge points backwards: object j holds an instance of
+//! object i under f_j. After a condensation set any map may follow.
 //!
 //! The digraph need not be strongly connected: the equations still have one solution where the maps
 //! contract and every vertex is entered. The walk then ends in a part of the digraph that it cannot

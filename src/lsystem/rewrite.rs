@@ -81,7 +81,7 @@ impl LSystem {
         for step in 1..=steps {
             let mut next = Word::default();
             rewriter.step(&word, &mut next, step, most_elements, most_work)?;
-            // A fixed word stays fixed.
+            // Without draws, a word that a step leaves unchanged never changes again.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
                 && self.is_deterministic()
