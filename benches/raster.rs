@@ -1,4 +1,4 @@
-//! Benchmarks of coverage: lines of a round pen and of a hair, and small polygons.
+//! Benchmarks of coverage: lines of a round stroke, hairlines, and small polygons.
 //!
 //! Rates are in items a second, drawn all over a picture of 1024 × 1024 pixels.
 
@@ -64,7 +64,7 @@ fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
     });
 }
 
-/// Every hair has two ends of its own, as branches of a tree have.
+/// Every hairline has two ends of its own, as the branches of a tree have.
 #[divan::bench(args = [0.03, 0.1, 0.3, 1.0, 3.0])]
 fn hairs(bencher: Bencher, length: f64) {
     let positions = walk(length * 100.0);

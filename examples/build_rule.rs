@@ -1,5 +1,5 @@
 //! Builds a rule in code and writes it as SVG to standard output: regular polygons of regular
-//! polygons, one in every corner, as large as they can be without lying on each other.
+//! polygons, one in every corner, as large as possible without overlap.
 //!
 //!     cargo run --example build_rule -- 7 > heptagons.svg
 
@@ -14,7 +14,7 @@ use kfrac::grow::Growth;
 use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::{BaseElement, Piece, Rule};
 
-/// The rule for polygons with `sides` sides, of which the first runs from (0, 0) to (1, 0).
+/// Returns the rule for polygons with `sides` sides, the first of which runs from (0, 0) to (1, 0).
 fn polygons(sides: u32) -> Result<Rule, Box<dyn Error>> {
     let turn = |corners: u32| {
         let angle = std::f64::consts::TAU * f64::from(corners) / f64::from(sides);

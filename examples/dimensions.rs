@@ -1,11 +1,12 @@
-//! Measures the limit sets of the whole library by boxes, beside what their dimensions are.
+//! Measures the limit sets of the whole library by box counting and compares the results with their known
+//! dimensions.
 //!
 //!     cargo run --release --example dimensions
 //!
-//! The table is Markdown: the dimension that is decided, or else the one that is published in the file,
-//! the measured one with its standard error, how many standard errors it is off, and whether local
-//! slopes drift. Copies of one set are counted once: those whose boxes are the same at all sizes
-//! that are counted. Names of entries as arguments measure only these.
+//! The table is Markdown: the exact dimension, or else the one that the file states, the measured one with
+//! its standard error, the deviation in standard errors, and whether local slopes drift. Sets with equal box
+//! counts at all sizes counted are copies of each other, and enter the summary once. Names of entries as
+//! arguments restrict the table to them.
 
 #![allow(clippy::print_stdout, reason = "it says what it has found")]
 
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for entry in entries {
         let source = catalogue.rule(&entry.name).map_err(Diagnostics::from)?;
         let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
-        // What has to be written out word by word may be too long.
+        // L-systems whose words have to be written out may exceed the limits.
         let Ok(graph) = model.compile(64) else {
             continue;
         };

@@ -1,10 +1,10 @@
-//! Measures the spectra D_q of the whole library, beside what they are where that is known.
+//! Measures the spectra D_q of the whole library and compares them with the exact ones where these are known.
 //!
 //!     cargo run --release --example spectra
 //!
-//! The table is Markdown: the exact dimension, which is that of all orders of a natural measure, and
-//! by order how far what is measured lies off, with a standard error; a star where that is more than
-//! 0.03 or three standard errors.
+//! The table is Markdown: the exact dimension, which is that of all orders of a natural measure, and for
+//! every order the deviation of the measured value with its standard error. A star marks deviations of more
+//! than 0.03 or three standard errors.
 
 #![allow(clippy::print_stdout, reason = "it says what it has found")]
 
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for entry in entries.iter().filter(|entry| grown.contains(&entry.shelf)) {
         let source = catalogue.rule(&entry.name).map_err(Diagnostics::from)?;
         let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
-        // What has to be written out word by word may be too long.
+        // L-systems whose words have to be written out may exceed the limits.
         let Ok(graph) = model.compile(64) else {
             continue;
         };

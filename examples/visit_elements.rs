@@ -1,4 +1,4 @@
-//! Visits the elements of an approximant in order, without holding them: the turns of a curve.
+//! Visits the elements of an approximant in order, without storing them, and prints the turns of a curve.
 //!
 //!     cargo run --example visit_elements
 
@@ -13,7 +13,7 @@ use kfrac::document::Document;
 use kfrac::geometry::DVec2;
 use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
 
-/// Writes L for every turn to the left and R for every turn to the right.
+/// Visitor that writes L for every left turn and R for every right turn.
 #[derive(Default)]
 struct Turns {
     heading: Option<DVec2>,

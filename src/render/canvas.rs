@@ -1,3 +1,5 @@
+//! Placement of the plane on a picture.
+
 use std::fmt;
 use std::ops::Range;
 
@@ -6,16 +8,16 @@ use crate::style::View;
 
 use super::Survey;
 
-/// The size of a picture, in pixels.
+/// Size of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
-    /// The long side; the other follows from what is drawn.
+    /// The longer side; the other side follows from the bounding box.
     Long(u32),
-    /// Width and height; what is drawn is fitted into them, in the middle.
+    /// Width and height; the bounding box is scaled to fit and centred.
     Exactly(u32, u32),
 }
 
-/// As the command line has it: `1024` or `1024x768`.
+/// Writes the size as on the command line: `1024` or `1024x768`.
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -25,64 +27,65 @@ impl fmt::Display for Size {
     }
 }
 
-/// Positions farther away than this many pixels are not drawn.
+/// Largest distance from the picture, in pixels, at which positions are drawn.
 const MOST_PIXELS: f64 = 1e9;
 
-/// The most pixels from the origin to what is shown: a double tells the thousandth part of such a
-/// pixel, which leaves room for the errors of many levels.
+/// Largest distance from the origin to the part shown, in pixels: a double resolves about 10⁻⁴ of a pixel
+/// there, which leaves room for the rounding errors of many levels.
 const FINEST: f64 = 1e12;
 
-/// The width of the strip for a set without extent across, as a part of its length, and in pixels at least.
+/// Width of the strip for a set without extent across, as a fraction of its length.
 const STRIP: f64 = 1.0 / 40.0;
+/// Smallest width of that strip, in pixels.
 const NARROWEST_STRIP: f64 = 16.0;
 
-/// How the plane is laid on a picture: pixels run right and down from the upper left corner.
+/// Map of the plane to a picture: pixels run right and down from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Canvas {
     size: [u32; 2],
-    /// Pixels a unit of the rule.
+    /// Pixels per unit of the rule.
     scale: f64,
-    /// The point of the plane that lies in the upper left corner.
+    /// Point of the plane at the upper left corner.
     corner: DVec2,
 }
 
-/// A picture that margin and strokes fill.
+/// Reason why a picture cannot show its contents.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoRoom {
-    /// Nothing is left between the margins.
+    /// Margins and strokes fill the picture.
     #[error("the margins and strokes ({taken} pixels) leave no room in a picture of {size} pixels")]
     Margins {
-        /// The pixels that margins and strokes take from a side.
+        /// Pixels that margins and strokes take from a side.
         taken: f64,
-        /// That side.
+        /// That side, in pixels.
         size: u32,
     },
     /// Nothing is drawn.
     #[error("there is nothing to draw: no element is visible")]
     Nothing,
-    /// The window shows so little of what is drawn that the rest lies too far away.
+    /// The window is so small that the rest of the set lies too far away.
     #[error(
         "the window is too small: what is drawn would be more than {MOST_PIXELS} pixels wide as a whole"
     )]
     TooClose,
-    /// The window is so small that rounding shows in it.
+    /// The window is so small that rounding is visible.
     #[error("the window is too small: numbers are not precise enough to tell its pixels apart")]
     TooFine,
-    /// What is drawn is larger than numbers can tell.
+    /// The bounding box is not finite.
     #[error("what is to be drawn has no finite size")]
     Infinite,
-    /// A part of what is drawn is.
+    /// A part of the set lies beyond the range of numbers.
     #[error("{BEYOND}")]
     Beyond,
 }
 
 impl Canvas {
-    /// The canvas that shows `bounds` with `pad` pixels free on every side; of what is less than a pixel
-    /// wide or high, a strip that can be seen.
+    /// Creates a canvas that shows `bounds` with `pad` pixels of padding on every side. If the box is less than
+    /// a pixel wide or high, the canvas is a strip around it.
     ///
     /// # Errors
     ///
-    /// If the box is empty or not finite, or if the padding leaves no room.
+    /// Returns an error if the box is empty or not finite, or if the padding leaves no room.
     pub fn fit(bounds: &Bounds, size: Size, pad: f64) -> Result<Self, NoRoom> {
         Self::fit_on(bounds, size, pad, true)
     }
@@ -139,7 +142,7 @@ impl Canvas {
         })
     }
 
-    /// The canvas that shows what surveys have seen, all of them on the same scale, or a window.
+    /// Creates a canvas that shows the bounding boxes of surveys at a common scale, or a window.
     pub(crate) fn of(surveys: &[Survey<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
         let mut all = Bounds::EMPTY;
         for survey in surveys {
@@ -159,11 +162,11 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// The canvas that shows a window: lower left corner, width, height.
+    /// Creates a canvas that shows a window: lower left corner, width, height.
     ///
     /// # Errors
     ///
-    /// If the window is empty or not finite, or if the margin leaves no room.
+    /// Returns an error if the window is empty or not finite, or if the margin leaves no room.
     pub fn of_window(
         [x, y, width, height]: [f64; 4],
         view: &View,
@@ -174,12 +177,12 @@ impl Canvas {
         Self::fit_on(&shown, size, view.margin, false)
     }
 
-    /// What part of the plane is shown, with so many pixels more on every side.
+    /// Returns the part of the plane that is shown, extended by `pad` pixels on every side.
     pub(super) fn shown(&self, pad: f64) -> Bounds {
         self.shown_in(0..self.size[1], pad)
     }
 
-    /// The same of some rows of pixels.
+    /// Returns the part of the plane that is shown in some rows of pixels, likewise extended.
     pub(super) fn shown_in(&self, rows: Range<u32>, pad: f64) -> Bounds {
         let width = f64::from(self.size[0]);
         let [top, bottom] = [rows.start, rows.end].map(f64::from);
@@ -190,7 +193,7 @@ impl Canvas {
         Bounds::new(shown.min() - pad, shown.max() + pad)
     }
 
-    /// Refuses to show places that rounding makes uncertain, in what starts from a box.
+    /// Checks that rounding errors are invisible, where growth starts from a box.
     pub(super) fn check_precision(&self, start: &Bounds) -> Result<(), NoRoom> {
         let mut all = self.shown(0.0);
         all.add_all(start);
@@ -201,7 +204,7 @@ impl Canvas {
         Ok(())
     }
 
-    /// Whether all of a box lies near enough to be drawn.
+    /// Returns whether a box lies near enough to the picture to be drawn.
     #[must_use]
     pub fn holds(&self, bounds: &Bounds) -> bool {
         let corners = [bounds.min(), bounds.max()].map(|corner| self.pixel(corner));
@@ -210,19 +213,19 @@ impl Canvas {
             .all(|corner| corner.abs().max_element() <= MOST_PIXELS)
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Pixels a unit of the rule.
+    /// Returns the number of pixels per unit of the rule.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Where a point of the plane lies, in pixels from the upper left corner, y down.
+    /// Returns the position of a point of the plane, in pixels from the upper left corner, y down.
     #[inline]
     #[must_use]
     pub fn pixel(&self, point: DVec2) -> DVec2 {
@@ -232,13 +235,13 @@ impl Canvas {
         )
     }
 
-    /// The map from the plane to pixels.
+    /// Returns the map from the plane to pixels.
     #[must_use]
     pub fn to_pixels(&self) -> DAffine2 {
         self.map(&DAffine2::IDENTITY)
     }
 
-    /// A map into the plane as one into the picture, in pixels.
+    /// Composes a map into the plane with the map to pixels.
     pub(super) fn map(&self, map: &DAffine2) -> DAffine2 {
         let scale = DMat2::from_diagonal(DVec2::new(self.scale, -self.scale));
         DAffine2 {
@@ -254,6 +257,6 @@ impl Canvas {
     reason = "casts from floats saturate, and pictures are smaller than that"
 )]
 fn whole_pixels(extent: f64) -> u32 {
-    // A hair less than a whole pixel more is rounding, not extent.
+    // An excess of less than 10⁻⁹ pixels is rounding, not extent.
     ((extent - 1e-9).ceil() as u32).max(1)
 }

@@ -1,4 +1,4 @@
-//! Pictures of histograms: how often the walks of a chaos game came to every pixel.
+//! Pictures of histograms: the number of hits of every pixel in a chaos game.
 
 use std::io::Write;
 
@@ -10,15 +10,15 @@ use crate::style::{Colour, Named, Palette};
 use super::png::{TooManyPixels, write_pixels};
 use super::{Labels, RenderError};
 
-/// How a number of hits becomes a tone from 0 to 1.
+/// Mapping of a number of hits to a tone from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// By its logarithm: log(1 + hits) / log(1 + the most hits of a pixel).
+    /// Logarithmic: log(1 + hits) / log(1 + the largest number of hits of a pixel).
     #[default]
     Log,
-    /// In proportion to the most hits of a pixel.
+    /// Proportional to the largest number of hits of a pixel.
     Linear,
-    /// A pixel that is hit has the tone 1.
+    /// 1 for every pixel that is hit.
     Plain,
 }
 
@@ -31,7 +31,7 @@ impl Named for Tone {
 }
 
 impl Tone {
-    /// The tone of a number of hits, of which there are at most `most`.
+    /// Returns the tone of a number of hits, where `most` is the largest number.
     fn of(self, hits: u64, most: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a tone has 255 steps")]
         let [hits, most] = [hits, most].map(|count| count as f64);
@@ -46,26 +46,26 @@ impl Tone {
     }
 }
 
-/// The colours of a picture of a histogram.
+/// Colours of a picture of a histogram.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shades {
-    /// One ink, as opaque as the tone says.
+    /// One ink, with the tone as its opacity.
     Ink(Colour),
-    /// The tone's place in a palette. Pixels that are not hit have none.
+    /// Position in a palette, given by the tone; the background for pixels that are not hit.
     Palette(Palette),
-    /// An ink for every class, as opaque as the tone of all classes together says, and mixed where
-    /// several classes hit a pixel. Further classes begin with the first ink again.
+    /// One ink for each class, with the tone of all classes together as opacity; inks are mixed in proportion
+    /// to the hits of a pixel. The list of inks repeats for further classes.
     Classes(Vec<Colour>),
 }
 
-/// How a histogram is drawn.
+/// Appearance of a histogram.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Density {
-    /// How hits become tones; by their logarithm unless said otherwise.
+    /// Mapping of hits to tones; logarithmic by default.
     pub tone: Tone,
-    /// The colours; black ink unless said otherwise.
+    /// Colours; black ink by default.
     pub shades: Shades,
-    /// The colour behind everything; transparent if none is given.
+    /// Colour of the background; `None` for transparency.
     pub background: Option<Colour>,
 }
 
@@ -79,14 +79,14 @@ impl Default for Density {
     }
 }
 
-/// Levels of fewer hits than this are worked out once.
+/// Number of hits below which levels are tabulated.
 const FEW_HITS: u64 = 4096;
 
-/// Writes a histogram as a PNG.
+/// Writes a histogram as PNG.
 ///
 /// # Errors
 ///
-/// If the picture is larger than memory may be, or if `out` fails.
+/// Returns an error if the picture exceeds the limit of memory, or if writing to `out` fails.
 pub fn write_density(
     histogram: &Histogram,
     density: &Density,
@@ -105,13 +105,13 @@ pub fn write_density(
             hits.sum()
         }),
     }
-    // Into memory first: the encoder would not tell why `out` fails.
+    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
     let mut bytes = Vec::new();
     write_pixels(&pixmap, labels, &mut bytes)?;
     Ok(out.write_all(&bytes)?)
 }
 
-/// Paints every pixel, of whose hits, by class and all together, this tells the numbers.
+/// Paints every pixel. `hits` returns the number of hits of a pixel, over all classes.
 fn paint(pixmap: &mut Pixmap, density: &Density, classes: &[&[u32]], hits: impl Fn(usize) -> u64) {
     let pixels = pixmap.pixels_mut();
     let most = (0..pixels.len()).map(&hits).max().unwrap_or(0);
@@ -139,7 +139,7 @@ fn premultiplied(colour: Colour) -> PremultipliedColorU8 {
     ColorU8::from_rgba(red, green, blue, opacity).premultiply()
 }
 
-/// A tone in 255 steps; whatever is hit is seen.
+/// Quantises a tone to 255 levels; the lowest is 1, so that every hit is visible.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -149,7 +149,7 @@ fn level(tone: f64) -> u8 {
     ((tone * 255.0).round() as u8).max(1)
 }
 
-/// The colours of all levels; of 0 where there is nothing.
+/// Returns the colours of all levels; level 0 is the background.
 fn colours(density: &Density) -> [Colour; 256] {
     let none = density.background.unwrap_or(Colour::of_rgba([0; 4]));
     let mut levels = 0..=u8::MAX;
@@ -164,7 +164,7 @@ fn colours(density: &Density) -> [Colour; 256] {
     })
 }
 
-/// An ink that is as opaque as a level says, on a background.
+/// Returns the colour of an ink over a background, with a level as the ink's opacity.
 fn laid_on(background: Option<Colour>, ink: Colour, level: u8) -> Colour {
     let [red, green, blue, opacity] = ink.rgba();
     let over = u64::from(opacity) * u64::from(level);
@@ -172,7 +172,7 @@ fn laid_on(background: Option<Colour>, ink: Colour, level: u8) -> Colour {
     let [under_red, under_green, under_blue, under_opacity] = background
         .unwrap_or(Colour::of_rgba([red, green, blue, 0]))
         .rgba();
-    // What of the background is seen, and all that is.
+    // Weight of the background, and the sum of both weights.
     let under = u64::from(under_opacity) * (whole - over) / 255;
     let all = (over + under).max(1);
     let mixed = |ink: u8, below: u8| {
@@ -187,7 +187,7 @@ fn laid_on(background: Option<Colour>, ink: Colour, level: u8) -> Colour {
     ])
 }
 
-/// The mean of inks, each with its hits.
+/// Returns the mean of inks, weighted by their hits.
 fn mean<'a>(inks: impl Iterator<Item = (u64, &'a Colour)>, all: u64) -> Colour {
     let mut sums = [0u128; 4];
     for (hits, ink) in inks {

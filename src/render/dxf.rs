@@ -1,4 +1,4 @@
-//! DXF of release 12, which cutters and plotters read: polylines in millimetres, y up, a layer a pen.
+//! DXF of release 12, as read by cutters and plotters: polylines in millimetres, y up, a layer for each pen.
 
 use std::io::{self, Write};
 
@@ -17,12 +17,12 @@ pub(super) fn write(
 ) -> io::Result<()> {
     let scale = unit.millimetres() / FINE;
     let [width, height] = plot.size().map(|side| f64::from(side) * FINE);
-    // Comments are all the text that there is a place for; what is not ASCII depends on the reader.
+    // Comments are the only place for text; the meaning of other than ASCII characters depends on the reader.
     let is_other = |c: char| !(' '..='~').contains(&c);
     let title = labels.title.replace(is_other, "?");
     let program = concat!("kfrac ", env!("CARGO_PKG_VERSION"));
     write!(out, "999\n{title}\n999\n{program}\n")?;
-    // Release 12 knows no unit: millimetres are said as later releases say them.
+    // Release 12 has no unit; the variables of later releases state millimetres.
     out.write_all(b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n")?;
     out.write_all(b"9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n")?;
     out.write_all(b"9\n$EXTMIN\n10\n0.0\n20\n0.0\n30\n0.0\n")?;
@@ -64,15 +64,15 @@ pub(super) fn write(
     out.write_all(b"0\nENDSEC\n0\nEOF\n")
 }
 
-/// The layer of a pen by its number and its colour, of the letters that names may have. The number comes
-/// first, as plotters want it.
+/// Returns the name of a layer, in the characters allowed for names: the pen's number, which plotter software
+/// expects first, and its colour.
 fn layer((number, colour): (u32, Colour)) -> String {
     let [red, green, blue, _] = colour.rgba();
     format!("{number}_{red:02X}{green:02X}{blue:02X}")
 }
 
-/// The nearest of the 255 colours that there are: seven by name, where 7 is what stands out from
-/// the background, 24 hues in ten shades, and greys.
+/// Returns the index of the nearest of the 255 colours: seven named ones (7 is the contrast to the
+/// background), 24 hues in ten shades, and greys.
 fn nearest_index(colour: Colour) -> u8 {
     let [red, green, blue, _] = colour.rgba();
     if red == green && green == blue && (red == 0 || red == 255) {
@@ -83,12 +83,12 @@ fn nearest_index(colour: Colour) -> u8 {
         square(red, r) + square(green, g) + square(blue, b)
     };
     let all = (1..=255).map(|index| (index, off(of_index(index))));
-    // The first of equals: names come before shades.
+    // Of equally near colours the first is chosen: names come before shades.
     all.min_by(|a, b| a.1.total_cmp(&b.1))
         .map_or(7, |(index, _)| index)
 }
 
-/// The red, green and blue of a colour by its index.
+/// Returns the red, green and blue of a colour index.
 fn of_index(index: u8) -> [f64; 3] {
     const NAMED: [[u8; 3]; 9] = [
         [255, 0, 0],
@@ -107,13 +107,13 @@ fn of_index(index: u8) -> [f64; 3] {
         0..=9 => NAMED[usize::from(index.max(1) - 1)].map(f64::from),
         10..=249 => {
             let value = VALUES[usize::from(index % 10 / 2)];
-            // From red over yellow, green and blue, in steps of 15 degrees.
+            // Hues run from red over yellow, green and blue in steps of 15 degrees.
             let hue = f64::from(index / 10 - 1) / 4.0;
             let share = |at: f64| {
                 let off = (hue - at).rem_euclid(6.0);
                 (2.0 - off.min(6.0 - off)).clamp(0.0, 1.0)
             };
-            // Odd ones are two thirds white.
+            // Odd indices are mixed with two thirds of white.
             let white = f64::from(index % 2) * 2.0 / 3.0;
             [0.0, 2.0, 4.0].map(|at| value * (white + (1.0 - white) * share(at)))
         }

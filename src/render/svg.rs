@@ -1,4 +1,4 @@
-//! SVG: paths in whole hundredths of a pixel, streamed.
+//! SVG: paths in integer hundredths of a pixel, streamed.
 
 mod chunk;
 mod path;
@@ -12,20 +12,20 @@ use super::Page;
 use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
 use chunk::Chunk;
 
-/// An SVG document that is being written.
+/// SVG document that is being written.
 pub(super) struct Svg<'t, 'w, W> {
     out: W,
     chunk: Chunk,
-    /// What has the document's text written, chunk by chunk.
+    /// Pipeline that formats chunks of the document.
     line: Line<'t, 'w, Chunk>,
-    /// Where the pen stands and the subpath starts.
+    /// Current point and start of the subpath.
     at: [Position; 2],
-    /// The pen that all strokes have that say nothing else.
+    /// Stroke attributes that paths inherit.
     pen: Pen,
-    /// The colour of strokes in the group that is open.
+    /// Stroke colour of the open group.
     group: Option<Colour>,
-    /// The number of layers so far, where groups are layers as Inkscape has them: at the top of the
-    /// document, which is where programs for plotters look for them.
+    /// Number of layers so far, if groups are Inkscape layers; these are at the top level of the document,
+    /// where plotter software expects them.
     layers: Option<u32>,
     label: Option<String>,
 }
@@ -64,7 +64,7 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
         self.line.finish(&mut |chunk| out.write_all(&chunk.text))
     }
 
-    /// Hands the chunk on and begins the next one, within a path or not.
+    /// Submits the chunk and begins the next one; `within` is the state of the path if that continues.
     fn next_chunk(&mut self, within: Option<[Position; 2]>) -> io::Result<()> {
         let mut next = self.line.spare().unwrap_or_default();
         next.begin(within);
@@ -82,7 +82,7 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
             self.text("<g");
             if let Some(layers) = &mut self.layers {
                 *layers += 1;
-                // Plotters take the number at the start of the name as that of the pen.
+                // Plotter software takes the number at the start of the name as that of the pen.
                 let layer = format!(
                     r#" id="layer{layers}" inkscape:groupmode="layer" inkscape:label="{layers} {colour}"{}"#,
                     shared(self.pen)
@@ -103,7 +103,7 @@ impl<'t, 'w, W: Write> Svg<'t, 'w, W> {
         self.chunk.write(text.as_bytes());
     }
 
-    /// The attributes in which a pen differs from that of the document.
+    /// Writes the attributes in which strokes differ from those of the document.
     fn pen(&mut self, pen: Pen) {
         if pen.width != self.pen.width {
             self.text(&format!(r#" stroke-width="{:.1}""#, pen.width * FINE));
@@ -206,8 +206,7 @@ impl<W: Write> Surface for Svg<'_, '_, W> {
     }
 }
 
-/// Writes what stands before all that is drawn: the root's tag, what the file says of itself, and the
-/// background.
+/// Writes the head of a document: the root's tag, the metadata and the background.
 pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Result<()> {
     let Page {
         size,
@@ -247,13 +246,13 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
     Ok(())
 }
 
-/// The attributes that all paths share.
+/// Returns the attributes that all paths share.
 fn shared(pen: Pen) -> String {
     let (width, ends) = (pen.width * FINE, ends_and_corners(pen));
     format!(r#" fill="none" stroke-width="{width}"{ends}"#)
 }
 
-/// The shapes of a pen's ends and corners, where they are not those that SVG has for itself.
+/// Returns the attributes for caps and joins that differ from the defaults of SVG.
 pub(super) fn ends_and_corners(pen: Pen) -> String {
     let mut text = String::new();
     if pen.cap != Cap::Butt {
@@ -265,12 +264,12 @@ pub(super) fn ends_and_corners(pen: Pen) -> String {
     text
 }
 
-/// Whole pixels in the units of positions.
+/// Converts pixels to the units of positions.
 fn fine(pixels: [u32; 2]) -> [u64; 2] {
     pixels.map(|side| u64::from(side) * 100)
 }
 
-/// Text as XML may hold it.
+/// Escapes text for XML, and removes characters that XML excludes.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -287,7 +286,7 @@ fn escaped(text: &str) -> String {
     escaped
 }
 
-/// The attribute for a colour that is not opaque.
+/// Returns the opacity attribute of a colour; empty if it is opaque.
 pub(super) fn opacity(what: &str, colour: Colour) -> String {
     if colour.opacity() < 1.0 {
         format!(r#" {what}-opacity="{:.3}""#, colour.opacity())

@@ -1,18 +1,19 @@
+//! Units of length of pictures.
+
 use std::fmt;
 
-/// What a picture's size is counted in, and with it all else that is said in pixels: strokes,
-/// margins, details.
+/// Unit of a picture's size, and of all other lengths given in pixels: strokes, margins, details.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unit {
-    /// Pixels as CSS has them, of 1/96 inch where that matters.
+    /// CSS pixel: 1/96 inch in formats with physical lengths.
     #[default]
     Pixel,
-    /// Tenths of a millimetre.
+    /// Tenth of a millimetre.
+    /// Returns the length of the unit in millimetres.
     Tenth,
 }
 
 impl Unit {
-    /// How long it is, in millimetres.
     #[must_use]
     pub fn millimetres(self) -> f64 {
         match self {
@@ -21,13 +22,13 @@ impl Unit {
         }
     }
 
-    /// So many units, as SVG writes them.
+    /// Returns a length in units, to be displayed as in SVG.
     pub(super) fn length(self, units: u32) -> Length {
         Length { units, unit: self }
     }
 }
 
-/// A side of a picture.
+/// Length of a side of a picture.
 pub(super) struct Length {
     units: u32,
     unit: Unit,

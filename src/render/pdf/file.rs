@@ -1,3 +1,5 @@
+//! Objects and cross-reference table of a PDF file.
+
 use std::io::{self, Write};
 
 use flate2::Compression;
@@ -5,11 +7,11 @@ use flate2::write::ZlibEncoder;
 
 use crate::render::Labels;
 
-/// Pieces of content have about so many bytes, whatever the number of threads: so the bytes of the
-/// file are the same.
+/// Approximate number of bytes of a piece of content. It does not depend on the number of threads, nor does
+/// the file.
 const PIECE: usize = 1 << 18;
 
-/// A piece of a page's content, and what it is compressed to.
+/// Piece of a page's content, with its compressed form.
 #[derive(Default)]
 pub(super) struct Piece {
     pub(super) text: Vec<u8>,
@@ -21,28 +23,28 @@ impl Piece {
         self.text.len() >= PIECE
     }
 
-    /// Compresses it.
+    /// Compresses the piece.
     pub(super) fn pack(&mut self) {
         self.packed.clear();
         let mut encoder = ZlibEncoder::new(&mut self.packed, Compression::fast());
-        // Memory takes all.
+        // Writing to memory does not fail.
         let _ = encoder.write_all(&self.text);
         let _ = encoder.finish();
     }
 }
 
-/// The numbers of the objects that there are once; pieces come after them.
+/// Object number of the catalogue. Pieces of content follow the objects that exist once.
 const CATALOG: usize = 1;
 const PAGES: usize = 2;
 const PAGE: usize = 3;
 const INFO: usize = 4;
 const PIECES: usize = 5;
 
-/// A file of objects, and where they lie in it.
+/// Writer of a file of objects, with their offsets.
 pub(super) struct File<W> {
     out: W,
     length: u64,
-    /// Where the pieces begin.
+    /// Offsets of the pieces of content.
     pieces: Vec<u64>,
 }
 
@@ -53,14 +55,14 @@ impl<W: Write> File<W> {
             length: 0,
             pieces: Vec::new(),
         };
-        // Bytes beyond ASCII tell those who pass it on that this is no text.
+        // Bytes beyond ASCII mark the file as binary.
         file.write(b"%PDF-1.6\n%\xC2\xB5\xC2\xB6\n")?;
         Ok(file)
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.length += bytes.len() as u64;
-        // Places are told in ten digits.
+        // Offsets have ten digits.
         if self.length > 9_999_999_999 {
             return Err(io::Error::other("a PDF has no room for more than 10 GB"));
         }
@@ -78,7 +80,7 @@ impl<W: Write> File<W> {
         self.write(b"\nendstream\nendobj\n")
     }
 
-    /// Ends the file: with its one page, apart from its content, and what it says of itself.
+    /// Ends the file: writes the page, the metadata and the cross-reference table.
     pub(super) fn finish(mut self, page: &str, labels: &Labels) -> io::Result<()> {
         let mut places = Vec::new();
         let pieces = PIECES..PIECES + self.pieces.len();
@@ -121,13 +123,13 @@ impl<W: Write> File<W> {
     }
 }
 
-/// A number with as many decimals as matter.
+/// Formats a number with up to 8 decimals, without trailing zeros.
 pub(super) fn real(value: f64) -> String {
     let text = format!("{value:.8}");
     text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
-/// A text: as it is where that can be, or as UTF-16.
+/// Formats a text string: literally if it is ASCII, otherwise as UTF-16.
 fn string(text: &str) -> String {
     let is_plain = |c: char| c == '\n' || c == '\t' || (' '..='~').contains(&c);
     let text = text.replace('\r', "");

@@ -1,7 +1,7 @@
 //! PDF: the paths of a picture on one page, streamed, with its colours, opacities, caps and joins.
 //!
-//! The page's content is compressed in pieces, by any thread; what stays in memory of a piece that
-//! has been written is where it lies in the file.
+//! The page's content is compressed in pieces, on any thread; of a piece that has been written, only its
+//! offset in the file stays in memory.
 
 mod file;
 
@@ -15,20 +15,20 @@ use super::surface::{FINE, Paint, Pen, Position, Surface};
 use super::{Labels, Page};
 use file::{File, Piece, real};
 
-/// The longest side that a page may have, in its units.
+/// Longest side of a page, in its units.
 const LONGEST: f64 = 14_400.0;
 
-/// Of which there are so many to a millimetre, unless the page says otherwise.
+/// Points per millimetre: the default unit of a page is a point.
 const POINTS: f64 = 72.0 / 25.4;
 
-/// An opacity that paths are filled or stroked with.
+/// Opacity of fills or strokes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Opacity {
     of_strokes: bool,
     value: u8,
 }
 
-/// What has been said of the paths that follow.
+/// Graphics state set by the content so far.
 #[derive(Clone, Copy, Default)]
 struct State {
     fill: Option<Colour>,
@@ -36,19 +36,21 @@ struct State {
     pen: Option<Pen>,
 }
 
-/// A page that is being written.
+/// Page that is being written.
 pub(super) struct Pdf<'t, 'w, W> {
     file: File<W>,
     piece: Piece,
     line: Line<'t, 'w, Piece>,
-    /// Width and height, in the page's units, and how many points they have.
+    /// Width and height, in the page's units.
     page: [f64; 2],
+    /// Points per unit of the page.
     user_unit: f64,
-    /// What has been said here, and outside of the parts that have been entered.
+    /// Current graphics state.
     state: State,
+    /// States outside of the parts that have been entered.
     outer: Vec<State>,
     opacities: BTreeSet<Opacity>,
-    /// What is done with the path.
+    /// Operator that paints the current path.
     operator: &'static str,
     labels: Labels,
 }
@@ -78,7 +80,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             operator: "n",
             labels: labels.clone(),
         };
-        // Positions are in hundredths of a unit of the picture, down from its upper left corner.
+        // Positions are in hundredths of a unit of the picture, from its upper left corner, y down.
         let scale = real(point / user_unit / FINE);
         let height = real(page[1]);
         pdf.text(&format!("{scale} 0 0 -{scale} 0 {height} cm\n4 M\n"));
@@ -136,7 +138,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
         text.extend_from_slice(&[operator, b'\n']);
     }
 
-    /// Says how the next path is painted, as far as that has not been said.
+    /// Sets the graphics state for the next path, where it differs.
     fn paint(&mut self, paint: &Paint) {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         for (colour, of_strokes) in [(paint.fill, false), (stroke, true)] {
@@ -148,7 +150,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             };
             *said = Some(colour);
             let [red, green, blue, value] = colour.rgba();
-            // All is opaque until something is said.
+            // The initial state is opaque.
             if before.map_or(255, |before| before.rgba()[3]) != value {
                 let opacity = Opacity { of_strokes, value };
                 self.opacities.insert(opacity);
@@ -188,7 +190,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
 
 impl<W: Write> Surface for Pdf<'_, '_, W> {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
-        // A stroke of no width would be as thin as there are.
+        // A stroke of width 0 would be drawn as the thinnest possible line.
         let stroke = paint.stroke.filter(|stroke| stroke.pen.width > 0.0);
         let paint = Paint { stroke, ..*paint };
         self.paint(&paint);
@@ -247,7 +249,7 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
 
     fn leave(&mut self) -> io::Result<()> {
         self.text("Q\n");
-        // What has been said within is forgotten.
+        // The operator restores the state from before the part.
         self.state = self.outer.pop().unwrap_or_default();
         Ok(())
     }
@@ -255,7 +257,7 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
     fn label(&mut self, _: &str) {}
 }
 
-/// What an opacity is called on the page.
+/// Returns the resource name of an opacity.
 fn name(opacity: Opacity) -> String {
     let what = if opacity.of_strokes { 'S' } else { 'F' };
     format!("{what}{}", opacity.value)

@@ -1,10 +1,11 @@
-//! A stretch of the document: made in order, written out as text by any thread.
+//! Chunks of a document: collected in order, formatted on any thread.
 
 use crate::render::surface::Position;
 
 use super::path::PathData;
 
-/// Chunks have about this many commands, whatever the number of threads: so the bytes are the same.
+/// Approximate number of commands of a chunk. It does not depend on the number of threads, nor does the
+/// output.
 const COMMANDS: usize = 1 << 12;
 
 #[derive(Clone, Copy)]
@@ -13,17 +14,17 @@ enum Command {
     Line,
     Curve,
     Close,
-    /// So many bytes of other text.
+    /// Other text of this many bytes.
     Text(u32),
 }
 
-/// Commands, and the text that they become.
+/// Commands, and the text to which they are formatted.
 #[derive(Default)]
 pub(in crate::render) struct Chunk {
     commands: Vec<Command>,
     points: Vec<Position>,
     other: Vec<u8>,
-    /// Where the pen stands and the subpath starts, if the chunk begins within a path.
+    /// Current point and start of the subpath, if the chunk begins within a path.
     within: Option<[Position; 2]>,
     path: PathData,
     pub(super) text: Vec<u8>,
@@ -34,7 +35,7 @@ impl Chunk {
         self.commands.len() >= COMMANDS
     }
 
-    /// Empties it.
+    /// Empties the chunk.
     pub(super) fn begin(&mut self, within: Option<[Position; 2]>) {
         self.commands.clear();
         self.points.clear();
@@ -63,7 +64,7 @@ impl Chunk {
         self.commands.push(Command::Close);
     }
 
-    /// Adds text that is no path data.
+    /// Adds text other than path data.
     pub(super) fn write(&mut self, text: &[u8]) {
         self.other.extend_from_slice(text);
         #[expect(clippy::cast_possible_truncation, reason = "tags are short")]
@@ -75,7 +76,7 @@ impl Chunk {
         }
     }
 
-    /// Writes the text.
+    /// Formats the commands as text.
     pub(super) fn format(&mut self) {
         self.text.clear();
         self.path.clear();

@@ -1,18 +1,18 @@
-//! Path data in whole numbers: absolute where a subpath starts, relative from there on.
+//! Path data of integers: absolute at the start of a subpath, relative after it.
 //!
-//! Differences are taken between rounded positions, so that errors do not add up along a path.
+//! Differences are taken between rounded positions, so that rounding errors do not accumulate along a path.
 
 use crate::render::surface::Position;
 
-/// Lines are broken near this column, so that files can be read and compared.
+/// Column near which lines are broken, to keep files readable and comparable.
 const LINE: usize = 100;
 
-/// Numbers up to this one, and down to its negative, are copied from a table.
+/// Largest absolute value whose text is copied from a table.
 const SMALL: i64 = 999;
 
 const NUMBERS: usize = 1999;
 
-/// The text of every small number in the low bytes of a word, and its length in the highest.
+/// Text of every small number, in the low bytes of a word, and its length in the highest byte.
 static DIGITS: [[u8; 8]; NUMBERS] = digits();
 
 #[expect(clippy::cast_possible_truncation, reason = "digits are small")]
@@ -42,17 +42,17 @@ const fn digits() -> [[u8; 8]; NUMBERS] {
     table
 }
 
-/// No command is longer than this, with its numbers.
+/// Upper bound of the length of a command with its numbers.
 const ROOM: usize = 256;
 
-/// Writes path data into a buffer.
+/// Writer of path data into a buffer.
 #[derive(Default)]
 pub(super) struct PathData {
-    /// The text, and room behind it.
+    /// Buffer: the text up to `end`, and spare room.
     text: Vec<u8>,
     end: usize,
     line_start: usize,
-    /// The letter that the next numbers may follow without repeating it.
+    /// Letter that need not be repeated before the next numbers.
     command: u8,
     after_number: bool,
     pen: Position,
@@ -60,7 +60,7 @@ pub(super) struct PathData {
 }
 
 impl PathData {
-    /// Takes what has been written so far.
+    /// Moves the text written so far to `out`.
     pub(super) fn drain(&mut self, out: &mut Vec<u8>) {
         out.extend_from_slice(&self.text[..self.end]);
         self.end = 0;
@@ -72,7 +72,7 @@ impl PathData {
         (self.command, self.after_number) = (0, false);
     }
 
-    /// Goes on with a path, on a new line.
+    /// Continues a path, on a new line.
     pub(super) fn go_on(&mut self, pen: Position, start: Position) {
         (self.pen, self.start) = (pen, start);
     }
