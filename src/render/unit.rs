@@ -9,11 +9,11 @@ pub enum Unit {
     #[default]
     Pixel,
     /// Tenth of a millimetre.
-    /// Returns the length of the unit in millimetres.
     Tenth,
 }
 
 impl Unit {
+    /// Returns the length of the unit in millimetres.
     #[must_use]
     pub fn millimetres(self) -> f64 {
         match self {
