@@ -1,4 +1,4 @@
-//! What a survey would learn of what is cut at a length, counted without a walk.
+//! Prepass without a walk for a cutoff length: surveys from numbers of elements by kind.
 
 use std::convert::Infallible;
 
@@ -10,7 +10,7 @@ use crate::style::ColorBy;
 
 use super::Survey;
 
-/// One of some elements, wherever it stands.
+/// Returns an element of a kind, at an arbitrary place.
 fn element(kind: &Kind, born: u32) -> Element {
     Element {
         frame: Frame {
@@ -28,7 +28,7 @@ fn element(kind: &Kind, born: u32) -> Element {
 }
 
 impl Survey<'_> {
-    /// The survey of all that can be seen, where only a length cuts it; `None` where that takes a walk.
+    /// Computes the survey if elements are kept for their length only; `None` if that requires a walk.
     pub(super) fn counted(
         &self,
         growth: &Growth<'_>,
@@ -66,11 +66,11 @@ impl Survey<'_> {
         Ok(is_known.then_some(survey))
     }
 
-    /// Elements that stand in the end.
+    /// Counts elements of the last approximant, or kept before it.
     fn count(&mut self, object: &Object, element: &Element, steps: u32, count: u64) {
         self.elements = self.elements.saturating_add(count);
         if object.visible {
-            // Of fractals that are seeded no colour tells the age here.
+            // The ages of seeded fractals are not computed here.
             let fractal = Fractal {
                 age: steps,
                 ..Fractal::default()
@@ -81,7 +81,7 @@ impl Survey<'_> {
     }
 }
 
-/// How many fractals an object starts when it is replaced.
+/// Returns the number of fractals that an element of an object seeds when it is replaced.
 fn seeds(object: &Object) -> u64 {
     match &object.replacement {
         Replacement::Fixed(production) => production.seeds.len() as u64,

@@ -1,13 +1,15 @@
+//! Classes of elements by colour.
+
 use std::ops::{Range, RangeInclusive};
 
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Element, Fractal, Run};
 use crate::style::{ColorBy, Colour, Style};
 
-/// Colours that vary continuously are quantised to this many classes at most.
+/// Maximum number of classes into which values are quantised.
 const MOST_CLASSES: u64 = 64;
 
-/// How many of some elements.
+/// Portion of a run's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Share {
     All,
@@ -15,19 +17,19 @@ pub(super) enum Share {
     None,
 }
 
-/// The classes of colour of an approximant.
+/// Classes of the elements of an approximant by colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classes {
     by: ColorBy,
-    /// The largest value that is told apart; values start at 0.
+    /// Largest value that is distinguished; values start at 0.
     largest: u128,
-    /// Where generators or maps are told, how many values come before those of the first: one if something
-    /// is drawn that none has made, as the initiator.
+    /// If the colour depends on generators or maps: the value of the first one, which is 1 if the approximant
+    /// draws elements that none of them has made, such as the initiator, and 0 otherwise.
     before: u128,
 }
 
 impl Classes {
-    /// The classes once the numbers of fractals and of elements in the largest one are known.
+    /// Returns the classes for known numbers of fractals and of elements in the largest fractal.
     pub(super) fn after_survey(self, fractals: u64, largest_index: u128) -> Self {
         let largest = match self.by {
             ColorBy::Fractal => u128::from(fractals).saturating_sub(1),
@@ -37,12 +39,12 @@ impl Classes {
         Self { largest, ..self }
     }
 
-    /// Whether an element's class is known without a survey.
+    /// Returns whether classes are known without a survey.
     pub(super) fn need_no_survey(&self) -> bool {
         !matches!(self.by, ColorBy::Fractal | ColorBy::Index)
     }
 
-    /// The classes of approximant `steps` of a graph, as far as they are known without a survey.
+    /// Returns the classes of approximant `steps` of a graph, as far as they are known without a survey.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let before = u128::from(draws_unmade(by, graph, steps));
         let largest = match by {
@@ -60,7 +62,7 @@ impl Classes {
         }
     }
 
-    /// The number of classes, 64 at most.
+    /// Returns the number of classes, at most 64.
     #[must_use]
     pub fn count(&self) -> u64 {
         u64::try_from(self.largest).map_or(MOST_CLASSES, |largest| (largest + 1).min(MOST_CLASSES))
@@ -70,26 +72,26 @@ impl Classes {
         0..self.count()
     }
 
-    /// The class of an element, from 0.
+    /// Returns the class of an element, from 0.
     #[inline]
     #[must_use]
     pub fn of(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
         self.of_value(self.value(element, fractal, graph))
     }
 
-    /// The class of all elements that are an object, if that tells it.
+    /// Returns the class of all elements of an object, if the object determines it.
     pub(super) fn of_object(&self, object: &Object) -> Option<u64> {
         self.value_of_object(object)
             .map(|value| self.of_value(value))
     }
 
-    /// The value of all elements that are an object, likewise.
+    /// Returns the value of all elements of an object, if the object determines it.
     pub(super) fn value_of_object(&self, object: &Object) -> Option<u128> {
         let maker = maker(self.by, object)?;
         Some(maker.map_or(0, |number| number as u128 + self.before))
     }
 
-    /// The value of what the colours tell.
+    /// Returns the value on which the colour of an element depends.
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u128 {
         match self.by {
@@ -106,7 +108,7 @@ impl Classes {
         }
     }
 
-    /// The steps in which the elements of a class are born; `None` if it may be any.
+    /// Returns the steps in which the elements of a class are born; `None` if classes do not depend on steps.
     pub(super) fn steps(&self, class: u64) -> Option<RangeInclusive<u32>> {
         if self.by != ColorBy::Step {
             return None;
@@ -117,7 +119,7 @@ impl Classes {
         Some(u32::try_from(first).ok()?..=u32::try_from(last).ok()?)
     }
 
-    /// How many elements of a run are in a class.
+    /// Returns the portion of a run's elements that is in a class.
     pub(super) fn share(
         &self,
         run: &Run<'_>,
@@ -141,7 +143,7 @@ impl Classes {
         let last = last.unwrap_or(first);
         let (all, any) = match self.by {
             _ if self.keep_fractals_whole() => (first == class, first == class),
-            // Ranks grow along the way.
+            // Ranks increase along a run.
             ColorBy::Index => (
                 first == class && last == class,
                 (first..=last).contains(&class),
@@ -156,7 +158,7 @@ impl Classes {
         }
     }
 
-    /// The class of a value of what the colours tell.
+    /// Returns the class of a value.
     #[inline]
     pub(super) fn of_value(&self, value: u128) -> u64 {
         let most = u128::from(MOST_CLASSES);
@@ -168,7 +170,7 @@ impl Classes {
         u64::try_from(class).unwrap_or(MOST_CLASSES - 1)
     }
 
-    /// The colour of a class.
+    /// Returns the colour of a class; `None` if the palette is not used.
     #[must_use]
     pub fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
         if !self.by.takes_palette() {
@@ -179,14 +181,15 @@ impl Classes {
         Some(style.palette.at(class as f64 / last as f64))
     }
 
-    /// The class of all elements of some ranks from 0, if colours tell them and there is one.
+    /// Returns the common class of all elements in a range of ranks, from 0, if the colour depends on ranks and
+    /// the class is unique.
     pub(super) fn of_ranks(&self, ranks: &Range<u128>) -> Option<u64> {
         let class = self.of_value(ranks.start);
         let is_one = self.by == ColorBy::Index && self.of_value(ranks.end) == class;
         is_one.then_some(class)
     }
 
-    /// Whether no element comes after one of a later class.
+    /// Returns whether classes never decrease in the order of a walk.
     pub(super) fn come_in_order(&self, graph: &Graph) -> bool {
         match self.by {
             ColorBy::Fractal => true,
@@ -195,7 +198,7 @@ impl Classes {
         }
     }
 
-    /// Whether all elements of a fractal are of one class.
+    /// Returns whether all elements of a fractal are in one class.
     #[must_use]
     pub fn keep_fractals_whole(&self) -> bool {
         matches!(
@@ -205,7 +208,7 @@ impl Classes {
     }
 }
 
-/// The generator or map that has made an object, by number, where colours tell it.
+/// Returns the number of the generator or map that made an object, if the colour depends on it.
 fn maker(by: ColorBy, object: &Object) -> Option<Option<usize>> {
     match by {
         ColorBy::Generator | ColorBy::FirstMap => Some(object.origin),
@@ -214,8 +217,8 @@ fn maker(by: ColorBy, object: &Object) -> Option<Option<usize>> {
     }
 }
 
-/// Whether approximant `steps` of a graph shows something that no generator or map has made: an infertile
-/// part of the initiator, or a condensation set.
+/// Returns whether approximant `steps` of a graph draws an element that no generator or map has made: an
+/// infertile part of the initiator, or a condensation set.
 fn draws_unmade(by: ColorBy, graph: &Graph, steps: u32) -> bool {
     let is_unmade = |object: &Object| object.visible && maker(by, object) == Some(None);
     let start = || graph.initiator(steps).instances.iter();

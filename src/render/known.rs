@@ -1,4 +1,4 @@
-//! What a survey would learn, told by the graph without a walk.
+//! Prepass without a walk: surveys that the graph determines.
 
 use std::collections::BTreeSet;
 
@@ -9,15 +9,15 @@ use crate::style::{ColorBy, Style};
 
 use super::{Classes, Survey};
 
-/// What is smaller than this multiple of the whole is left to the walk.
+/// Size of a set, relative to the unit length and to its coordinates, below which it is surveyed by a walk.
 const SPECK: f64 = 1e-6;
 
-/// A forecast of more steps than this is left to the walk.
+/// Maximum number of steps of a forecast; beyond it the set is surveyed by a walk.
 const MOST_STEPS: u32 = 10_000;
 
 impl<'g> Survey<'g> {
-    /// The survey of an approximant whose graph tells all of it; colours that tell steps span
-    /// `steps` of them.
+    /// Computes the survey of an approximant from the graph, if that determines all of it; if the colour
+    /// depends on steps, its classes span `steps` of them.
     pub(super) fn known(
         graph: &'g Graph,
         growth: &Growth<'_>,
@@ -35,7 +35,7 @@ impl<'g> Survey<'g> {
         Some(survey)
     }
 
-    /// The same but for the numbers of elements, which may be beyond any that are counted.
+    /// Computes the survey without the numbers of elements, which may exceed all limits.
     pub(super) fn outlined(
         graph: &'g Graph,
         growth: &Growth<'_>,
@@ -48,7 +48,7 @@ impl<'g> Survey<'g> {
         survey.bounds = survey.known_bounds(growth)?;
         let used: Vec<u128> = match style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
-            // Of fractals that are seeded no colour tells the age here.
+            // The ages of seeded fractals are not computed here.
             ColorBy::Age if seeds => return None,
             ColorBy::Age => vec![growth.steps.into()],
             ColorBy::Fractal | ColorBy::Index => Vec::new(),
@@ -70,11 +70,11 @@ impl<'g> Survey<'g> {
         Some(survey)
     }
 
-    /// The box from the graph alone, or by a search for what reaches farthest.
+    /// Computes the bounding box from the graph, or by a search.
     fn known_bounds(&self, growth: &Growth<'_>) -> Option<Bounds> {
         let pad = |object: &Object| self.pad(object);
         if let Some(bounds) = self.graph().padded_bounds(growth.steps, pad) {
-            // The graph is exact beside the whole of the rule, of which this may be a speck.
+            // The precision of the box is relative to the unit length and to the coordinates, not to its size.
             let corners = [bounds.min(), bounds.max()];
             let far = corners.map(|corner| corner.abs().max_element());
             let is_speck = bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1]));
@@ -85,7 +85,7 @@ impl<'g> Survey<'g> {
     }
 }
 
-/// The numbers of an approximant.
+/// Numbers of elements and fractals of an approximant.
 struct Numbers {
     elements: u64,
     fractals: u64,
@@ -109,7 +109,7 @@ fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
     })
 }
 
-/// A kind of element that stands in an approximant and is visible.
+/// Kind of visible elements of an approximant.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Kind {
     object: usize,
@@ -117,11 +117,11 @@ struct Kind {
     born: u32,
 }
 
-/// All kinds that stand in an approximant.
+/// All kinds of visible elements of an approximant.
 struct Standing(BTreeSet<Kind>);
 
 impl Standing {
-    /// `None` where it depends on draws what stands.
+    /// Computes the kinds; `None` if they depend on draws.
     fn at(graph: &Graph, steps: u32) -> Option<Self> {
         let mut stand = BTreeSet::new();
         let initiator = graph.initiator(steps).instances.iter();
@@ -142,7 +142,7 @@ impl Standing {
                     }
                     continue;
                 }
-                // A part that is placed as the initiator has its own direction, but no known box.
+                // The direction is wrong for parts placed as the initiator, but their bounding box is unknown.
                 match replacement {
                     Replacement::Fixed(production) => next.extend(
                         production
@@ -230,7 +230,7 @@ mod tests {
         }
         assert!(told > 1000, "{told}");
     }
-    /// What is drawn in some steps only, and what has shrunk to a speck.
+    /// The cases are elements that are drawn in some steps only, and a set that has shrunk to a speck.
     #[test]
     fn what_the_graph_does_not_tell_is_left_to_the_walk() {
         let spine = "initiator: [[0, 0], {to: [1, 0], fertile: false}, {from: [1, 0], to: [1.5, 0]}]\n\

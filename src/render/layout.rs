@@ -1,4 +1,4 @@
-//! What a picture shows, on what canvas, after how many steps.
+//! Layout of a picture: survey, canvas and number of steps.
 
 use crate::geometry::Bounds;
 use crate::graph::Graph;
@@ -9,77 +9,77 @@ use super::sight::{NEARLY, Sight};
 use super::survey::overhang;
 use super::{Canvas, Format, Options, RenderError, Survey};
 
-/// Down to what size elements are replaced.
+/// Size down to which elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
-    /// Elements shorter than so many pixels are not replaced: they are drawn as their approximant
-    /// draws them, and seed nothing. Above 0.
+    /// Size in pixels, above 0: shorter elements are not replaced. They are drawn as in their approximant, and
+    /// seed nothing.
     ///
-    /// What leads to seeds that are placed as the initiator is replaced nevertheless.
+    /// Elements that lead to seeds placed as the initiator are replaced at any size.
     pub pixels: f64,
-    /// Whether the number of steps that is grown is what this takes, and what growth says is only a
+    /// Whether the number of steps follows from the detail; the number given for the growth is then only a
     /// limit.
     pub decides_steps: bool,
 }
 
-/// Why a picture has not the detail that is asked for.
+/// Reason why a picture cannot be drawn to a detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoDetail {
-    /// Indices are counted while walking.
+    /// Indices are counted by the walk.
     #[error("what replaces an element depends on the number of all those before it")]
     CountsIndex,
-    /// Elements do not get smaller.
+    /// Elements do not shrink below every length.
     #[error("its elements do not get smaller than any length")]
     DoesNotShrink,
-    /// Every number of steps is grown out of an initiator of its own.
+    /// The graph is time-indexed: every number of steps has its own initiator.
     #[error("every step of it starts anew, so that the detail cannot tell how many there are")]
     StartsAnew,
-    /// All that is drawn shrinks with its elements, and fills the picture as before.
+    /// The bounding box shrinks with the elements, which fill the picture at every step.
     #[error("all that is drawn gets as small as its elements")]
     Vanishes,
-    /// The detail is to decide the number of steps, and is not come to soon enough.
+    /// The limit of steps is reached before the detail.
     #[error("{steps} steps are not enough")]
     TooFewSteps {
-        /// The number of steps that growth allows.
+        /// Limit of steps.
         steps: u32,
     },
 }
 
-/// The first look at what has no known size: elements down to this part of the initiator's longest.
+/// Cutoff length of the first estimate, as a fraction of the initiator's longest element.
 const FIRST_LOOK: f64 = 1.0 / 8.0;
 
-/// If nothing is visible there, so many more looks are taken, each as much closer again.
+/// Maximum number of further estimates, each finer by that fraction, while nothing is visible.
 const MOST_LOOKS: u32 = 4;
 
-/// So many elements are counted by a walk, even where what is covered already need not be grown.
+/// Number of elements up to which they are counted by a walk even if occlusion may shorten the drawing.
 const WORTH_COUNTING: u64 = 1 << 21;
 
-/// The detail changes what is drawn, which changes the scale and so the detail: after so many
-/// rounds, the last is good enough.
+/// Maximum number of iterations. The detail determines the bounding box, which determines the scale and
+/// thereby the length of the detail.
 const MOST_ROUNDS: u32 = 8;
 
-/// What is drawn, and where.
+/// Result of the prepass.
 pub(super) struct Layout<'a> {
     pub(super) survey: Survey<'a>,
     pub(super) canvas: Canvas,
     pub(super) growth: Growth<'a>,
 }
 
-/// Surveys one after another.
+/// State of the prepass.
 struct Surveyor<'a> {
     graph: &'a Graph,
     growth: Growth<'a>,
     options: &'a Options,
-    /// The most steps.
+    /// Limit of steps.
     limit: u32,
-    /// The elements of the surveys that have been thrown away.
+    /// Number of elements of discarded surveys.
     elements: u64,
-    /// How far what becomes of objects reaches, once it has been asked for.
+    /// Radii of the objects' subtrees, computed on first use.
     reaches: Option<Vec<f64>>,
 }
 
 impl<'a> Layout<'a> {
-    /// Surveys a graph, as often as it takes to know how large a pixel is.
+    /// Surveys a graph repeatedly until the size of a pixel is known.
     pub(super) fn find(
         graph: &'a Graph,
         growth: &Growth<'a>,
@@ -142,7 +142,7 @@ impl<'a> Surveyor<'a> {
         Ok(Canvas::of(std::slice::from_ref(survey), view, *size)?)
     }
 
-    /// Refuses a survey that has met the limit of steps where there should be none.
+    /// Returns an error if the detail decides the number of steps and the survey reached the limit of steps.
     fn check(&self, survey: &Survey<'a>) -> Result<(), NoDetail> {
         let steps = self.limit;
         let decides = |detail: Detail| detail.decides_steps;
@@ -152,7 +152,7 @@ impl<'a> Surveyor<'a> {
         Ok(())
     }
 
-    /// Surveys what lies in a window.
+    /// Surveys the part of the set that lies in a window.
     fn survey_window(&mut self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
         let Options {
             style,
@@ -188,7 +188,7 @@ impl<'a> Surveyor<'a> {
         let survey = Survey::new(graph, style, growth.steps)
             .of_what_is_in(sight.clone())
             .with_ranks_of(&growth);
-        // What comes near a pixel tinges it.
+        // Elements within a pixel of the picture contribute to the coverage at its edge.
         let shown = canvas.shown(stroke + 1.0);
         let sight = sight.within(&shown, graph, &growth, style, survey.counts_ranks());
         let survey = if sight.cuts() {
@@ -203,8 +203,8 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
-    /// If all elements of a step are equally long, so that a number of steps says the same as a length:
-    /// grows by that number.
+    /// Sets the number of steps that corresponds to a cutoff length, if all elements of a step are equally
+    /// long; returns whether they are.
     fn step_down_to(&mut self, shortest: f64) -> bool {
         let Some([mut length, ratio]) = self.graph.even_lengths() else {
             return false;
@@ -218,8 +218,7 @@ impl<'a> Surveyor<'a> {
         true
     }
 
-    /// Looks at everything down to elements of a length: a survey, or as much of one as it takes to
-    /// know how large a pixel is.
+    /// Surveys the set down to a cutoff length, completely or as far as the size of a pixel depends on it.
     fn look_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
         if !self.step_down_to(shortest) {
             let sight = Sight::to_length(self.graph, shortest);
@@ -237,7 +236,7 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
-    /// Learns the rest of what has been looked at.
+    /// Completes a survey.
     fn completed(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
         let survey = if survey.is_bounded {
             self.counted(survey)?
@@ -248,8 +247,8 @@ impl<'a> Surveyor<'a> {
         Ok(survey)
     }
 
-    /// Counts what there is to draw; or some of it, if there is more and what is covered already need not
-    /// be grown. What is visited then is limited while it is drawn.
+    /// Counts the elements to be drawn. If covered elements need not be walked, a large number is counted in
+    /// part only; the limit then applies to the elements visited while drawing.
     fn counted(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
         let Options {
             threads,
@@ -276,7 +275,7 @@ impl<'a> Surveyor<'a> {
         }
     }
 
-    /// Surveys everything down to elements of a number of pixels.
+    /// Surveys the set down to a detail in pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
         let start = self.graph.initiator(self.growth.steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();

@@ -1,3 +1,5 @@
+//! Prepass over an approximant: bounding box, colours and numbers of elements.
+
 use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::num::NonZero;
@@ -14,13 +16,13 @@ use crate::style::{Cap, ColorBy, Join, Style, Width};
 use super::sight::{Sight, starts_rings};
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
-/// Spans of a survey, and of what follows from it, have about so many elements,
+/// Approximate number of elements of a span, in surveys and in the walks that follow them.
 const SPAN: u64 = 1 << 12;
 
-/// and no more points than this, by which their sketches are large.
+/// Approximate maximum number of points of a span, on which the size of its sketch depends.
 const MOST_POINTS: usize = 1 << 16;
 
-/// About how many elements the spans of a graph have; no run has more.
+/// Returns the approximate number of elements of a span, which is also the maximum for a run.
 pub(super) fn span(graph: &Graph) -> u64 {
     let pieces = graph
         .base_elements()
@@ -30,32 +32,32 @@ pub(super) fn span(graph: &Graph) -> u64 {
     SPAN.min((MOST_POINTS / points) as u64).max(1)
 }
 
-/// What is known of ranks, for a walk over as many steps.
+/// Source of ranks for a walk over `steps` steps.
 #[derive(Clone, Debug)]
 pub(super) struct Ranks {
     pub(super) steps: u32,
     how: Known,
 }
 
-/// How it is known.
+/// Kind of source.
 #[derive(Clone, Debug)]
 enum Known {
-    /// Of every span of a walk that is divided in the same way, how many elements of the fractal that
-    /// it goes on with came before.
+    /// For every span of a walk with an equal division, the number of preceding elements of the fractal that
+    /// it continues.
     Told(Arc<[u128]>),
-    /// What does not depend on what is visited.
+    /// Census, which is independent of the elements that are visited.
     Counted(Arc<Census>),
 }
 
 impl Ranks {
-    /// What a census tells, if that is enough, and the largest rank.
+    /// Returns the ranks of a census, with the largest rank, if the census is certain.
     pub(super) fn counted(census: Census, steps: u32) -> Option<(Self, u128)> {
         let largest = census.largest()?;
         let how = Known::Counted(Arc::new(census));
         Some((Self { steps, how }, largest))
     }
 
-    /// The same for a walk.
+    /// Returns the ranks as the walk expects them.
     pub(super) fn for_walk(&self) -> grow::Ranks<'_> {
         match &self.how {
             Known::Told(before) => grow::Ranks::Told(before),
@@ -63,58 +65,57 @@ impl Ranks {
         }
     }
 
-    /// Whether they do not depend on what is visited.
+    /// Returns whether ranks are independent of the elements that are visited.
     pub(super) fn are_counted(&self) -> bool {
         matches!(self.how, Known::Counted(_))
     }
 }
 
-/// What a walk over an approximant learns before anything is drawn.
+/// Properties of an approximant that are determined before it is drawn.
 #[derive(Clone, Debug)]
 pub struct Survey<'g> {
     graph: &'g Graph,
     style: &'g Style,
-    /// What is drawn, without strokes of a width in pixels.
+    /// Bounding box of the outlines, without strokes whose width is in pixels.
     pub bounds: Bounds,
     /// Whether any outline is stroked.
     pub strokes: bool,
-    /// The number of elements; where there are more, so many.
+    /// Number of elements; a lower bound if there are more than have been counted.
     pub elements: u64,
     /// Whether there are more elements than have been counted.
     pub(super) has_more: bool,
     /// Whether a visible element lies beyond the range of numbers.
     pub(super) is_beyond: bool,
-    /// The number of fractals.
+    /// Number of fractals.
     pub fractals: u64,
-    /// The largest rank of an element in its fractal.
+    /// Largest rank of an element in its fractal.
     pub largest_index: u128,
-    /// Whether there was a walk to learn it.
+    /// Whether a walk was needed.
     pub(super) walked: bool,
-    /// Whether a walk need not learn the bounds.
+    /// Whether the bounding box is known before the walk.
     pub(super) is_bounded: bool,
-    /// The number of steps that are needed: more would change nothing.
+    /// Number of steps after which elements do not change any more.
     pub(super) steps: u32,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
-    /// Ranks, where colours tell them and they are known.
+    /// Ranks, if the colour depends on them and they are known.
     pub(super) ranks: Option<Ranks>,
     sight: Sight,
-    /// What part of the plane is shown, if not all of it.
+    /// Part of the plane that is shown, if it is restricted.
     shown: Option<Bounds>,
-    /// Whether an outline has been met whose box comes into that part; where there is no walk, whether
-    /// the box of all of them does.
+    /// Whether the box of an outline meets that part; without a walk, whether the box of all outlines does.
     is_met: bool,
     fractal: Fractal,
-    /// The last rank in the fractal that a span goes on with, as far as it goes on.
+    /// Last rank in the fractal that the span continues, without the number of elements before the span.
     last_index: Option<u128>,
     goes_on: bool,
     classes: Classes,
-    /// The values that something visible has, of what the colours tell.
+    /// Values on which the colour depends, each with whether a visible element has it.
     used: Vec<bool>,
 }
 
 impl<'g> Survey<'g> {
-    /// A survey that has seen nothing yet.
+    /// Creates an empty survey.
     #[must_use]
     pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
         Self {
@@ -143,13 +144,13 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// A survey of what can be seen.
+    /// Restricts the survey to visible subtrees.
     #[must_use]
     pub(super) fn of_what_is_in(self, sight: Sight) -> Self {
         Self { sight, ..self }
     }
 
-    /// The same survey, which learns as well whether anything comes into a part of the plane.
+    /// Lets the survey determine as well whether any outline meets a part of the plane.
     pub(super) fn of_what_comes_into(self, shown: Bounds) -> Self {
         Self {
             is_met: shown.meets(&self.bounds),
@@ -158,7 +159,7 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// Whether there is surely nothing in that part. Closed chains may enclose it, where they are filled.
+    /// Returns whether that part is certain to be empty. Closed chains that are filled may enclose it.
     pub(super) fn shows_nothing(&self) -> bool {
         let encloses = self.style.fill.is_some() && starts_rings(self.graph);
         let is_outside = |shown: &Bounds| !shown.meets(&self.bounds);
@@ -168,7 +169,7 @@ impl<'g> Survey<'g> {
                 .is_some_and(|shown| !encloses || is_outside(&shown))
     }
 
-    /// The same with what the graph tells of ranks, if colours tell them.
+    /// Adds the ranks that the graph determines, if the colour depends on ranks.
     pub(super) fn with_ranks_of(mut self, growth: &Growth<'_>) -> Self {
         if self.style.color_by == ColorBy::Index && self.ranks.is_none() {
             let shortest = self.sight.shortest().unwrap_or(0.0);
@@ -178,7 +179,7 @@ impl<'g> Survey<'g> {
         self
     }
 
-    /// Knows ranks from a census of so many steps, if that tells them; whether it does.
+    /// Adds the ranks of a census of `steps` steps, if it determines them; returns whether it does.
     pub(super) fn count_ranks(&mut self, census: Option<Census>, steps: u32) -> bool {
         let ranks = census.and_then(|census| Ranks::counted(census, steps));
         let is_known = ranks.is_some();
@@ -188,27 +189,27 @@ impl<'g> Survey<'g> {
         is_known
     }
 
-    /// Whether ranks are known, whatever is visited.
+    /// Returns whether ranks are known regardless of the elements that are visited.
     pub(super) fn counts_ranks(&self) -> bool {
         self.ranks.as_ref().is_some_and(Ranks::are_counted)
     }
 
-    /// What can be seen.
+    /// Returns the visible part of the approximant.
     pub(super) fn sight(&self) -> &Sight {
         &self.sight
     }
 
-    /// What was walked over.
+    /// Returns the graph.
     pub(super) fn graph(&self) -> &'g Graph {
         self.graph
     }
 
-    /// How it is drawn.
+    /// Returns the style.
     pub(super) fn style(&self) -> &'g Style {
         self.style
     }
 
-    /// The classes of colour, now that everything has been seen, and those that are to be painted.
+    /// Returns the final classes of colour, and the classes that are to be painted.
     #[must_use]
     pub fn classes(&self) -> (Classes, Vec<u64>) {
         let classes = self.classes.after_survey(self.fractals, self.largest_index);
@@ -225,8 +226,8 @@ impl<'g> Survey<'g> {
         !base_element.is_closed() || self.style.outlines_polygons()
     }
 
-    /// How far the stroke of an object reaches beyond its outline, as a multiple of its length,
-    /// where its width is relative.
+    /// Returns the largest distance of an object's stroke from its outline, as a multiple of the object's
+    /// length; 0 if widths are in pixels.
     pub(super) fn pad(&self, object: &Object) -> f64 {
         match self.style.width {
             Width::Relative(width) if self.is_stroked(object) => {
@@ -236,12 +237,12 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// So many times as wide as the style says strokes are at most.
+    /// Returns the largest factor of stroke widths.
     fn widest(&self) -> f64 {
         self.graph.widest().unwrap_or(1.0)
     }
 
-    /// Something visible has a value.
+    /// Records that a visible element has a value.
     pub(super) fn use_value(&mut self, value: u128) {
         if let (true, Ok(value)) = (self.classes.need_no_survey(), usize::try_from(value)) {
             if value >= self.used.len() {
@@ -251,14 +252,13 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// An element is visible.
+    /// Records the value of a visible element.
     pub(super) fn use_value_of(&mut self, element: &Element, fractal: &Fractal) {
         let value = self.classes.value(element, fractal, self.graph);
         self.use_value(value);
     }
 
-    /// The same survey of an approximant of so many steps fewer, in which all that it has met stands
-    /// already.
+    /// Returns the survey of the approximant `fewer` steps earlier, which consists of the same elements.
     pub(super) fn sooner(mut self, growth: &Growth<'_>, fewer: u32) -> Self {
         let Style { color_by, .. } = self.style;
         if *color_by == ColorBy::Age {
@@ -268,8 +268,8 @@ impl<'g> Survey<'g> {
         self
     }
 
-    /// Learns what is needed to know how large a pixel is, without a walk: the bounds, and whether
-    /// any outline is stroked. `None` if the graph does not tell.
+    /// Determines the bounding box, and whether any outline is stroked, without a walk. `None` if the graph
+    /// does not bound all subtrees, or if only some of the outlines are stroked.
     pub(super) fn glimpsed(mut self, growth: &Growth<'_>, reaches: &[f64]) -> Option<Self> {
         let objects = || self.graph.objects().iter();
         let mut drawn = objects().filter(|object| object.visible);
@@ -281,7 +281,7 @@ impl<'g> Survey<'g> {
             all: reaches,
             pads: &objects().map(|object| self.pad(object)).collect::<Vec<_>>(),
         };
-        // What objects know how to come to in the end tells the box of all that stands for it.
+        // The box of the last approximant is used for time-indexed graphs, even if short elements are kept.
         let levelled = self.graph.is_levelled();
         let pad = |object: &Object| self.pad(object);
         let whole = levelled.then(|| self.graph.padded_bounds(growth.steps, pad));
@@ -295,8 +295,8 @@ impl<'g> Survey<'g> {
         Some(self)
     }
 
-    /// Whether what is covered already may be left out while this is drawn, on a surface that knows what
-    /// is.
+    /// Returns whether elements that are covered may be left out of the walk, on surfaces that report covered
+    /// pixels.
     pub(super) fn may_hide(&self) -> bool {
         let numbers_change = match self.style.color_by {
             ColorBy::Index | ColorBy::Fractal => true,
@@ -306,8 +306,8 @@ impl<'g> Survey<'g> {
         !numbers_change && !self.graph.seeds
     }
 
-    /// The survey of more elements than so many, where nothing else needs to be known of them, since
-    /// they are of one colour or their objects tell it.
+    /// Returns the survey of at least `elements` elements, if nothing else needs to be known about them: if
+    /// they have one colour, or if objects determine it.
     pub(super) fn uncounted(&self, elements: u64) -> Option<Self> {
         let is_one = self.classes.count() == 1;
         let is_told = |object: &Object| is_one || self.classes.of_object(object).is_some();
@@ -323,13 +323,13 @@ impl<'g> Survey<'g> {
         })
     }
 
-    /// How far what becomes of an object reaches, by object: see [`Graph::reaches`].
+    /// Returns the radius of every object's subtree, with strokes: see [`Graph::reaches`].
     pub(super) fn reaches(&self) -> Vec<f64> {
         let own = |object: &Object| self.graph.outline_radius(object) + self.pad(object);
         self.graph.reaches(own)
     }
 
-    /// Adds what a survey of the next span has seen.
+    /// Adds the survey of the next span.
     fn add(&mut self, span: &Self, seam: Seam) {
         self.bounds.add_all(&span.bounds);
         self.strokes |= span.strokes;
@@ -347,7 +347,7 @@ impl<'g> Survey<'g> {
         }
     }
 
-    /// Walks over what can be seen of an approximant, on several threads.
+    /// Completes the survey by a walk on several threads.
     pub(super) fn walked(
         self,
         growth: &Growth<'_>,
@@ -377,7 +377,7 @@ impl<'g> Survey<'g> {
         )?;
         if survey.style.color_by == ColorBy::Index && survey.ranks.is_none() {
             if survey.sight.cuts() {
-                // The visitor that was asked on the way is taken last, and has seen nothing.
+                // The last visitor only decided about replacement, and belongs to no span.
                 before.pop();
             }
             before.push(survey.largest_index);
@@ -389,7 +389,7 @@ impl<'g> Survey<'g> {
         Ok(survey)
     }
 
-    /// The pixels by which strokes of a width in pixels reach beyond their paths.
+    /// Returns the distance, in pixels, by which strokes of a width in pixels extend beyond their paths.
     #[must_use]
     pub fn overhang(&self) -> f64 {
         match self.style.width {
@@ -399,19 +399,19 @@ impl<'g> Survey<'g> {
     }
 }
 
-/// How far strokes may reach beyond their paths, as a multiple of their width.
+/// Returns the largest distance of a stroke's edge from its path, as a multiple of its width.
 pub(super) fn overhang(style: &Style) -> f64 {
     let cap = if style.cap == Cap::Square {
         std::f64::consts::FRAC_1_SQRT_2
     } else {
         0.5
     };
-    // SVG's limit of a mitre's length is four times the width.
+    // The default miter limit of SVG is four times the width.
     let join = if style.join == Join::Miter { 2.0 } else { 0.5 };
     f64::max(cap, join)
 }
 
-/// The same for widths that are relative: what is drawn may be a little wider than they say.
+/// Returns that distance for relative widths, which are rounded and may be drawn wider.
 pub(super) fn relative_overhang(style: &Style) -> f64 {
     libm::exp2(0.5 / WIDTHS_AN_OCTAVE) * overhang(style)
 }
@@ -446,7 +446,7 @@ impl Visitor for Survey<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         let enter = self.sight.enter(subtree);
-        // What is skipped must still be asked about: in the last step it would be drawn.
+        // Skipped elements count, too: without a further step they would be drawn.
         if enter != Enter::Keep {
             self.steps = self.steps.max(subtree.born + 1);
         }
@@ -455,7 +455,7 @@ impl Visitor for Survey<'_> {
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.elements += 1;
-        // Of roots it is not known before.
+        // Roots may be born later than any element that is replaced.
         self.steps = self.steps.max(element.born);
         if self.goes_on {
             self.last_index = Some(element.index);

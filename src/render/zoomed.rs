@@ -1,4 +1,4 @@
-//! Pictures of small parts, as much larger as one likes.
+//! Pictures of small parts of a set at arbitrary magnification.
 
 use std::io::Write;
 
@@ -12,19 +12,19 @@ use super::sight::starts_rings;
 use super::survey::{overhang, relative_overhang};
 use super::{Canvas, Detail, Nearest, Options, Picture, RenderError, Size};
 
-/// What a zoomed picture shows.
+/// Target of a zoomed picture.
 #[derive(Clone, Debug)]
 pub struct Look {
-    /// How much larger than the whole picture it is.
+    /// Magnification relative to the picture of the whole set.
     pub factor: Factor,
-    /// The point in its middle.
+    /// Point at the centre of the picture.
     pub at: Address,
 }
 
-/// Why a picture cannot be zoomed beyond what every picture may be refused for.
+/// Reason why a picture cannot be zoomed, in addition to those for all pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoZoom {
-    /// Elements far from the window are not counted.
+    /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
     #[error(
         "elements and fractals far from the window are not counted, so that colours cannot tell their \
          numbers; --color-by none draws them in one colour"
@@ -32,15 +32,15 @@ pub enum NoZoom {
     Numbers,
 }
 
-/// Writes what lies about a point as a picture of the same size, and as much larger as is asked for,
-/// as the picture of everything. The file's own window, if it has one, is everything.
+/// Writes a picture centred on a point, of the size of the picture of the whole set and magnified relative to
+/// it. If the file has a window, that window is the whole.
 ///
-/// The options' detail is what elements are replaced down to; one that is not given is a pixel. The
-/// cost does not grow with the factor, but for the length of the numbers (see [`zoom`](crate::zoom)).
+/// Elements are replaced down to the detail of the options, by default a pixel. The cost does not depend on
+/// the magnification, except for the length of the numbers (see [`zoom`](crate::zoom)).
 ///
 /// # Errors
 ///
-/// As for [`write`](super::write), and if there is no such point.
+/// Returns an error under the conditions of [`write`](super::write), and if the point does not exist.
 pub fn write_zoomed(
     source: &Source<'_>,
     graph: &Graph,
@@ -105,8 +105,8 @@ pub fn write_zoomed(
     Ok(picture)
 }
 
-/// The canvas of everything: of the limit set where the graph tells its box, or else of what a rough
-/// look shows.
+/// Returns the canvas of the whole set: of the limit set if its bounding box is known, otherwise of an
+/// approximant to a rough detail.
 fn whole(graph: &Graph, growth: &Growth<'_>, options: &Options) -> Result<Canvas, RenderError> {
     let Options {
         style, view, size, ..
@@ -128,7 +128,7 @@ fn whole(graph: &Graph, growth: &Growth<'_>, options: &Options) -> Result<Canvas
     Ok(Layout::find(graph, growth, &rough)?.canvas)
 }
 
-/// Elements smaller than this part of a picture tell little about the size of it all.
+/// Detail of that approximant, as a fraction of the picture's longer side.
 const ROUGH: f64 = 1.0 / 256.0;
 
 fn longest(size: Size) -> f64 {
