@@ -1,12 +1,11 @@
-//! SVG of nested instances: a symbol an object and number of steps, each made of the symbols of what
-//! takes the object's place, so that the file grows with the graph and the steps and not with the
-//! elements (Hart 1992, section 2).
+//! SVG of nested instances: one symbol for each object and number of steps, composed of the symbols of the
+//! instances that replace the object. The size of the file grows with the graph and the number of steps, not
+//! with the number of elements (Hart 1992, section 2).
 //!
-//! Symbols are drawn in the unit frames of their objects, maps are attributes of their instances.
-//! Colours are set where the initiator is instanced, once a class, of which each has symbols of its
-//! own where it needs them. Strokes of a width in pixels do not scale; relative ones do, with their
-//! elements. What fades below the numbers of who shows it is not seen: browsers count in single
-//! precision, whose smallest number is 1e-45.
+//! Symbols are drawn in the unit frames of their objects; maps are attributes of their instances. Colours are
+//! set where the initiator is instanced, once for each class, and classes have symbols of their own if
+//! needed. Strokes of a width in pixels do not scale; relative widths scale with their elements. Browsers
+//! compute in single precision: instances scaled below its smallest number, 1e-45, are not visible.
 
 mod drawing;
 mod ends;
@@ -26,21 +25,20 @@ use super::svg::begin_document;
 use super::{Canvas, Options, Page, Picture, RenderError, Survey};
 use drawing::Drawing;
 
-/// What a picture of nested instances is made of.
+/// Size of a picture of nested instances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instanced {
-    /// The number of symbols.
+    /// Number of symbols.
     pub symbols: u64,
-    /// The number of elements and instances that who shows it has to expand it to; infinite beyond a
-    /// double's range.
+    /// Number of elements and instances to which a viewer expands it; infinite beyond the range of doubles.
     pub expanded: f64,
 }
 
-/// Symbols that are kept in memory at most.
+/// Maximum number of symbols, all of which are held in memory.
 const MOST_SYMBOLS: usize = 1 << 18;
 
-/// The pixels from what is shown to what is drawn far away at most: a single-precision number tells
-/// a sixteenth of a pixel there.
+/// Largest distance, in pixels, of the bounding box from the picture: single precision resolves a sixteenth
+/// of a pixel there.
 const FARTHEST: f64 = 1_048_576.0;
 
 /// Writes an approximant as nested instances.

@@ -1,4 +1,4 @@
-//! The symbols and what is made of them, as text.
+//! Text of the symbols and of the picture composed of them.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -17,25 +17,25 @@ use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
 use super::{Instanced, MOST_SYMBOLS, NotInstanced, text};
 
-/// What is painted at once.
+/// Part of a class that is painted at once.
 #[derive(Clone, Copy, PartialEq)]
 enum Layer {
     Lines,
     Areas,
     Outlines,
-    /// Closed elements and open ones, as they come.
+    /// Closed and open elements, in order.
     Both,
 }
 
-/// What has been written of a symbol.
+/// Symbol that has been written.
 #[derive(Clone, Copy)]
 struct Written {
     name: u64,
-    /// The number of elements and instances that it stands for, itself included.
+    /// Number of elements and instances to which it expands, including itself.
     expanded: f64,
 }
 
-/// A picture that is being written.
+/// Picture that is being written.
 pub(super) struct Drawing<'a> {
     graph: &'a Graph,
     style: &'a Style,
@@ -43,15 +43,15 @@ pub(super) struct Drawing<'a> {
     growth: &'a Growth<'a>,
     classes: Classes,
     symbols: Symbols<'a>,
-    /// The symbols that show something.
+    /// Symbols that are not empty.
     named: BTreeMap<Symbol, Written>,
-    /// The names of base elements in their coats.
+    /// Names of base elements by number and appearance.
     outlines: BTreeMap<(usize, Dress), u64>,
     names: u64,
 }
 
 impl<'a> Drawing<'a> {
-    /// Of a graph whose classes of colour are known.
+    /// Prepares a drawing of a graph with known classes of colour.
     pub(super) fn new(
         graph: &'a Graph,
         growth: &'a Growth<'a>,
@@ -72,7 +72,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Writes the symbols, and the initiator for every class.
+    /// Writes the symbols, and an instance of the initiator for every class.
     pub(super) fn write(
         mut self,
         canvas: &Canvas,
@@ -80,7 +80,7 @@ impl<'a> Drawing<'a> {
         out: &mut impl Write,
     ) -> Result<Instanced, RenderError> {
         let initiator = self.graph.initiator(self.growth.steps);
-        // The initiator takes the place of something that has one step more to go.
+        // The initiator replaces a virtual object that has one more step.
         let aspect = |part| Aspect {
             steps: self.growth.steps + 1,
             part,
@@ -136,8 +136,8 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// The parts that are painted in the colour of a class, as something that has the initiator in its
-    /// place a step later sees them.
+    /// Returns the subsets of elements painted in the colour of a class, as seen from the virtual object that
+    /// the initiator replaces.
     fn parts(&self, class: u64) -> Vec<Part> {
         match self.style.color_by {
             ColorBy::Step => {
@@ -163,7 +163,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Writes a symbol, if it shows anything.
+    /// Writes a symbol, unless it is empty.
     fn define(&mut self, symbol: &Symbol, ends: &mut Ends<'_>, text: &mut String) {
         let Some(production) = self.symbols.production(symbol) else {
             let name = self.outline(symbol, text);
@@ -196,7 +196,7 @@ impl<'a> Drawing<'a> {
         self.names - 1
     }
 
-    /// The name of the outline of an object in its coat, which is written once.
+    /// Returns the name of the outline of an object in its appearance, which is written on first use.
     fn outline(&mut self, symbol: &Symbol, text: &mut String) -> u64 {
         let number = self.graph.objects()[symbol.object].base_element;
         let Dress(coat) = symbol.aspect.dress;
@@ -232,7 +232,7 @@ impl<'a> Drawing<'a> {
         name
     }
 
-    /// Strokes of a width in pixels are not scaled.
+    /// Returns the attribute by which strokes of a width in pixels do not scale.
     fn effect(&self) -> &'static str {
         match self.style.width {
             Width::Pixels(_) => r#" vector-effect="non-scaling-stroke""#,
@@ -240,8 +240,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Instances of what is in a chain, and the lines between them; the number of what they expand
-    /// to.
+    /// Writes the instances of a chain and the lines that link them, and returns the number of elements and
+    /// instances to which they expand.
     fn chain(
         &self,
         chain: &Chain,
@@ -255,7 +255,7 @@ impl<'a> Drawing<'a> {
             (part, _) => part,
         };
         let mut expanded = 0.0;
-        // What the first instance of a ring is joined to.
+        // In a ring, the first instance is joined to the last.
         let mut before = chain.instances.last();
         for instance in &chain.instances {
             if let (true, true, Some(before)) = (self.symbols.links, instance.joined, before)
@@ -286,7 +286,7 @@ impl<'a> Drawing<'a> {
         expanded
     }
 
-    /// A line that leads to an element, in something of a coat.
+    /// Writes the line that links an element to its predecessor, in an appearance.
     fn link(&self, from: DVec2, to: &End, coat: Coat, text: &mut String) {
         let coat = coat.over(to.coat);
         let stroke = self.tint(coat, self.style.lines());
@@ -303,12 +303,12 @@ impl<'a> Drawing<'a> {
         ));
     }
 
-    /// The colour of what is tinted and has a colour of its own.
+    /// Returns the colour of elements that have their own colour and a tint, if colours depend on tints.
     fn tint(&self, coat: Coat, own: Colour) -> Option<Colour> {
         (self.style.color_by == ColorBy::Tint && self.graph.tints()).then(|| coat.on(own))
     }
 
-    /// What is painted of every class, one after another.
+    /// Returns the layers of every class, in order.
     fn layers(&self) -> &'static [Layer] {
         let drawn = self.graph.objects().iter().filter(|object| object.visible);
         let [mut open, mut closed] = [false; 2];
@@ -325,8 +325,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// The width of strokes in a coat: in a frame where elements have a length, or in pixels as CSS has
-    /// them.
+    /// Returns the attribute for the stroke width in an appearance: relative to the length of elements in the
+    /// frame, or in CSS pixels.
     fn width(&self, coat: Coat, length: f64) -> String {
         let width = match self.style.width {
             Width::Relative(width) => width * length * self.graph.unit(),
@@ -336,8 +336,8 @@ impl<'a> Drawing<'a> {
         format!(r#" stroke-width="{width}""#)
     }
 
-    /// The attributes of all that is painted in the colour of a class. Opacity is that of the whole, so
-    /// that what overlaps does not show.
+    /// Returns the attributes of the colour of a class. Opacity applies to the group as a whole, so that
+    /// overlaps are not visible.
     fn paint(&self, class: u64, layer: Layer) -> String {
         let own = self.classes.colour(class, self.style);
         let lines = own.unwrap_or(self.style.lines());

@@ -1,24 +1,24 @@
-//! Where what stands for an object begins and ends, for the lines that link neighbours.
+//! End points of expanded objects, for the lines that link neighbours.
 
 use crate::geometry::{DVec2, Direction, Frame};
 use crate::graph::{Chain, Graph, Instance, Replacement};
 use crate::instancing::Coat;
 use crate::rule::Piece;
 
-/// The first or the last element that stands for an object, if others may be joined to it there.
+/// First or last element of an expanded object, if another element can be joined to it there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
-    /// Where its outline ends, in the object's unit frame.
+    /// End of its outline, in the object's unit frame.
     pub(super) point: DVec2,
-    /// Whether that is the end of its frame.
+    /// Whether that is the end point of its frame.
     pub(super) meets_frame: bool,
-    /// The element itself.
+    /// Number of the element's own object.
     pub(super) object: usize,
     pub(super) length: f64,
     pub(super) direction: Direction,
-    /// How many steps later it is born.
+    /// Step of its birth, relative to the object's.
     pub(super) born: u32,
-    /// What it is tinted with on the way to it.
+    /// Appearance composed of its own and those of its ancestors below the object.
     pub(super) coat: Coat,
 }
 
@@ -36,16 +36,16 @@ impl End {
     }
 }
 
-/// The ends of all objects after a number of steps.
+/// Ends of all objects after a number of steps.
 pub(super) struct Ends<'g> {
     graph: &'g Graph,
     steps: u32,
-    /// By object: the end at (0, 0) and the one at (1, 0).
+    /// By object: the end at (0, 0) and the end at (1, 0).
     all: Vec<[Option<End>; 2]>,
 }
 
 impl<'g> Ends<'g> {
-    /// Those of the objects themselves.
+    /// Creates the ends of objects that are not expanded.
     pub(super) fn new(graph: &'g Graph) -> Self {
         let objects = 0..graph.objects().len();
         Self {
@@ -55,7 +55,7 @@ impl<'g> Ends<'g> {
         }
     }
 
-    /// Goes on to a number of steps.
+    /// Advances to a number of steps.
     pub(super) fn advance(&mut self, steps: u32) {
         while self.steps < steps {
             let objects = self.graph.objects().iter().enumerate();
@@ -79,8 +79,7 @@ impl<'g> Ends<'g> {
         ]
     }
 
-    /// Where what stands for an instance begins and ends, in the order of listing and in the frame of
-    /// what it is part of.
+    /// Returns the ends of an expanded instance, in the order of listing and in its parent's frame.
     pub(super) fn of(&self, instance: &Instance) -> [Option<End>; 2] {
         let coat = self.graph.coat(instance.object);
         let within = |end: Option<End>| end.map(|end| end.within(instance, coat));
@@ -93,7 +92,7 @@ impl<'g> Ends<'g> {
     }
 }
 
-/// The ends of an object's own outline.
+/// Returns the ends of an object's own outline.
 fn own(graph: &Graph, number: usize) -> [Option<End>; 2] {
     let object = &graph.objects()[number];
     let base_element = &graph.base_elements()[object.base_element];

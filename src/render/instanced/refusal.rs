@@ -1,56 +1,56 @@
-//! What nested instances cannot show.
+//! Conditions under which nested instances cannot represent a picture.
 
 use crate::graph::{Graph, Replacement};
 use crate::rule::Placement;
 use crate::style::{Cap, ColorBy, Join, Named, Style, Width};
 
-/// Why a picture cannot be made of nested instances.
+/// Reason why a picture cannot be made of nested instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotInstanced {
-    /// Numbers are drawn where elements stand.
+    /// Random numbers are drawn for each element.
     #[error("its elements are drawn at random, each in its own way")]
     Draws,
-    /// Indices are counted.
+    /// Indices are counted by the walk.
     #[error("what replaces an element depends on the number of all those before it")]
     CountsIndex,
-    /// What stands in a place cannot be told before.
+    /// Productions are computed for each element.
     #[error("what replaces an element is worked out where it stands")]
     Evaluated,
-    /// A seed is placed as the initiator, which no map of its parent does.
+    /// A seed is placed as the initiator, which is not a map relative to its parent.
     #[error("it seeds parts that are placed as the initiator, whatever they stand in")]
     Resets,
-    /// Colours that depend on more than the object and the step.
+    /// Colours depend on more than the object and the step.
     #[error(
         "--color-by {by} tells elements of one symbol apart; step, age, generator, direction, tint and none work"
     )]
     Colours {
-        /// The name of what they tell.
+        /// Name of the property on which colours depend.
         by: &'static str,
     },
-    /// The inside of a closed path whose sides are grown.
+    /// The inside of a closed path of elements is filled.
     #[error(
         "the area inside a path that is grown is no union of copies; --fill transparent leaves it out"
     )]
     Areas,
-    /// Strokes whose ends or corners show.
+    /// Caps or joins between single elements would be visible.
     #[error(
         "elements are stroked one by one, so that they join only with --cap round and --join round"
     )]
     Corners,
-    /// Relative widths under maps that are no similarities.
+    /// Widths are relative, and maps are not similarities.
     #[error(
         "its maps would flatten strokes of a relative width; --stroke-width 1.5, in pixels, works"
     )]
     Flattened,
-    /// Rounding would show.
+    /// Rounding would be visible.
     #[error("the window is too small: browsers count in single precision")]
     TooClose,
-    /// The file would be very large.
+    /// The number of symbols exceeds the limit.
     #[error("it takes more than {} symbols", super::MOST_SYMBOLS)]
     TooManySymbols,
 }
 
-/// Refuses what symbols cannot show.
+/// Checks that symbols can represent a picture.
 pub(super) fn check(graph: &Graph, style: &Style, steps: u32) -> Result<(), NotInstanced> {
     if graph.draws() {
         return Err(NotInstanced::Draws);

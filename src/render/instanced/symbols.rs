@@ -1,4 +1,4 @@
-//! Which symbols a picture has: one an object and number of steps, and of what is painted.
+//! Symbols of a picture: one for each object, number of steps, and subset of painted elements.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,33 +10,33 @@ use crate::style::ColorBy;
 
 use super::super::Classes;
 
-/// What of all that stands for an object is painted.
+/// Subset of the elements of an expanded object that are painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
     All,
-    /// What is born so many steps later.
+    /// Elements born this many steps after the object.
     Born(u32),
-    /// What is of the object's own fractal.
+    /// Elements of the object's own fractal.
     Own,
-    /// What is of fractals that are seeded so many steps later, one at least.
+    /// Elements of fractals seeded this many steps later, at least 1.
     Seeded(u32),
-    /// What is of a class that its object tells.
+    /// Elements of a class that their object determines.
     Class(u64),
-    /// What has a direction relative to the object's.
+    /// Elements of a direction relative to the object's.
     Heading(Direction),
 }
 
-/// What of an object is shown, and how.
+/// Number of steps, subset and appearance of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Aspect {
-    /// The steps that it has to go.
+    /// Number of remaining steps.
     pub(super) steps: u32,
     pub(super) part: Part,
-    /// What it is tinted with, its own tint included.
+    /// Appearance, including the object's own change.
     pub(super) dress: Dress,
 }
 
-/// A coat that can be told from others.
+/// Appearance as a key: ordered by the bits of its fields.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dress(pub(super) Coat);
 
@@ -60,15 +60,15 @@ impl Ord for Dress {
     }
 }
 
-/// A symbol: what stands for an object after a number of steps, or a part of it.
+/// Symbol: an object expanded by a number of steps, or a subset of its elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Symbol {
-    /// The first field: symbols are made of others that have fewer steps to go.
+    // The derived order puts symbols with fewer remaining steps, of which others consist, first.
     pub(super) aspect: Aspect,
     pub(super) object: usize,
 }
 
-/// Whether lines link elements that are joined.
+/// Returns whether lines link joined elements, because base elements do not end at their end points.
 pub(super) fn link(graph: &Graph) -> bool {
     let mut visible = graph.objects().iter().filter(|object| object.visible);
     visible.any(|object| {
@@ -77,12 +77,12 @@ pub(super) fn link(graph: &Graph) -> bool {
     })
 }
 
-/// What tells symbols.
+/// Source of the symbols of a graph.
 pub(super) struct Symbols<'g> {
     graph: &'g Graph,
     by: ColorBy,
     classes: Classes,
-    /// The first object that becomes the same, by object.
+    /// For every object, the first object with an equal subtree.
     alike: Vec<usize>,
     /// Whether lines link neighbours.
     pub(super) links: bool,
@@ -94,7 +94,7 @@ impl<'g> Symbols<'g> {
         let objects = graph.objects().iter().enumerate();
         let alike = objects
             .map(|(number, object)| {
-                // What becomes of an object tells its last map as well.
+                // Objects of equal behaviour may differ in their last maps, on which colours may depend.
                 let becomes = (object.behaviour, object.last_map);
                 *first.entry(becomes).or_insert(number)
             })
@@ -108,7 +108,7 @@ impl<'g> Symbols<'g> {
         }
     }
 
-    /// Whether an element is of a part.
+    /// Returns whether an element belongs to a subset.
     pub(super) fn paints(
         &self,
         object: usize,
@@ -126,7 +126,7 @@ impl<'g> Symbols<'g> {
         }
     }
 
-    /// The symbol of an object; `None` if it is known to be empty.
+    /// Returns the symbol of an object; `None` if it is known to be empty.
     fn symbol(&self, object: usize, aspect: Aspect) -> Option<Symbol> {
         let Aspect { steps, part, .. } = aspect;
         let replacement = &self.graph.objects()[object].replacement;
@@ -142,8 +142,8 @@ impl<'g> Symbols<'g> {
         }
         let steps = match part {
             Part::Born(0) => return None,
-            // Of what is born sooner than in the end, infertile elements are left, however many steps
-            // follow; where lines link them to others, it matters where those have come to.
+            // Of the elements born before the last step, only infertile ones remain, after any number of
+            // further steps; the lines that link them to others depend on that number.
             Part::Born(born) if !self.links => steps.min(born + 1),
             _ => steps,
         };
@@ -153,7 +153,8 @@ impl<'g> Symbols<'g> {
         })
     }
 
-    /// The symbol of an instance in something of which an aspect is shown; whether it is seeded.
+    /// Returns the symbol of an instance in a symbol with the aspect `of`; `seeded` is whether the instance
+    /// starts a new fractal.
     pub(super) fn child(&self, instance: &Instance, of: &Aspect, seeded: bool) -> Option<Symbol> {
         let part = match of.part {
             Part::Born(steps) => Part::Born(steps.checked_sub(1)?),
@@ -181,7 +182,7 @@ impl<'g> Symbols<'g> {
         self.symbol(instance.object, Aspect { steps, part, dress })
     }
 
-    /// What takes the place of a symbol's object.
+    /// Returns the production that replaces a symbol's object.
     pub(super) fn production(&self, symbol: &Symbol) -> Option<&'g Production> {
         match &self.graph.objects()[symbol.object].replacement {
             Replacement::Fixed(production) if symbol.aspect.steps > 0 => Some(production),
@@ -189,8 +190,8 @@ impl<'g> Symbols<'g> {
         }
     }
 
-    /// All symbols that aspects of something lead to that has a chain in its place, each after those
-    /// that it is made of; `None` if there are more than `most`.
+    /// Returns all symbols that occur in a chain with one of several aspects, each after those of which it
+    /// consists; `None` if there are more than `most`.
     pub(super) fn collect(
         &self,
         chain: &Chain,

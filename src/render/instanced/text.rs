@@ -1,19 +1,19 @@
-//! Numbers and maps as the file has them.
+//! Numbers, maps and names as SVG text.
 
 use std::fmt::Write as _;
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
-/// What is smaller than this part of the largest number of a map is rounding.
+/// Ratio to the largest number of a map below which a number is rounding error.
 const ROUNDING: f64 = 1e-15;
 
-/// Appends a number to eleven significant digits: maps contract, so that the errors of many levels add up
-/// to no more than a few such digits.
+/// Appends a number with eleven significant digits. Because maps contract, the errors of many levels sum to
+/// a few units of the last digit.
 fn push_number(text: &mut String, value: f64) {
     let rounded: f64 = format!("{value:.10e}").parse().unwrap_or(value);
     let start = text.len();
-    // Writing to a string cannot fail. Adding zero takes the sign from a zero.
+    // Writing to a string cannot fail. The addition turns -0 into 0.
     let _ = write!(text, "{}", rounded + 0.0);
     let digits = start + usize::from(text[start..].starts_with('-'));
     if text[digits..].starts_with("0.") {
@@ -21,7 +21,7 @@ fn push_number(text: &mut String, value: f64) {
     }
 }
 
-/// Appends numbers in brackets.
+/// Appends a function call: a name with numbers in brackets.
 fn push_call(text: &mut String, name: &str, numbers: &[f64]) {
     text.push_str(name);
     text.push('(');
@@ -34,11 +34,11 @@ fn push_call(text: &mut String, name: &str, numbers: &[f64]) {
     text.push(')');
 }
 
-/// Maps that make something thinner than this part of its length would not be drawn: SVG has nothing
-/// where a map has no inverse. On a picture of some thousand pixels it does not show.
+/// Smallest ratio of width to length of a map's image: SVG does not draw the contents of a map without
+/// inverse. On a picture of some thousand pixels the widening is invisible.
 const THINNEST: f64 = 1e-5;
 
-/// The map, or one next to it that has an inverse.
+/// Returns the map, widened if it is almost singular.
 fn invertible(map: &DAffine2) -> DAffine2 {
     let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
     let longer = if x.length() > y.length() { x } else { y };
@@ -53,7 +53,7 @@ fn invertible(map: &DAffine2) -> DAffine2 {
     if map.matrix2.determinant().abs() >= THINNEST * length * length {
         return *map;
     }
-    // What is almost u vᵀ becomes as wide as it may be thin across u and v.
+    // A map near u vᵀ is widened across u and v.
     let u = longer / length;
     let v = DVec2::new(x.dot(u), y.dot(u)).perp().normalize();
     let across = u.perp() * (THINNEST * length);
@@ -63,7 +63,7 @@ fn invertible(map: &DAffine2) -> DAffine2 {
     wide
 }
 
-/// A map as SVG's attribute has it, in the shorter of two forms; empty for the identity.
+/// Formats a map as an SVG transform, in the shorter of two forms; empty for the identity.
 pub(super) fn transform(map: &DAffine2) -> String {
     let map = &invertible(map);
     let matrix = matrix(map);
@@ -85,7 +85,7 @@ fn matrix(map: &DAffine2) -> String {
     text
 }
 
-/// A similarity as a translation, a rotation and a scale, if it is one.
+/// Formats a similarity as translation, rotation and scale; `None` for other maps.
 fn similarity(map: &DAffine2) -> Option<String> {
     let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
     let scale = x.length();
@@ -104,7 +104,7 @@ fn similarity(map: &DAffine2) -> Option<String> {
         (right, up) => push_call(&mut text, "translate", &[right, up]),
     }
     let degrees = libm::atan2(x.y, x.x).to_degrees();
-    // A hair beside a whole number of degrees is rounding.
+    // A deviation of less than 1e-12 from an integer number of degrees is rounding.
     let whole = degrees.round();
     let degrees = if (degrees - whole).abs() < 1e-12 {
         whole
@@ -127,7 +127,7 @@ fn similarity(map: &DAffine2) -> Option<String> {
     Some(text)
 }
 
-/// The data of an outline's path.
+/// Formats the path data of an outline.
 pub(super) fn outline(base_element: &BaseElement) -> String {
     let mut text = String::new();
     let mut points = |letter: char, points: &[DVec2]| {
@@ -156,7 +156,7 @@ pub(super) fn outline(base_element: &BaseElement) -> String {
     text
 }
 
-/// The data of a straight line.
+/// Formats the path data of a straight line.
 pub(super) fn line(from: DVec2, to: DVec2) -> String {
     let mut text = String::from("M");
     for (place, coordinate) in [from.x, from.y, to.x, to.y].into_iter().enumerate() {
@@ -168,7 +168,7 @@ pub(super) fn line(from: DVec2, to: DVec2) -> String {
     text
 }
 
-/// A name of letters for a number.
+/// Returns a name of letters for a number: a to z, aa, ab and so on.
 pub(super) fn name(mut number: u64) -> String {
     let mut letters = Vec::new();
     loop {

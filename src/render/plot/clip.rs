@@ -1,10 +1,12 @@
+//! Clipping of lines to windows, and flattening of curves.
+
 use crate::geometry::DVec2;
 use crate::render::surface::Position;
 
-/// Curves are drawn as lines that are no farther from them than this: 0.05 units of the picture.
+/// Largest distance of a chord from its curve: 0.05 units of the picture.
 const FLAT: f64 = 5.0;
 
-/// A window in which lines are drawn, in positions of the picture, and where positions in it start.
+/// Window in which lines are drawn, and the origin of positions in it, in positions of the picture.
 #[derive(Clone, Copy)]
 pub(super) struct Window {
     origin: Position,
@@ -13,7 +15,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// All of a picture.
+    /// Returns the window of a whole picture.
     pub(super) fn of(size: [u32; 2]) -> Self {
         Self {
             origin: [0; 2],
@@ -22,7 +24,7 @@ impl Window {
         }
     }
 
-    /// A part of it, with corner and size.
+    /// Returns the window of a part with a corner and a size, in pixels of this window.
     pub(super) fn part(&self, corner: [u32; 2], size: [u32; 2]) -> Self {
         let (corner, size) = (fine(corner), fine(size));
         let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis]);
@@ -33,14 +35,14 @@ impl Window {
         }
     }
 
-    /// Where a position of the window is in the picture.
+    /// Converts a position of the window to one of the picture.
     #[inline]
     pub(super) fn place(&self, position: Position) -> Position {
         [0, 1].map(|axis| self.origin[axis].saturating_add(position[axis]))
     }
 
-    /// What of a line lies in the window, if anything does (Liang & Barsky 1984). Ends that lie in
-    /// it stay where they are.
+    /// Clips a line to the window (Liang & Barsky 1984); `None` if it lies outside. Ends inside the window are
+    /// not changed.
     pub(super) fn clip(&self, [from, to]: [Position; 2]) -> Option<[Position; 2]> {
         let holds = |at: Position| {
             (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&at[axis]))
@@ -76,7 +78,8 @@ impl Window {
     }
 }
 
-/// The vertices of lines along a cubic curve after its start: the same ones from either end.
+/// Returns the vertices of a polyline along a cubic curve, without its start; they do not depend on the
+/// direction of the curve.
 pub(super) fn flattened(curve: [Position; 4]) -> Vec<Position> {
     let backwards = curve[0] > curve[3];
     let mut points = curve.map(vector);
@@ -85,7 +88,7 @@ pub(super) fn flattened(curve: [Position; 4]) -> Vec<Position> {
     }
     let [a, b, c, d] = points;
     let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
-    // A chord of 1/n of the parameter is no farther away than 6 bend / 8 n².
+    // The chord of 1/n of the parameter range is at most 6 bend / 8 n² away.
     let count = (0.75 * bend / FLAT).sqrt().ceil().clamp(1.0, 10_000.0);
     #[expect(
         clippy::cast_possible_truncation,

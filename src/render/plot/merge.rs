@@ -1,12 +1,14 @@
+//! Joining of strokes into trails.
+
 use super::points::Point;
 use super::strokes::{Strokes, is_closed};
 
-/// Strokes put together where their ends meet, in the order of what comes first in them. Closed
-/// ones stay as they are.
+/// Joins strokes where their ends meet. The results are ordered by their first strokes; closed strokes are
+/// not joined.
 ///
-/// They are edges of a graph, and what is drawn are trails in it. Those that begin where an odd number
-/// of ends meet go on as far as they can and end in such a place; so there are as few open strokes
-/// as there can be, half as many as such places.
+/// Strokes are edges of a graph, and the results are trails in it. Trails that begin at a point where an odd
+/// number of ends meet continue as far as possible, and end at another such point. The number of open
+/// strokes is therefore minimal: half the number of such points.
 pub(super) fn merged(strokes: &Strokes) -> Strokes {
     let mut junctions = Junctions::of(strokes);
     let mut trails = Vec::new();
@@ -47,7 +49,7 @@ pub(super) fn merged(strokes: &Strokes) -> Strokes {
     merged
 }
 
-/// A stroke on a trail.
+/// Stroke of a trail.
 struct Part {
     number: usize,
     backwards: bool,
@@ -58,12 +60,12 @@ fn ends(strokes: &Strokes, number: usize) -> [Point; 2] {
     [stroke[0], stroke[stroke.len() - 1]]
 }
 
-/// Where ends of open strokes meet.
+/// Points where ends of open strokes meet.
 struct Junctions {
-    /// Every end, by its point.
+    /// All ends, sorted by their points.
     ends: Vec<(Point, u32)>,
-    /// At the first end of a point: how many of its ends have been looked at, and how many are on
-    /// trails.
+    /// For the first end of a point: the number of ends at the point that have been examined, and the number
+    /// of ends that are on trails.
     looked_at: Vec<[u32; 2]>,
     used: Vec<bool>,
 }
@@ -84,20 +86,20 @@ impl Junctions {
         }
     }
 
-    /// The first end at a point, and how many there are.
+    /// Returns the index of the first end at a point, and the number of ends there.
     fn place(&self, point: Point) -> (usize, usize) {
         let first = self.ends.partition_point(|end| end.0 < point);
         let count = self.ends[first..].partition_point(|end| end.0 == point);
         (first, count)
     }
 
-    /// Whether an odd number of ends is left at a point.
+    /// Returns whether the number of unused ends at a point is odd.
     fn is_odd(&self, point: Point) -> bool {
         let (first, count) = self.place(point);
         count > 0 && (count - self.looked_at[first][1] as usize) % 2 == 1
     }
 
-    /// Uses an end at a point.
+    /// Marks an end at a point as used.
     fn leave(&mut self, point: Point) {
         let (first, count) = self.place(point);
         if count > 0 {
@@ -105,7 +107,7 @@ impl Junctions {
         }
     }
 
-    /// A stroke at a point that is on no trail yet.
+    /// Returns a stroke at a point that is not on a trail.
     fn next(&mut self, point: Point) -> Option<usize> {
         let (first, count) = self.place(point);
         let looked_at = &mut self.looked_at.get_mut(first)?[0];
@@ -119,7 +121,7 @@ impl Junctions {
         None
     }
 
-    /// Goes on from a stroke as far as there is a way.
+    /// Extends a trail from a stroke as far as possible.
     fn trail(&mut self, strokes: &Strokes, first: usize, backwards: bool) -> Vec<Part> {
         let mut trail = vec![Part {
             number: first,
@@ -128,7 +130,7 @@ impl Junctions {
         while let Some(&Part { number, backwards }) = trail.last() {
             self.used[number] = true;
             let [from, to] = ends(strokes, number);
-            // Ends of closed strokes do not count.
+            // Closed strokes have no ends.
             if !is_closed(strokes.get(number)) {
                 [from, to].into_iter().for_each(|end| self.leave(end));
             }
@@ -177,7 +179,7 @@ mod tests {
 
     #[test]
     fn there_are_as_few_open_strokes_as_there_can_be() {
-        // The house of Santa Claus, which is drawn in one.
+        // The "house of Santa Claus" can be drawn in one stroke.
         const HOUSE: [[Point; 2]; 8] = [
             [1, 2],
             [2, 3],

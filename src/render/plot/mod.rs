@@ -1,11 +1,11 @@
-//! Plots: what a machine draws with a pen, or cuts, line by line.
+//! Plots: pictures as polylines for pen plotters and cutters.
 //!
-//! A picture's paths are taken as strokes, outlines of what is filled too, and put in order: what
-//! lies on what has been drawn is left out, strokes whose ends meet become one, and the pen is carried
-//! over short ways. Every pen is a layer, of one colour or of several that are alike; where two pens
-//! draw the same edge, the layer that is begun later has it, as on the picture it lies on top.
+//! The paths of a picture, including outlines of filled areas, become strokes. Edges that repeat earlier ones
+//! are removed, strokes whose ends meet are joined, and the order of strokes is improved to shorten the
+//! movements of the raised pen. Each pen has a layer, of one colour or of several similar ones. If two pens
+//! draw the same edge, the layer that begins later keeps it, because it lies on top in the picture.
 //!
-//! All of it is in memory: some hundred bytes an edge.
+//! A plot is held in memory: some hundred bytes for each edge.
 
 mod clip;
 mod merge;
@@ -35,39 +35,40 @@ use unique::Unique;
 
 pub use pens::Pens;
 
-/// What a plot takes.
+/// Extent of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plotted {
-    /// The number of strokes, one after each lift of the pen.
+    /// Number of strokes, each after a lift of the pen.
     pub strokes: u64,
-    /// The number of layers, one a pen.
+    /// Number of layers, one for each pen.
     pub layers: u64,
-    /// The number of colours that share these pens.
+    /// Number of colours of these pens.
     pub colours: u64,
-    /// How far the pen draws, in millimetres.
+    /// Distance that is drawn, in millimetres.
     pub drawn: f64,
-    /// How far it is carried, in millimetres: in every layer from the upper left corner to the first
-    /// stroke and from stroke to stroke,
+    /// Distance that the raised pen is moved, in millimetres: in every layer from the upper left corner to the
+    /// first stroke, and from stroke to stroke.
     pub carried: f64,
-    /// and how far it would be if the strokes came in the order of the picture.
+    /// Distance that the raised pen would be moved if the strokes had the order of the picture, in
+    /// millimetres.
     pub carried_as_drawn: f64,
-    /// How many edges, or pieces of them, have been left out because they had been drawn.
+    /// Number of edges, or pieces of edges, that are left out as repetitions.
     pub repeated: u64,
 }
 
-/// Takes what is drawn as strokes.
+/// Surface that collects a drawing as strokes.
 struct Plotter {
     window: Window,
     outer: Vec<Window>,
     points: Points,
-    /// What each colour draws.
+    /// Strokes of each colour.
     layers: Vec<(Colour, Strokes)>,
-    /// The layer of the path.
+    /// Layer of the current path.
     layer: usize,
-    /// Where the path is and where its subpath starts, in the picture,
+    /// Current point of the path and start of its subpath, in the picture.
     at: Position,
     start: Position,
-    /// and where the pen is, as long as it is down.
+    /// Position of the pen while it is down.
     pen: Option<Position>,
     is_full: bool,
 }
@@ -176,7 +177,7 @@ impl Surface for Plotter {
     fn label(&mut self, _: &str) {}
 }
 
-/// A plot that is ready to be written.
+/// Plot that is ready to be written.
 pub(super) struct Plot {
     size: [u32; 2],
     pen: Pen,
@@ -206,7 +207,7 @@ fn by_pen(layers: Vec<(Colour, Strokes)>, pens: Pens) -> Vec<(Colour, Strokes)> 
         .collect()
 }
 
-/// What is drawn with one pen.
+/// Strokes of a pen.
 struct Layer {
     colour: Colour,
     strokes: Strokes,
@@ -214,7 +215,7 @@ struct Layer {
 }
 
 impl Plot {
-    /// A drawing as strokes.
+    /// Creates a plot of a drawing.
     pub(super) fn of(
         drawing: &impl Drawing,
         options: &Options,
@@ -250,7 +251,7 @@ impl Plot {
         let layers = by_pen(layers, pens);
         let places = plot.places.as_slice();
         let mut unique = Unique::new(places);
-        // From the top down.
+        // Layers are processed from the top down.
         for (colour, strokes) in layers.into_iter().rev() {
             let mut kept = Strokes::default();
             for stroke in strokes.iter() {
@@ -298,13 +299,13 @@ impl Plot {
         Ok(plot)
     }
 
-    /// The colours of the layers, in order.
+    /// Iterates over the colours of the layers.
     pub(super) fn colours(&self) -> impl Iterator<Item = Colour> {
         self.layers.iter().map(|layer| layer.colour)
     }
 
-    /// The strokes in the order in which they are drawn, each with its layer: vertices, and whether
-    /// the last is led back to the first, which is then not among them twice.
+    /// Calls `draw` for every stroke, in the order of drawing, with the number of its layer, its vertices and
+    /// whether it is closed. The first vertex of a closed stroke is not repeated at the end.
     pub(super) fn each<E>(
         &self,
         mut draw: impl FnMut(usize, &[Position], bool) -> Result<(), E>,

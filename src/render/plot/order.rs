@@ -1,40 +1,42 @@
+//! Order of strokes with short movements of the raised pen.
+
 use crate::geometry::DVec2;
 
 use super::points::{Point, vector};
 use super::strokes::{Strokes, is_closed};
 use super::tree::Tree;
 
-/// A stroke, and how it is drawn.
+/// Stroke with its direction or start.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
     pub(super) stroke: usize,
     pub(super) way: Way,
 }
 
-/// Where a stroke begins.
+/// Direction or start of a stroke.
 #[derive(Clone, Copy)]
 pub(super) enum Way {
     Forwards,
     Backwards,
-    /// At a vertex of one that is closed.
+    /// From a vertex of a closed stroke.
     From(usize),
 }
 
-/// In what order strokes are drawn, and how far the pen is carried between them: from the upper left
-/// corner of the picture to the first, but not back.
+/// Order of strokes, with the distance that the raised pen is moved: from the upper left corner of the
+/// picture to the first stroke and between strokes, but not back.
 pub(super) struct Order {
     pub(super) turns: Vec<Turn>,
     pub(super) travel: f64,
 }
 
-/// Strokes from which an exchange reaches forward.
+/// Maximum number of strokes that an exchange reverses.
 const REACH: usize = 50;
 
-/// How often all strokes are tried for exchanges.
+/// Maximum number of passes over all strokes.
 const ROUNDS: usize = 10;
 
 impl Order {
-    /// The order in which they come.
+    /// Returns the order in which strokes are given.
     pub(super) fn as_drawn(strokes: &Strokes, places: &[[i32; 2]]) -> Self {
         let turns = (0..strokes.len()).map(|stroke| Turn {
             stroke,
@@ -54,9 +56,9 @@ impl Order {
         Self { turns, travel }
     }
 
-    /// An order in which the pen is carried less far, if one is found: from stroke to nearest stroke,
-    /// at either end or at any vertex of one that is closed, then by reversing stretches of the
-    /// order where that is shorter (2-opt, Croes 1958).
+    /// Improves the order. Starting from the given order and from the nearest-neighbour order (to either end
+    /// of a stroke, or to any vertex of a closed one), parts of the order are reversed where that shortens it
+    /// (2-opt, Croes 1958); the shorter result is returned.
     pub(super) fn shortened(self, strokes: &Strokes, places: &[[i32; 2]]) -> Self {
         let nearest = Self::of(by_nearest(strokes, places), strokes, places);
         let better = [self, nearest].map(|order| exchanged(order, strokes, places));
@@ -69,7 +71,7 @@ impl Order {
     }
 }
 
-/// Where a stroke begins and ends.
+/// Returns the start and the end of a stroke.
 fn ends(turn: &Turn, strokes: &Strokes, places: &[[i32; 2]]) -> [DVec2; 2] {
     let stroke = strokes.get(turn.stroke);
     let place = |vertex: usize| vector(places[stroke[vertex] as usize]);
@@ -81,7 +83,7 @@ fn ends(turn: &Turn, strokes: &Strokes, places: &[[i32; 2]]) -> [DVec2; 2] {
     }
 }
 
-/// Always to the nearest stroke.
+/// Returns the nearest-neighbour order.
 fn by_nearest(strokes: &Strokes, places: &[[i32; 2]]) -> Vec<Turn> {
     let doors = |stroke: &[Point]| {
         let last = stroke.len() - 1;
@@ -136,7 +138,7 @@ fn by_nearest(strokes: &Strokes, places: &[[i32; 2]]) -> Vec<Turn> {
     turns
 }
 
-/// Reverses stretches of the order as long as that makes it shorter, within bounds.
+/// Reverses parts of the order while that shortens it, within bounds.
 fn exchanged(order: Order, strokes: &Strokes, places: &[[i32; 2]]) -> Order {
     let mut turns = order.turns;
     let mut lines: Vec<_> = turns
@@ -154,7 +156,7 @@ fn exchanged(order: Order, strokes: &Strokes, places: &[[i32; 2]]) -> Order {
                 let next = lines.get(last + 1).map(|line| line[0]);
                 let on = |from: DVec2| next.map_or(0.0, |next| from.distance(next));
                 let gain = at.distance(begin) + on(end) - at.distance(end) - on(begin);
-                // More than rounding, so that it ends.
+                // A gain beyond rounding ensures that the loop terminates.
                 if gain > 1e-3 {
                     is_better = true;
                     lines[first..=last].reverse();

@@ -1,26 +1,26 @@
-//! Which colours share a pen.
+//! Assignment of colours to pens, by clustering.
 
 use std::num::NonZero;
 
 use crate::style::Colour;
 
-/// The number of pens of a plot.
+/// Number of pens of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pens {
-    /// One for every colour where these are few, [`Pens::FEW`] at most, and else one for all.
+    /// One pen for each colour if there are at most [`Pens::FEW`], otherwise one for all.
     #[default]
     Few,
-    /// One for every colour.
+    /// One pen for each colour.
     Each,
-    /// No more than so many: colours that are alike share one.
+    /// At most this many pens: similar colours share one.
     AtMost(NonZero<usize>),
 }
 
 impl Pens {
-    /// The most colours that have pens of their own without being asked for.
+    /// Largest number of colours that have their own pens by default.
     pub const FEW: usize = 8;
 
-    /// The most pens for so many colours.
+    /// Returns the maximum number of pens for a number of colours.
     fn most(self, colours: usize) -> usize {
         match self {
             Self::Few if colours > Self::FEW => 1,
@@ -30,21 +30,21 @@ impl Pens {
     }
 }
 
-/// Beyond so many colours those next to each other are put together before all are compared.
+/// Number of colours above which only neighbours in the list are compared.
 const MOST_COMPARED: usize = 256;
 
 /// Colours that share a pen.
 #[derive(Clone)]
 struct Shared {
-    /// Their numbers, in order.
+    /// Numbers of the colours, in order.
     members: Vec<usize>,
-    /// What they draw, as a weight, and their mean in Oklab.
+    /// Amount that the colours draw; their mean, weighted by it, in Oklab.
     weight: f64,
     mean: [f64; 3],
 }
 
 impl Shared {
-    /// What it costs to draw both with one pen: the increase of the squared distances from the mean
+    /// Returns the cost of merging two clusters: the increase of the sum of squared distances from the mean
     /// (Ward 1963).
     fn cost(&self, other: &Self) -> f64 {
         squared(self.mean, other.mean) * self.weight * other.weight / (self.weight + other.weight)
@@ -62,9 +62,8 @@ impl Shared {
     }
 }
 
-/// The pens for colours, each with what it draws: the colour of each pen, which is the one nearest to
-/// the mean of those that share it, and the numbers of these. Pens are in the order of their first
-/// colours.
+/// Assigns colours, each with the amount it draws, to pens. Returns the colour of each pen, which is the
+/// member nearest to the mean, and the numbers of its members. Pens are in the order of their first members.
 pub(super) fn shared(colours: &[(Colour, u64)], pens: Pens) -> Vec<(Colour, Vec<usize>)> {
     let most = pens.most(colours.len());
     let numbered = colours.iter().enumerate();
@@ -109,8 +108,8 @@ fn squared(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// Lightness and two opponent hues, in which distances are as they are seen (B. Ottosson 2020, "A
-/// perceptual color space for image processing").
+/// Converts a colour to Oklab: lightness and two opponent axes, with perceptually uniform distances
+/// (B. Ottosson 2020, "A perceptual color space for image processing").
 fn oklab(colour: Colour) -> [f64; 3] {
     let [red, green, blue, _] = colour.rgba();
     let linear = |value: u8| {
@@ -159,7 +158,7 @@ mod tests {
                 let pens = Pens::AtMost(NonZero::new(most).unwrap());
                 let shared = shared(&colours, pens);
                 assert_eq!(shared.len(), most, "{palette}");
-                // Each takes a stretch of it, and none nearly all.
+                // The pens partition the palette into intervals, none of which is nearly the whole.
                 let order: Vec<_> = shared.iter().flat_map(|pen| pen.1.clone()).collect();
                 assert_eq!(order, (0..64).collect::<Vec<_>>(), "{palette} of {most}");
                 let largest = shared.iter().map(|pen| pen.1.len()).max().unwrap();

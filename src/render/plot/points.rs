@@ -1,24 +1,27 @@
+//! Points of a plot, identified up to rounding.
+
 use crate::geometry::DVec2;
 use crate::mix::MixMap;
 use crate::render::surface::Position;
 
-/// Positions no farther apart than this are one point: 0.02 units of the picture, which is what
-/// rounding makes of one place that is computed in several ways.
+/// Distance up to which positions are one point: 0.02 units of the picture, the effect of rounding on a place
+/// that is computed in several ways.
 pub(super) const MEET: i32 = 2;
 
-/// A point of a plot: its place among all of them.
+/// Number of a point of a plot.
 pub(super) type Point = u32;
 
-/// The points of a plot.
+/// Points of a plot.
 #[derive(Default)]
 pub(super) struct Points {
     places: Vec<[i32; 2]>,
-    /// The point in a square with sides of [`MEET`]: no two fit in.
+    /// Points by squares of side [`MEET`], each of which holds at most one.
     squares: MixMap<u64, Point>,
 }
 
 impl Points {
-    /// The point at a position, a new one if there is none; nothing if there are too many.
+    /// Returns the point at a position, which is added if it is new; `None` if the position or the number of
+    /// points is out of range.
     pub(super) fn at(&mut self, position: Position) -> Option<Point> {
         let place = [
             i32::try_from(position[0]).ok()?,
@@ -54,13 +57,13 @@ impl Points {
         Some(new)
     }
 
-    /// The points alone, once there are no more to come.
+    /// Returns the places of all points.
     pub(super) fn places(self) -> Vec<[i32; 2]> {
         self.places
     }
 }
 
-/// A place as a vector.
+/// Converts a place to a vector.
 pub(super) fn vector([x, y]: [i32; 2]) -> DVec2 {
     DVec2::new(x.into(), y.into())
 }

@@ -1,10 +1,12 @@
+//! Sequences of polylines.
+
 use super::points::Point;
 
-/// Strokes one after another, each of two points or more; one that ends where it begins is closed.
+/// Sequence of strokes, each of two or more points; a stroke that ends where it begins is closed.
 #[derive(Clone, Default)]
 pub(super) struct Strokes {
     points: Vec<Point>,
-    /// Where strokes end among the points.
+    /// End of each stroke in the list of points.
     ends: Vec<usize>,
 }
 
@@ -15,14 +17,14 @@ impl Strokes {
         self.points.push(at);
     }
 
-    /// Goes on with the stroke; to stay is nothing.
+    /// Extends the stroke to a point; has no effect if it is there already.
     pub(super) fn go_on(&mut self, to: Point) {
         if self.points.last() != Some(&to) {
             self.points.push(to);
         }
     }
 
-    /// Ends the stroke; one that has gone nowhere is none.
+    /// Ends the stroke; a stroke of one point is removed.
     pub(super) fn end(&mut self) {
         let start = self.ends.last().copied().unwrap_or(0);
         match self.points.len() - start {
@@ -32,17 +34,17 @@ impl Strokes {
         }
     }
 
-    /// Where the stroke is, to go back to.
+    /// Returns the current position, for [`go_back`](Self::go_back).
     pub(super) fn mark(&self) -> usize {
         self.points.len()
     }
 
-    /// Goes back to a place on the stroke that has been gone on with.
+    /// Returns to an earlier position within the current stroke.
     pub(super) fn go_back(&mut self, mark: usize) {
         self.points.truncate(mark);
     }
 
-    /// Adds what comes after these.
+    /// Appends other strokes.
     pub(super) fn append(&mut self, other: Self) {
         let before = self.points.len();
         self.points.extend(other.points);
@@ -63,7 +65,7 @@ impl Strokes {
     }
 }
 
-/// Whether a stroke ends where it begins.
+/// Returns whether a stroke ends where it begins.
 pub(super) fn is_closed(stroke: &[Point]) -> bool {
     stroke.first() == stroke.last()
 }

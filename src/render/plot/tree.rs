@@ -1,15 +1,16 @@
+//! A k-d tree (Bentley 1975) of integer points.
+
 use std::ops::Range;
 
 use crate::geometry::DVec2;
 
 use super::points::{MEET, vector};
 
-/// Places sorted by halves (Bentley 1975, k-d trees): in every range the one in the middle divides
-/// the others, by x and by y in turn.
+/// Balanced k-d tree: the median of each range divides the others, by x and by y in turn.
 pub(super) struct Tree {
-    /// Every place, and what is there.
+    /// Places with their items.
     places: Vec<([i32; 2], u32)>,
-    /// How many of a range are left, at its middle.
+    /// Number of items that are left in a range, stored at its median.
     left: Vec<u32>,
 }
 
@@ -22,7 +23,8 @@ impl Tree {
         }
     }
 
-    /// What lies on a line between its ends, in its order: no farther from it than points that meet.
+    /// Finds the items on a line strictly between its ends, in order along it, with their positions as
+    /// fractions of its length. The tolerance is the distance at which points meet.
     pub(super) fn between(&self, [from, to]: [[i32; 2]; 2], found: &mut Vec<(f64, u32)>) {
         found.clear();
         let line = [from, to].map(vector);
@@ -30,7 +32,7 @@ impl Tree {
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
-    /// As `between`, where only a part of the line comes near the range.
+    /// Searches a range, where `part` is the part of the line near it.
     fn look_between(
         &self,
         range: Range<usize>,
@@ -47,16 +49,16 @@ impl Tree {
         let (by, along) = (place - line[0], line[1] - line[0]);
         let squared = along.length_squared();
         let meet = f64::from(MEET);
-        // Without roots, so that it is exact where numbers are small.
+        // Without square roots the comparison is exact for small integers.
         let near = meet * meet * squared;
         let [before_end, after_start, off] =
             [squared - by.dot(along), by.dot(along), by.perp_dot(along)];
         let is_far = |along: f64| along > 0.0 && along * along > near;
-        // What meets an end is that end.
+        // A point that meets an end of the line is that end.
         if is_far(before_end) && is_far(after_start) && off * off <= near {
             found.push((after_start / squared, item));
         }
-        // A hair more, for rounding.
+        // The addition covers rounding.
         let reach = meet + 0.001;
         for (range, side) in [(before, -1.0), (after, 1.0)] {
             if let Some(part) = beyond(part, axis, place[axis] - side * reach, side) {
@@ -65,13 +67,14 @@ impl Tree {
         }
     }
 
-    /// Lets everything be there for [`Tree::nearest`].
+    /// Marks all items as present, for [`Tree::nearest`].
     pub(super) fn fill(&mut self) {
         self.left = vec![0; self.places.len()];
         fill(&mut self.left);
     }
 
-    /// What is nearest to a place of what is left, the lowest number where several are, and where.
+    /// Returns the item nearest to a place among those left, with its own place. Of equally near items, the one
+    /// with the lowest number is returned.
     pub(super) fn nearest(&self, to: DVec2) -> Option<([i32; 2], u32)> {
         let mut best = None;
         self.look_near(0..self.places.len(), 0, to, &mut best);
@@ -116,7 +119,7 @@ impl Tree {
         halves(range.clone()).map_or(0, |(_, middle, _)| self.left[middle])
     }
 
-    /// Takes away what is at a place.
+    /// Removes an item at a place.
     pub(super) fn remove(&mut self, place: [i32; 2], item: u32) {
         let (mut range, mut axis) = (0..self.places.len(), 0);
         while let Some((before, middle, after)) = halves(range) {
@@ -133,7 +136,7 @@ impl Tree {
     }
 }
 
-/// A range's middle, and what is before and after it.
+/// Returns the median of a range, and the ranges before and after it.
 fn halves(range: Range<usize>) -> Option<(Range<usize>, usize, Range<usize>)> {
     let middle = range.start + range.len() / 2;
     (!range.is_empty()).then_some((range.start..middle, middle, middle + 1..range.end))
@@ -161,7 +164,7 @@ fn fill(left: &mut [u32]) {
     }
 }
 
-/// What of a line lies on one side of an edge: above it, or below it.
+/// Returns the part of a line on one side of an edge: above it if `side` is 1, below it if `side` is −1.
 fn beyond([from, to]: [DVec2; 2], axis: usize, edge: f64, side: f64) -> Option<[DVec2; 2]> {
     let over = |at: DVec2| side * (at[axis] - edge);
     match (over(from) >= 0.0, over(to) >= 0.0) {
@@ -179,7 +182,7 @@ mod tests {
     use super::*;
 
     fn places() -> Vec<([i32; 2], u32)> {
-        // Many at one place and on one line among them.
+        // Some places coincide, and some are collinear.
         let place = |n: i32| [n * 7919 % 97, n * 104_729 % 61];
         (0..400).map(|n| (place(n), n.cast_unsigned())).collect()
     }

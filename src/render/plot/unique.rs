@@ -1,18 +1,20 @@
+//! Removal of repeated edges.
+
 use crate::mix::MixSet;
 
 use super::points::Point;
 use super::strokes::Strokes;
 use super::tree::Tree;
 
-/// Leaves out of strokes what has been drawn.
+/// Filter that removes edges that have been drawn.
 ///
-/// Edges lie on each other where they have the same points, or where they run along each other: an
-/// edge is taken in pieces between the points that lie on it, and every piece is drawn once.
+/// Edges coincide if they have equal ends, or if they overlap along a line: an edge is split at the points
+/// that lie on it, and every piece is drawn once.
 pub(super) struct Unique<'a> {
     places: &'a [[i32; 2]],
     tree: Tree,
     drawn: MixSet<u64>,
-    /// How many pieces have been left out.
+    /// Number of pieces that have been removed.
     pub(super) repeated: u64,
     pieces: Vec<(f64, Point)>,
 }
@@ -29,7 +31,7 @@ impl<'a> Unique<'a> {
         }
     }
 
-    /// Adds to `kept` what of a stroke has not been drawn.
+    /// Appends to `kept` the parts of a stroke that have not been drawn.
     pub(super) fn add(&mut self, stroke: &[Point], kept: &mut Strokes) {
         kept.begin(stroke[0]);
         for edge in stroke.windows(2) {
@@ -50,7 +52,7 @@ impl<'a> Unique<'a> {
                 at = next;
             }
             if self.repeated == before {
-                // As straight as it was.
+                // A complete edge is not split.
                 kept.go_back(mark);
                 kept.go_on(to);
             }
