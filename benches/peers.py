@@ -5,20 +5,19 @@ On a fresh Debian:
 
     apt-get install --no-install-recommends contextfree flam3-utils python3
     cargo build --release
-    python3 benches/peers.py            # some ten minutes; cfdg takes up to 7 GB of memory
-    python3 benches/peers.py --quick    # a minute; only what is small
-    python3 -m pip install numba        # for the chaos game beside numba
+    python3 benches/peers.py            # about ten minutes; cfdg takes up to 7 GB of memory
+    python3 benches/peers.py --quick    # a minute; small cases only
+    python3 -m pip install numba        # to compare the chaos game with numba
     cargo install l-system-fractals     # for the Koch curve as an L-system
 
-Whole commands are run in turn, ours and theirs, and the medians compared: on a machine that does
-other things beside, only the ratios mean something. Outputs are files in a temporary folder (TMPDIR
-says where it is; a folder in memory leaves the disk out). Peak memory is that of the process, and
-not less than this script's own, some 15 MiB.
+Whole commands run alternately, and their medians are compared: on a machine with other load only the
+ratios are meaningful. Outputs are files in a temporary folder (set by TMPDIR; a folder in memory
+excludes the disk). Peak memory is that of the process, but at least this script's own, some 15 MiB.
 
 The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
-Colours are switched off: cfdg draws black bars, and so does kfrac. Both
-kfrac and flam3 get one thread, then two. All but cfdg are left out where they are not installed (numba:
-for the Python that runs this). Of numba only the loop counts, of kfrac the whole command.
+Colours are switched off: both cfdg and kfrac draw black bars. kfrac and flam3 run on one thread, then on
+two. Programs other than cfdg are skipped if they are not installed (numba: for the Python that runs
+this script). The time of numba is that of the loop, the time of kfrac that of the whole command.
 """
 
 import argparse
@@ -36,8 +35,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 PLAIN = ["--color-by", "none", "--stroke", "black", "--quiet"]
 
-# What is drawn, the rule, its steps, cfdg's source and depth, the file, runs in full, the least ratio
-# of times, the most MiB, and whether --quick does it.
+# Title, rule, steps, cfdg's source and depth, format, number of runs, smallest ratio of times, largest
+# MiB, and whether --quick includes the case.
 BESIDE = [
     ("Koch 4^10 to PNG 1024²", "koch", 10, "koch", 10, "png", 5, 40, 32, True),
     ("Koch 4^10 to SVG", "koch", 10, "koch", 10, "svg", 5, 150, 32, True),
@@ -46,16 +45,16 @@ BESIDE = [
     ("tree 2^23 to PNG 1024²", HERE / "peers/tree.yaml", 22, "tree", 22, "png", 1, 75, 64, False),
 ]
 
-# Threads, and the least ratio of times beside flam3.
+# Threads, and the smallest ratio of times to flam3.
 RANDOM = [(1, 10), (2, 20)]
 
-# Points, and the least ratio of times beside numba, on one thread.
+# Points, and the smallest ratio of times to numba, on one thread.
 NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
 
-# The least ratio of times beside l-system-fractals.
+# Smallest ratio of times to l-system-fractals.
 STRINGS = 18
 
-# What is done, the command, and the most milliseconds.
+# Title, command, and largest number of milliseconds.
 ALONE = [
     ("info koch --steps 2000 --json", ["info", "koch", "--steps", "2000", "--json"], 20),
     ("info snow-crystal --steps 2000 --json", ["info", "snow-crystal", "--steps", "2000", "--json"], 20),
@@ -64,7 +63,7 @@ ALONE = [
 
 
 def run(command, source=None, environment=None):
-    """Seconds and MiB of a command that must succeed."""
+    """Returns the seconds and MiB of a command, which must succeed."""
     start = time.perf_counter()
     process = subprocess.Popen(
         [str(part) for part in command],
@@ -83,7 +82,7 @@ def run(command, source=None, environment=None):
 
 
 def in_turn(commands, runs):
-    """The median of seconds and the largest MiB of each command, all of them run in turn."""
+    """Runs commands alternately; returns the median of seconds and the largest MiB of each."""
     results = [[run(command) for command in commands] for _ in range(runs)]
     return [
         (statistics.median(seconds for seconds, _ in column), max(mib for _, mib in column))
@@ -123,7 +122,7 @@ def beside(kfrac, folder, quick):
 
 
 def beside_flam3(kfrac, folder, quick):
-    """The fern by random iteration: as many points as flam3 draws, 100 a pixel of 1024²."""
+    """Compares the fern by random iteration with flam3: 100 points a pixel of 1024², as flam3 draws."""
     print()
     row("beside flam3", "kfrac", "flam3", "ratio", "target", "", "memory")
     for threads, ratio in RANDOM:
@@ -148,7 +147,7 @@ def beside_flam3(kfrac, folder, quick):
 
 
 def beside_numba(kfrac, folder, quick):
-    """The fern by random iteration, by numba as textbooks have it."""
+    """Compares the fern by random iteration with the textbook loop compiled by numba."""
     print()
     row("beside numba", "kfrac", "numba", "ratio", "target", "")
     for points, ratio in NUMBA[: 1 if quick else None]:
@@ -171,7 +170,7 @@ def beside_numba(kfrac, folder, quick):
 
 
 def beside_strings(kfrac, folder, quick):
-    """The Koch curve as an L-system to SVG, beside a program that writes the word."""
+    """Compares the Koch curve as an L-system, to SVG, with a program that writes the word."""
     print()
     row("beside l-system-fractals", "kfrac", "theirs", "ratio", "target", "", "memory")
     system = json.loads((HERE / "peers/koch.json").read_text())
@@ -192,7 +191,7 @@ def beside_strings(kfrac, folder, quick):
 
 
 def streamed(kfrac, folder, quick):
-    """Segments a second to a file, and memory that does not grow with the steps."""
+    """Measures segments a second to a file, and that memory does not grow with the steps."""
     steps, fewer = (22, 18) if quick else (26, 22)
     command = lambda steps: [
         kfrac, "grow", "dragon", "--steps", steps, "--max-elements", 2**steps,

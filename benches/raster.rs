@@ -22,7 +22,7 @@ use divan::counter::ItemsCount;
 
 const SIZE: u32 = 1024;
 
-/// The number of items in a sample.
+/// Number of items in a sample.
 const ITEMS: usize = 100_000;
 
 fn main() {

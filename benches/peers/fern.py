@@ -1,9 +1,9 @@
-"""The chaos game as textbooks have it, compiled by numba: one point, one map after the other.
+"""The textbook loop of the chaos game, compiled by numba: one point, mapped repeatedly.
 
     python3 fern.py POINTS
 
-draws Barnsley's fern of four maps into a histogram of 1024² and prints the seconds that this took:
-neither numba's own start, nor compiling, nor a picture are counted.
+Counts Barnsley's fern of four maps in a histogram of 1024² and prints the seconds of the loop, without
+numba's start, compilation and a picture.
 """
 
 import sys
@@ -14,7 +14,7 @@ import numpy as np
 
 SIDE = 1024
 
-# a, b, c, d, e, f of x → ax + by + e, y → cx + dy + f, and the sum of the weights so far.
+# a, b, c, d, e, f of the map x → ax + by + e, y → cx + dy + f, and the cumulative weight.
 MAPS = np.array(
     [
         [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the pictures of this folder anew.
+# Regenerates the pictures of this folder.
 set -eu
 cd "$(dirname "$0")"
 kfrac() { cargo run --quiet --release --manifest-path ../../Cargo.toml -- "$@" --quiet; }
