@@ -160,8 +160,8 @@ pub struct Options {
     /// without growing it, but of plots; and twice, unless its colours are soon known to be many.
     pub in_one_piece: u64,
     /// The pixels of a band, 2^21 unless said otherwise, with which drawing takes less than 300 MB.
-    /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is no
-    /// thin line of a round pen.
+    /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is dashed,
+    /// stroked more than 4 pixels wide, or filled with a colour that is not opaque.
     pub band: u64,
     /// Down to what size elements are replaced; to any unless said otherwise.
     pub detail: Option<Detail>,

@@ -1,5 +1,6 @@
-//! PNG: the paths of a picture, antialiased. Thin strokes of round pens and polygons that are not
-//! large, of which there may be millions, are drawn as coverage, by any thread; tiny-skia draws the rest.
+//! PNG: the paths of a picture, antialiased. Strokes that are not wide and opaque areas that are small, of
+//! which there may be millions, or have millions of vertices, are drawn as coverage, by any thread; tiny-skia
+//! draws the rest.
 
 mod chunk;
 mod coverage;
@@ -8,6 +9,8 @@ mod flat;
 mod nib;
 mod part;
 mod planes;
+mod region;
+mod ring;
 mod skia;
 mod split;
 #[cfg(test)]
@@ -28,10 +31,10 @@ use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
-use self::coverage::{HairPen, MOST_CORNERS, bounding, flattened, has_room};
-use self::flat::FlatStroke;
-use self::nib::{Nib, Nibs};
+use self::coverage::{HairPen, bounding, flattened, has_room};
+use self::nib::{Nib, Nibs, Trail};
 use self::part::{Layers, Part};
+use self::region::Region;
 use self::skia::Outline;
 use super::Labels;
 use super::filled::Filled;
@@ -90,20 +93,18 @@ pub(super) struct Png<'t, 'w> {
     /// The layer that paths are of.
     layer: u64,
     nibs: Nibs,
-    /// The nib that draws the path as coverage, if one does,
+    /// The nib that draws the path as coverage, if one does.
     nib: Option<Nib>,
-    /// or what draws it by polygons.
-    flat: Option<FlatStroke>,
-    /// Where it is, and where the subpath starts.
-    at: Position,
-    start: Position,
+    /// State of the current subpath.
+    trail: Trail,
     /// Whether the next path is of words, whose letters have holes: subpaths that are covered one by one
     /// would fill them.
     has_holes: bool,
     /// Whether the path may hold polygons that are drawn as coverage,
     covers: bool,
-    /// and the vertices of one that comes.
+    /// the vertices of the current one, and the outlines with too many vertices for one.
     ring: Vec<Position>,
+    region: Region,
     /// What tiny-skia draws of the path, if that is anything.
     outline: Outline,
     is_outlined: bool,
@@ -158,12 +159,11 @@ impl<'t, 'w> Png<'t, 'w> {
             layer: 0,
             nibs: Nibs::default(),
             nib: None,
-            flat: None,
-            at: [0; 2],
-            start: [0; 2],
+            trail: Trail::default(),
             has_holes: false,
             covers: false,
             ring: Vec::new(),
+            region: Region::default(),
             outline,
             is_outlined: false,
         })
@@ -188,12 +188,13 @@ impl<'t, 'w> Png<'t, 'w> {
     /// Draws lines of the path as coverage, one after another.
     #[inline]
     fn stroke(&mut self, to: impl IntoIterator<Item = Position>) {
-        if self.nib.is_some() {
-            self.chunk.lines(to);
-        } else if let Some(flat) = &mut self.flat {
-            let chunk = &mut self.chunk;
-            let mut draw = |polygon: &[Position]| chunk.polygon(polygon, true);
-            to.into_iter().for_each(|to| flat.line(to, &mut draw));
+        let trail = &mut self.trail;
+        match self.nib {
+            Some(Nib::Flat(_)) => self
+                .chunk
+                .lines(to.into_iter().inspect(|to| trail.go_to(*to))),
+            Some(_) => self.chunk.lines(to),
+            None => {}
         }
     }
 
@@ -208,7 +209,7 @@ impl<'t, 'w> Png<'t, 'w> {
     fn next_chunk(&mut self) {
         let mut next = self.line.spare().unwrap_or_default();
         if let Some(nib) = &self.nib {
-            self.chunk.lead_to(&mut next, nib.clone(), self.at);
+            self.chunk.lead_to(&mut next, nib.clone(), &self.trail);
         }
         let mut chunk = std::mem::replace(&mut self.chunk, next);
         chunk.assign(self.part.planes_in_use());
@@ -228,29 +229,6 @@ impl<'t, 'w> Png<'t, 'w> {
         let Ok(()) = self.line.finish::<Infallible>(&mut |_| Ok(()));
         self.part.settle();
     }
-
-    /// Ends a subpath that may be a polygon that is covered.
-    fn end_ring(&mut self) {
-        if self.ring.is_empty() {
-            return;
-        }
-        if has_room(&self.ring) {
-            self.chunk.polygon(&self.ring, false);
-            self.ring.clear();
-        } else {
-            self.hand_over_ring();
-            self.outline.close(&mut self.part.pixmap);
-        }
-    }
-
-    /// Has a subpath drawn by tiny-skia.
-    fn hand_over_ring(&mut self) {
-        let mut vertices = self.ring.drain(..);
-        if let Some(start) = vertices.next() {
-            self.outline.move_to(start);
-        }
-        vertices.for_each(|vertex| self.outline.line_to(vertex));
-    }
 }
 
 impl Surface for Png<'_, '_> {
@@ -262,7 +240,7 @@ impl Surface for Png<'_, '_> {
             && let Some(nib) = self.nibs.nib(stroke.pen)
         {
             self.chunk.nib(nib.clone());
-            (self.nib, self.flat) = (Some(nib), None);
+            self.nib = Some(nib);
             (self.covers, self.is_outlined) = (false, false);
             self.part.begin_layer(self.layer);
             return Ok(());
@@ -273,9 +251,7 @@ impl Surface for Png<'_, '_> {
         let may_cover = self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
         self.nib = stroke.and_then(|stroke| self.nibs.nib(stroke.pen));
-        let flat = stroke.filter(|_| self.nib.is_none());
-        self.flat = flat.and_then(|stroke| FlatStroke::of(stroke.pen, self.part.size()));
-        let strokes = self.nib.is_some() || self.flat.is_some();
+        let strokes = self.nib.is_some();
         let is_opaque = paint.fill.is_some_and(|fill| fill == fill.opaque());
         let has_holes = std::mem::take(&mut self.has_holes);
         self.covers = may_cover && is_opaque && !has_holes && (paint.stroke.is_none() || strokes);
@@ -299,17 +275,18 @@ impl Surface for Png<'_, '_> {
             ..*paint
         };
         self.is_outlined = rest != Paint::default();
+        if self.covers {
+            self.region.begin(self.part.size()[0], self.part.rows());
+        }
         self.outline.begin(rest);
         Ok(())
     }
 
     #[inline]
     fn move_to(&mut self, to: Position) {
-        (self.start, self.at) = (to, to);
+        self.trail = Trail::of(to);
         if self.nib.is_some() {
             self.chunk.start(to);
-        } else if let Some(flat) = &mut self.flat {
-            flat.start(to, &mut |polygon| self.chunk.polygon(polygon, true));
         }
         if self.covers {
             self.end_ring();
@@ -322,18 +299,12 @@ impl Surface for Png<'_, '_> {
     #[inline]
     fn line_to(&mut self, to: Position) {
         self.stroke([to]);
-        self.at = to;
-        if !self.is_outlined {
-            return;
+        self.trail.at = to;
+        if self.covers {
+            self.ring_to([to].into_iter());
+        } else if self.is_outlined {
+            self.outline.line_to(to);
         }
-        if !self.ring.is_empty() {
-            if self.ring.len() < MOST_CORNERS {
-                self.ring.push(to);
-                return;
-            }
-            self.hand_over_ring();
-        }
-        self.outline.line_to(to);
     }
 
     #[inline]
@@ -342,37 +313,32 @@ impl Surface for Png<'_, '_> {
             return to.iter().for_each(|&to| self.line_to(to));
         }
         self.stroke(to.iter().copied());
-        self.at = to.last().copied().unwrap_or(self.at);
+        self.trail.at = to.last().copied().unwrap_or(self.trail.at);
     }
 
     #[inline]
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        let curve = [self.at, a, b, to];
+        let curve = [self.trail.at, a, b, to];
         self.stroke(flattened(curve));
-        self.at = to;
-        if !self.is_outlined {
-            return;
+        self.trail.at = to;
+        if self.covers {
+            self.ring_to(bounding(curve));
+        } else if self.is_outlined {
+            self.outline.curve_to(a, b, to);
         }
-        if !self.ring.is_empty() {
-            let lines = bounding(curve);
-            if lines.len() <= MOST_CORNERS - self.ring.len() {
-                self.ring.extend(lines);
-                return;
-            }
-            self.hand_over_ring();
-        }
-        self.outline.curve_to(a, b, to);
     }
 
     fn close(&mut self) {
-        if let Some(flat) = &mut self.flat {
-            flat.close(&mut |polygon| self.chunk.polygon(polygon, true));
-        } else {
-            self.stroke([self.start]);
+        self.stroke([self.trail.start]);
+        if let Some(Nib::Flat(_)) = self.nib {
+            self.chunk.close();
         }
-        self.at = self.start;
+        self.trail.at = self.trail.start;
+        self.trail.is_open = false;
         if !self.ring.is_empty() {
             self.end_ring();
+        } else if self.covers {
+            self.close_region();
         } else if self.is_outlined {
             self.outline.close(&mut self.part.pixmap);
         }
@@ -380,11 +346,11 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn polygon(&mut self, vertices: &[Position]) -> bool {
-        if !self.covers || self.nib.is_some() || self.flat.is_some() || !has_room(vertices) {
+        if !self.covers || self.nib.is_some() || !has_room(vertices) {
             return false;
         }
         self.end_ring();
-        self.chunk.polygon(vertices, false);
+        self.chunk.polygon(vertices);
         self.hand_on_chunk();
         true
     }
@@ -400,14 +366,17 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn end(&mut self) -> io::Result<()> {
-        if self.is_outlined {
+        if let Some(Nib::Flat(_)) = self.nib.take() {
+            self.chunk.end();
+        }
+        if self.covers {
             self.end_ring();
+            self.region.close();
+            self.cover_region();
+        }
+        if self.is_outlined {
             self.outline.end(&mut self.part.pixmap);
         }
-        if let Some(mut flat) = self.flat.take() {
-            flat.end(&mut |polygon| self.chunk.polygon(polygon, true));
-        }
-        self.nib = None;
         if self.part.settles_after() {
             self.settle();
         }
@@ -442,7 +411,7 @@ impl Surface for Png<'_, '_> {
             (Some(_), None) => None,
             (None, Some(stroke)) => match self.nibs.nib(stroke.pen)? {
                 Nib::Round(pen) => Some(pen),
-                Nib::Hair { .. } => return None,
+                Nib::Hair(_) | Nib::Flat(_) => return None,
             },
             _ => return None,
         };

@@ -1,11 +1,14 @@
 //! A stretch of what is drawn as coverage: made in order, covered by any thread.
 
+use std::sync::Arc;
+
 use crate::parallel::is_cut_short;
 use crate::render::surface::{Position, Stamped, Tuft};
 
 use super::coverage::Plane;
-use super::nib::Nib;
+use super::nib::{Hand, Nib, Trail};
 use super::part::Layers;
+use super::region::Region;
 
 /// Chunks have about this many commands or positions.
 const MANY: usize = 1 << 14;
@@ -15,16 +18,20 @@ enum Command {
     Nib(Nib),
     /// A subpath begins at a position.
     Start,
-    /// A subpath goes on at a position.
-    GoOn,
+    /// A subpath continues from another chunk.
+    GoOn(Box<Trail>),
+    /// A subpath is closed, or ends.
+    Close,
+    End,
     /// Lines to so many positions, one after another.
     Lines(usize),
-    /// Polygons of so many vertices each, by number, and whether they are parts of strokes.
+    /// Polygons of so many vertices each, by number.
     Polygons {
         vertices: usize,
         count: usize,
-        of_strokes: bool,
     },
+    /// Rows of a region, from the first to the last.
+    Region(Arc<Region>, [i64; 2]),
     /// So many tufts.
     Tufts(usize),
     /// So many stamps.
@@ -53,6 +60,12 @@ impl Chunk {
         most.max(apart) >= MANY || is_cut_short()
     }
 
+    /// Returns the number of positions.
+    #[cfg(test)]
+    pub(super) fn positions(&self) -> usize {
+        self.points.len()
+    }
+
     #[inline]
     pub(super) fn nib(&mut self, nib: Nib) {
         self.commands.push(Command::Nib(nib));
@@ -76,22 +89,32 @@ impl Chunk {
         }
     }
 
-    /// Adds a polygon that [`Plane::polygon`] covers, of a path or of a stroke.
-    pub(super) fn polygon(&mut self, vertices: &[Position], of_stroke: bool) {
-        self.points.extend_from_slice(vertices);
-        let sides = vertices.len();
+    /// Closes a subpath of lines.
+    pub(super) fn close(&mut self) {
+        self.commands.push(Command::Close);
+    }
+
+    /// Ends a subpath of lines.
+    pub(super) fn end(&mut self) {
+        self.commands.push(Command::End);
+    }
+
+    /// Adds a polygon that [`Plane::shape`] covers.
+    pub(super) fn polygon(&mut self, polygon: &[Position]) {
+        self.points.extend_from_slice(polygon);
+        let sides = polygon.len();
         match self.commands.last_mut() {
-            Some(Command::Polygons {
-                vertices,
-                count,
-                of_strokes,
-            }) if *vertices == sides && *of_strokes == of_stroke => *count += 1,
+            Some(Command::Polygons { vertices, count }) if *vertices == sides => *count += 1,
             _ => self.commands.push(Command::Polygons {
                 vertices: sides,
                 count: 1,
-                of_strokes: of_stroke,
             }),
         }
+    }
+
+    /// Adds some rows of a region.
+    pub(super) fn region(&mut self, region: Arc<Region>, rows: [i64; 2]) {
+        self.commands.push(Command::Region(region, rows));
     }
 
     pub(super) fn tufts(&mut self, tufts: &[Tuft]) {
@@ -104,20 +127,20 @@ impl Chunk {
         self.commands.push(Command::Stamps(stamps.len()));
     }
 
-    /// Lets `next` go on with a nib from a position.
-    pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, at: Position) {
+    /// Makes `next` continue the current subpath with a nib.
+    pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, trail: &Trail) {
+        let is_flat = matches!(nib, Nib::Flat(_));
         next.nib(nib);
-        if let Some(Command::Start) = self.commands.last() {
+        if let (Some(Command::Start), false) = (self.commands.last(), is_flat) {
             self.commands.pop();
             self.points.pop();
-            next.start(at);
+            next.start(trail.at);
         } else {
-            next.commands.push(Command::GoOn);
-            next.points.push(at);
+            next.commands.push(Command::GoOn(Box::new(*trail)));
         }
     }
 
-    /// Says where it is to be drawn: lines, and polygons of strokes, on the second planes if there are such.
+    /// Sets the planes to draw on: lines are drawn on the second ones if there are any.
     pub(super) fn assign(&mut self, planes: Layers) {
         self.planes = planes;
     }
@@ -145,45 +168,46 @@ impl Chunk {
             points = rest;
             next
         };
-        let (mut nib, mut at) = (None, [0; 2]);
+        let (mut hand, mut at) = (None, [0; 2]);
         for command in &self.commands {
-            let over = strokes.as_deref_mut();
+            let over = strokes.as_deref_mut().unwrap_or(&mut *plane);
             match command {
-                Command::Nib(next) => nib = Some(next.clone()),
+                Command::Nib(next) => hand = Some(Hand::of(next, over.picture())),
                 Command::Start => {
                     at = next(1).first().copied().unwrap_or(at);
-                    if let Some(nib) = &mut nib {
-                        nib.start(over.unwrap_or(&mut *plane), at);
+                    if let Some(hand) = &mut hand {
+                        hand.start(over, at);
                     }
                 }
-                Command::GoOn => {
-                    at = next(1).first().copied().unwrap_or(at);
-                    if let Some(nib) = &nib {
-                        nib.go_on(over.unwrap_or(&mut *plane), at);
+                Command::GoOn(trail) => {
+                    at = trail.at;
+                    if let Some(hand) = &mut hand {
+                        hand.go_on(over, trail);
                     }
                 }
                 Command::Lines(count) => {
                     let lines = next(*count);
-                    if let Some(nib) = &mut nib {
-                        nib.lines(over.unwrap_or(&mut *plane), at, lines);
+                    if let Some(hand) = &mut hand {
+                        hand.lines(over, at, lines);
                     }
                     at = lines.last().copied().unwrap_or(at);
                 }
-                Command::Polygons {
-                    vertices,
-                    count,
-                    of_strokes,
-                } => {
-                    let over = over.filter(|_| *of_strokes);
-                    let plane = over.unwrap_or(&mut *plane);
-                    for polygon in next(vertices * count).chunks_exact(*vertices) {
-                        if *of_strokes {
-                            plane.polygon(polygon);
-                        } else {
-                            plane.shape(polygon);
-                        }
+                Command::Close => {
+                    if let Some(hand) = &mut hand {
+                        hand.close(over);
                     }
                 }
+                Command::End => {
+                    if let Some(hand) = &mut hand {
+                        hand.end(over);
+                    }
+                }
+                Command::Polygons { vertices, count } => {
+                    for polygon in next(vertices * count).chunks_exact(*vertices) {
+                        plane.shape(polygon);
+                    }
+                }
+                Command::Region(region, rows) => region.cover(plane, *rows),
                 Command::Tufts(count) => {
                     let (now, rest) = tufts.split_at(*count);
                     now.iter().for_each(|tuft| {

@@ -3,6 +3,8 @@
 use crate::render::surface::{FINE, Pen, Position};
 use crate::style::{Cap, Join};
 
+use super::coverage::Plane;
+use super::nib::Trail;
 use super::skia::MITER_LIMIT;
 
 /// The widest strokes that are drawn so, in pixels.
@@ -14,15 +16,34 @@ const PIECE: f64 = 48.0;
 /// The corners of what stands for a disc.
 const DISC: usize = 24;
 
-/// A stroke that is being drawn.
+/// A pen for such strokes.
 #[derive(Clone, Copy)]
-pub(super) struct FlatStroke {
+pub(super) struct FlatPen {
     /// Half the width, in the units of positions.
     half: f64,
     cap: Cap,
     join: Join,
+}
+
+impl FlatPen {
+    /// Returns the pen for strokes up to a width of `WIDEST` without dashes.
+    pub(super) fn of(pen: Pen) -> Option<Self> {
+        let is_drawn = pen.dash == 0.0 && pen.width > 0.0 && pen.width <= WIDEST;
+        is_drawn.then_some(Self {
+            half: pen.width / 2.0 * FINE,
+            cap: pen.cap,
+            join: pen.join,
+        })
+    }
+}
+
+/// A stroke that is being drawn.
+pub(super) struct FlatStroke {
+    pen: FlatPen,
     /// The least and the most of what can be seen.
     seen: [[f64; 2]; 2],
+    /// Offsets of the two sides of level and upright lines from their middle, rounded.
+    sides: [i64; 2],
     start: Position,
     at: Position,
     /// The directions of the first line of the subpath and of the last.
@@ -32,48 +53,48 @@ pub(super) struct FlatStroke {
 }
 
 impl FlatStroke {
-    /// The stroke of a pen, on a picture, if it is drawn so.
-    pub(super) fn of(pen: Pen, size: [u32; 2]) -> Option<Self> {
-        let is_drawn = pen.dash == 0.0 && pen.width > 0.0 && pen.width <= WIDEST;
-        let half = pen.width / 2.0 * FINE;
-        let beyond = 4.0 * half + PIECE * FINE;
-        is_drawn.then_some(Self {
-            half,
-            cap: pen.cap,
-            join: pen.join,
-            seen: [
-                [-beyond; 2],
-                size.map(|side| f64::from(side) * FINE + beyond),
-            ],
+    /// Creates a stroke on a picture of a size in pixels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
+    pub(super) fn new(pen: FlatPen, size: [i64; 2]) -> Self {
+        let beyond = 4.0 * pen.half + PIECE * FINE;
+        Self {
+            pen,
+            seen: [[-beyond; 2], size.map(|side| side as f64 * FINE + beyond)],
+            sides: [-pen.half, pen.half].map(|side| rounded([side; 2])[0]),
             start: [0; 2],
             at: [0; 2],
             directions: None,
             is_open: false,
-        })
+        }
     }
 
     /// Begins a subpath.
-    pub(super) fn start(&mut self, at: Position, draw: &mut impl FnMut(&[Position])) {
-        self.end(draw);
+    pub(super) fn start(&mut self, at: Position, plane: &mut Plane) {
+        self.end(plane);
         (self.start, self.at) = (at, at);
         self.directions = None;
         self.is_open = true;
     }
 
+    /// Continues a subpath.
+    pub(super) fn go_on(&mut self, trail: &Trail) {
+        (self.start, self.at, self.is_open) = (trail.start, trail.at, trail.is_open);
+        let sides = |[first, last]: [Position; 2]| [[trail.start, first], [last, trail.at]];
+        let between = trail.between.map(sides);
+        self.directions = between.map(|sides| sides.map(|[from, to]| direction(from, to).0));
+    }
+
     /// A straight line.
-    pub(super) fn line(&mut self, to: Position, draw: &mut impl FnMut(&[Position])) {
-        let from = point(self.at);
-        let along = sub(point(to), from);
-        let length = f64::hypot(along[0], along[1]);
+    pub(super) fn line(&mut self, to: Position, plane: &mut Plane) {
+        let (direction, length) = direction(self.at, to);
         if length == 0.0 {
             return;
         }
-        let direction = along.map(|part| part / length);
-        self.piece(self.at, to, direction, draw);
+        self.piece(self.at, to, direction, plane);
         self.directions = Some(match self.directions {
             None => [direction; 2],
             Some([first, last]) => {
-                self.corner(self.at, last, direction, draw);
+                self.corner(self.at, last, direction, plane);
                 [first, direction]
             }
         });
@@ -81,19 +102,19 @@ impl FlatStroke {
     }
 
     /// Closes the subpath.
-    pub(super) fn close(&mut self, draw: &mut impl FnMut(&[Position])) {
-        self.line(self.start, draw);
+    pub(super) fn close(&mut self, plane: &mut Plane) {
+        self.line(self.start, plane);
         match self.directions {
             Some([first, last]) => {
-                self.corner(self.start, last, first, draw);
+                self.corner(self.start, last, first, plane);
                 self.is_open = false;
             }
-            None => self.end(draw),
+            None => self.end(plane),
         }
     }
 
     /// Ends the subpath, if it is open.
-    pub(super) fn end(&mut self, draw: &mut impl FnMut(&[Position])) {
+    pub(super) fn end(&mut self, plane: &mut Plane) {
         if !std::mem::take(&mut self.is_open) {
             return;
         }
@@ -102,19 +123,22 @@ impl FlatStroke {
             Some([first, last]) => [first.map(|part| -part), last],
             None => dot,
         };
-        self.cap(self.start, back, draw);
-        self.cap(self.at, on, draw);
+        self.cap(self.start, back, plane);
+        self.cap(self.at, on, plane);
     }
 
     /// The sides of a line, in pieces that are not long.
-    fn piece(
-        &self,
-        from: Position,
-        to: Position,
-        direction: [f64; 2],
-        draw: &mut impl FnMut(&[Position]),
-    ) {
-        let across = [-direction[1], direction[0]].map(|part| part * self.half);
+    fn piece(&self, from: Position, to: Position, direction: [f64; 2], plane: &mut Plane) {
+        if let Some(axis) = (0..2).find(|&axis| from[axis] == to[axis]) {
+            let mut least = [0, 1].map(|axis| from[axis].min(to[axis]));
+            let mut most = [0, 1].map(|axis| from[axis].max(to[axis]));
+            least[axis] = least[axis].saturating_add(self.sides[0]);
+            most[axis] = most[axis].saturating_add(self.sides[1]);
+            if plane.rectangle(least, most) {
+                return;
+            }
+        }
+        let across = [-direction[1], direction[0]].map(|part| part * self.pen.half);
         let [start, end] = [from, to].map(point);
         let along = sub(end, start);
         let Some([first, last]) = self.seen_part(start, along) else {
@@ -131,7 +155,7 @@ impl FlatStroke {
             number += 1.0;
             let next = place(number);
             let back = across.map(|part| -part);
-            draw(&[
+            plane.polygon(&[
                 rounded(add(before, across)),
                 rounded(add(next, across)),
                 rounded(add(next, back)),
@@ -160,47 +184,58 @@ impl FlatStroke {
     }
 
     /// What fills the gap between two lines that meet.
-    fn corner(
-        &self,
-        at: Position,
-        [a, b]: [f64; 2],
-        [c, d]: [f64; 2],
-        draw: &mut impl FnMut(&[Position]),
-    ) {
+    fn corner(&self, at: Position, [a, b]: [f64; 2], [c, d]: [f64; 2], plane: &mut Plane) {
         let (cross, dot) = (a * d - b * c, a * c + b * d);
         if cross == 0.0 && dot > 0.0 {
             return;
         }
-        if self.join == Join::Round {
-            return self.disc(at, draw);
+        if self.pen.join == Join::Round {
+            return self.disc(at, plane);
+        }
+        if self.pen.join == Join::Miter && dot == 0.0 && (a == 0.0 || b == 0.0) {
+            // The mitre of a quarter turn is a square.
+            let ([mut left, mut top], [mut right, mut bottom]) = (at, at);
+            let grow = |near: &mut i64, far: &mut i64, is_back: bool| {
+                let (place, side) = if is_back { (near, 0) } else { (far, 1) };
+                *place = place.saturating_add(self.sides[side]);
+            };
+            grow(&mut left, &mut right, c - a > 0.0);
+            grow(&mut top, &mut bottom, d - b > 0.0);
+            if plane.rectangle([left, top], [right, bottom]) {
+                return;
+            }
         }
         // On the outer side of the turn.
-        let side = if cross > 0.0 { -self.half } else { self.half };
+        let side = if cross > 0.0 {
+            -self.pen.half
+        } else {
+            self.pen.half
+        };
         let middle = point(at);
         let before = [middle[0] - b * side, middle[1] + a * side];
         let after = [middle[0] - d * side, middle[1] + c * side];
         let is_sharp = 2.0 > f64::from(MITER_LIMIT * MITER_LIMIT) * (1.0 + dot);
-        if self.join == Join::Miter && !is_sharp {
+        if self.pen.join == Join::Miter && !is_sharp {
             let far = side / (1.0 + dot);
             let tip = [middle[0] - (b + d) * far, middle[1] + (a + c) * far];
-            draw(&[at, rounded(before), rounded(tip), rounded(after)]);
+            plane.polygon(&[at, rounded(before), rounded(tip), rounded(after)]);
         } else {
-            draw(&[at, rounded(before), rounded(after)]);
+            plane.polygon(&[at, rounded(before), rounded(after)]);
         }
     }
 
     /// What a line has beyond its end.
-    fn cap(&self, at: Position, direction: [f64; 2], draw: &mut impl FnMut(&[Position])) {
-        match self.cap {
+    fn cap(&self, at: Position, direction: [f64; 2], plane: &mut Plane) {
+        match self.pen.cap {
             Cap::Butt => {}
-            Cap::Round => self.disc(at, draw),
+            Cap::Round => self.disc(at, plane),
             Cap::Square => {
-                let on = direction.map(|part| part * self.half);
+                let on = direction.map(|part| part * self.pen.half);
                 let across = [-on[1], on[0]];
                 let back = across.map(|part| -part);
                 let near = point(at);
                 let far = add(near, on);
-                draw(&[
+                plane.polygon(&[
                     rounded(add(near, across)),
                     rounded(add(far, across)),
                     rounded(add(far, back)),
@@ -210,17 +245,29 @@ impl FlatStroke {
         }
     }
 
-    fn disc(&self, at: Position, draw: &mut impl FnMut(&[Position])) {
+    fn disc(&self, at: Position, plane: &mut Plane) {
         let middle = point(at);
         // As large as the disc.
         let step = std::f64::consts::TAU / DISC as f64;
-        let radius = self.half * (step / libm::sin(step)).sqrt();
+        let radius = self.pen.half * (step / libm::sin(step)).sqrt();
         let corners: [Position; DISC] = std::array::from_fn(|number| {
             let (sine, cosine) = libm::sincos(number as f64 * step);
             rounded(add(middle, [radius * cosine, radius * sine]))
         });
-        draw(&corners);
+        plane.polygon(&corners);
     }
+}
+
+/// Returns the direction of a line and its length.
+#[inline]
+fn direction(from: Position, to: Position) -> ([f64; 2], f64) {
+    let along = sub(point(to), point(from));
+    let length = if along[0] == 0.0 || along[1] == 0.0 {
+        (along[0] + along[1]).abs()
+    } else {
+        f64::hypot(along[0], along[1])
+    };
+    (along.map(|part| part / length), length)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "what is seen is exact")]
@@ -228,9 +275,17 @@ fn point(position: Position) -> [f64; 2] {
     position.map(|fine| fine as f64)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "what is seen is small")]
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "what is seen is small"
+)]
 fn rounded(point: [f64; 2]) -> Position {
-    point.map(|fine| (fine + 0.5).floor() as i64)
+    point.map(|fine| {
+        let towards_zero = (fine + 0.5) as i64;
+        towards_zero - i64::from(fine + 0.5 < towards_zero as f64)
+    })
 }
 
 fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

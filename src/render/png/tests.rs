@@ -239,6 +239,63 @@ fn long_paths_are_in_one_piece() {
     }
 }
 
+/// A closed path of very many vertices is filled and stroked on any thread; chunks hold its lines and not the
+/// polygons of its stroke.
+#[test]
+fn long_outlines_are_those_of_the_reference() {
+    let corner = |number: i64| {
+        let turn = number as f64 / 30_000.0 * std::f64::consts::TAU;
+        let radius = 1900.0 + 600.0 * libm::sin(9.0 * turn) + (number % 2 * 40) as f64;
+        #[expect(clippy::cast_possible_truncation, reason = "a small picture")]
+        [
+            4000 + (radius * libm::cos(turn)) as i64,
+            3000 + (radius * libm::sin(turn)) as i64,
+        ]
+    };
+    let mut vertices: Vec<Position> = (0..30_000).map(corner).collect();
+    vertices.dedup();
+    let fill = Colour::of_rgba([200, 90, 0, 255]);
+    for (cap, join) in [(Cap::Butt, Join::Miter), (Cap::Round, Join::Round)] {
+        let mut paint = stroke(1.5);
+        paint.fill = Some(fill);
+        if let Some(Stroke { pen, .. }) = &mut paint.stroke {
+            (pen.cap, pen.join) = (cap, join);
+        }
+        let paths = [(paint, vertices.clone())];
+        let one = drawn(1, |png| draw(png, &paths));
+        for threads in [2, 3, 8] {
+            let in_pieces = drawn(threads, |png| {
+                png.begin(&paint).unwrap();
+                png.move_to(vertices[0]);
+                for vertices in vertices[1..].chunks(1001) {
+                    png.lines_to(vertices);
+                    png.hand_on().unwrap();
+                    assert!(png.chunk.positions() <= (1 << 14) + 1001);
+                }
+                png.close();
+                png.end().unwrap();
+            });
+            assert!(in_pieces == one, "on {threads} threads");
+        }
+        let mut reference = Pixmap::new(SIZE[0], SIZE[1]).unwrap();
+        let mut outline = Outline::default();
+        outline.begin(paint);
+        outline.move_to(vertices[0]);
+        vertices[1..]
+            .iter()
+            .for_each(|&vertex| outline.line_to(vertex));
+        outline.close(&mut reference);
+        outline.end(&mut reference);
+        let differences = one
+            .iter()
+            .zip(reference.data())
+            .map(|(a, b)| a.abs_diff(*b));
+        let most = differences.clone().max().unwrap();
+        let mean = differences.map(f64::from).sum::<f64>() / one.len() as f64;
+        assert!(most <= 60 && mean < 0.5, "{most} and {mean} with {join:?}");
+    }
+}
+
 /// A picture on which every line is drawn by itself, and even what is hidden unless it is asked.
 struct Plain<'p, 't, 'w> {
     png: &'p mut Png<'t, 'w>,

@@ -100,7 +100,7 @@ impl Plane {
 /// of pixels and that of samples in it, from which column on, counted from the first, samples lie to
 /// the right, and how that winds around them.
 #[inline]
-#[expect(clippy::cast_precision_loss, reason = "positions in a small box")]
+#[expect(clippy::cast_precision_loss, reason = "columns of a picture")]
 fn follow(
     vertices: &[Position],
     first_column: i64,
@@ -111,49 +111,64 @@ fn follow(
     let lines = [rows[0], rows[1] + 1].map(|row| row * i64::from(SAMPLES));
     let mut before = vertices.last().copied().unwrap_or_default();
     for &vertex in vertices {
-        let is_down = before[1] < vertex[1];
-        let winding = if is_down { 1 } else { -1 };
-        // From its upper end in any case, so that neighbours share the side.
-        let (upper, lower) = if is_down {
-            (before, vertex)
-        } else {
-            (vertex, before)
-        };
+        follow_side(before, vertex, left, lines, &mut meet);
         before = vertex;
-        let first = line_below(upper[1]).max(lines[0]);
-        let end = line_below(lower[1]).min(lines[1]);
-        if first >= end {
-            continue;
-        }
-        let slope = (lower[0] - upper[0]) as f64 / (lower[1] - upper[1]) as f64;
-        let line = FINE as f64 / f64::from(SAMPLES);
-        let down = (first as f64 + 0.5) * line - upper[1] as f64;
-        let start = (upper[0] as f64 + down * slope) / FINE as f64 - left;
-        let step = slope / f64::from(SAMPLES);
-        for (along, number) in (first..end).enumerate() {
-            let sample = index(number) % SAMPLES as usize;
-            let crossing = start + along as f64 * step - BESIDE[sample];
-            let row = index(number - lines[0]) / SAMPLES as usize;
-            meet(row, sample, whole(crossing), winding);
-        }
+    }
+}
+
+/// Follows one side through the rows of samples from `lines[0]` up to `lines[1]`, always from its upper end, so
+/// that both polygons that share it see the same crossings.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "exact on the picture")]
+pub(super) fn follow_side(
+    from: Position,
+    to: Position,
+    left: f64,
+    lines: [i64; 2],
+    mut meet: impl FnMut(usize, usize, usize, i8),
+) {
+    let is_down = from[1] < to[1];
+    let winding = if is_down { 1 } else { -1 };
+    let (upper, lower) = if is_down { (from, to) } else { (to, from) };
+    // Counted from the end of the side, so that crossings do not depend on the rows.
+    let start = line_below(upper[1]);
+    let first = start.max(lines[0]);
+    let end = line_below(lower[1]).min(lines[1]);
+    if first >= end {
+        return;
+    }
+    let slope = (lower[0] as f64 - upper[0] as f64) / (lower[1] as f64 - upper[1] as f64);
+    let line = FINE as f64 / f64::from(SAMPLES);
+    let down = (start as f64 + 0.5) * line - upper[1] as f64;
+    let place = (upper[0] as f64 + down * slope) / FINE as f64 - left;
+    let step = slope / f64::from(SAMPLES);
+    for number in first..end {
+        let sample = index(number) % SAMPLES as usize;
+        let crossing = place + (number - start) as f64 * step - BESIDE[sample];
+        let row = index(number - lines[0]) / SAMPLES as usize;
+        meet(row, sample, whole(crossing), winding);
     }
 }
 
 /// The first row of samples that lies below a position, or on it.
+#[inline]
 fn line_below(y: i64) -> i64 {
+    /// Positions are clamped to this; visible ones are much nearer.
+    const FAR: i64 = 1 << 48;
     let samples = i64::from(SAMPLES);
+    let y = y.clamp(-FAR, FAR);
     // Twice as fine, for samples lie in the middle of their rows: the quotient is rounded up.
     (2 * samples * y - FINE + 2 * FINE - 1).div_euclid(2 * FINE)
 }
 
 /// The samples that are wound around, as bits.
 #[inline]
-fn wound(windings: &Windings) -> u64 {
+pub(super) fn wound<W: Copy + Default + PartialEq>(windings: &[W; SAMPLES as usize]) -> u64 {
     // Eight bytes of 0 or 1 become eight bits.
     const GATHER: u64 = 0x0102_0408_1020_4080;
     let mut bits = [0; 8];
     for (bits, windings) in bits.iter_mut().zip(windings.as_chunks::<8>().0) {
-        let ones = windings.map(|winding| u8::from(winding != 0));
+        let ones = windings.map(|winding| u8::from(winding != W::default()));
         *bits = (u64::from_le_bytes(ones).wrapping_mul(GATHER) >> 56) as u8;
     }
     u64::from_le_bytes(bits)

@@ -14,6 +14,7 @@ mod polygon;
 mod stamp;
 #[cfg(test)]
 mod tests;
+mod winding;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -79,6 +80,7 @@ pub(crate) struct Plane {
     hairs: Hairs,
     touched: Touched,
     scratch: area::Scratch,
+    windings: winding::Windings,
 }
 
 /// The pixels outside of which nothing has been covered: first and last column, first and last row.
@@ -129,7 +131,13 @@ impl Plane {
             hairs: Hairs::default(),
             touched: Touched::NOTHING,
             scratch: Vec::new(),
+            windings: winding::Windings::default(),
         }
+    }
+
+    /// Returns the width and height of the picture, in pixels.
+    pub(crate) fn picture(&self) -> [i64; 2] {
+        self.picture
     }
 
     /// Has other rows of the picture, as many from this one on. Nothing may be covered.

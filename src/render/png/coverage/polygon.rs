@@ -141,7 +141,7 @@ pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
 /// Whether a box is that of a small polygon.
 #[inline]
 fn is_small([least, most]: &[Position; 2]) -> bool {
-    (0..2).all(|axis| most[axis] - least[axis] <= MOST_PIXELS * FINE)
+    (0..2).all(|axis| most[axis].saturating_sub(least[axis]) <= MOST_PIXELS * FINE)
 }
 
 /// The sides of a polygon, that to the first vertex first.
@@ -191,14 +191,18 @@ impl Plane {
         if self.is_full(columns, rows) {
             return true;
         }
+        let extent = [0, 1].map(|axis| bounds[1][axis] - bounds[0][axis]);
+        let longest = extent[0].max(extent[1]);
+        if MOST == FEW_VERTICES && longest > TINIEST && is_rectangle(vertices) {
+            self.right_angled(bounds, columns, rows);
+            return true;
+        }
         let sides = sides::<MOST>(vertices);
         let orientation = match orientation(&sides[..vertices.len()]) {
             None => return false,
             Some(0) => return true,
             Some(orientation) => orientation,
         };
-        let extent = [0, 1].map(|axis| bounds[1][axis] - bounds[0][axis]);
-        let longest = extent[0].max(extent[1]);
         if longest <= TINIEST || (MOST > FEW_VERTICES && is_narrow(vertices, longest)) {
             if columns[0] + 1 < columns[1] || rows[0] + 1 < rows[1] {
                 return self.area(vertices);
@@ -219,6 +223,48 @@ impl Plane {
         self.intersection(&mut edges[..count], columns, rows);
         self.touched.add(columns, rows);
         true
+    }
+
+    /// Covers a rectangle of level and upright sides as [`Plane::polygon`] does, if it is small and not too
+    /// narrow; otherwise nothing.
+    #[inline]
+    pub(crate) fn rectangle(&mut self, least: Position, most: Position) -> bool {
+        let bounds = [least, most];
+        let [x, y] = [0, 1].map(|axis| most[axis].saturating_sub(least[axis]));
+        if x.max(y) <= TINIEST || !is_small(&bounds) {
+            return false;
+        }
+        if let Some([columns, rows]) = self.pixels(bounds)
+            && !self.is_full(columns, rows)
+        {
+            self.right_angled(bounds, columns, rows);
+        }
+        true
+    }
+
+    /// Covers a small rectangle: the intersection of its four half planes.
+    #[inline]
+    fn right_angled(&mut self, [least, most]: [Position; 2], columns: [i64; 2], rows: [i64; 2]) {
+        const MOST: usize = 10;
+        const { assert!(MOST_PIXELS < MOST as i64 && DISTANCES == 64.0) };
+        let (below, left) = HALF_PLANES
+            .as_slice()
+            .split_at((DIRECTIONS + 1) * 2 * FARTHEST);
+        let mut across = [0; MOST];
+        let width = index(columns[1] - columns[0] + 1);
+        for (mask, column) in across[..width].iter_mut().zip(columns[0]..) {
+            let centre = column * FINE + FINE / 2;
+            *mask = left[slot(most[0] - centre)] & !left[slot(least[0] - centre)];
+        }
+        for row in rows[0]..=rows[1] {
+            let centre = row * FINE + FINE / 2;
+            let down = below[slot(centre - least[1])] & !below[slot(centre - most[1])];
+            let start = self.cell([columns[0], row]);
+            for (cell, mask) in self.cells[start..start + width].iter().zip(across) {
+                cover(cell, mask & down);
+            }
+        }
+        self.touched.add(columns, rows);
     }
 
     /// The columns and rows that a box meets, margins among them, if it meets any.
@@ -272,6 +318,28 @@ impl Plane {
             }
         }
     }
+}
+
+/// Returns the index in the table of a distance in hundredths of a pixel, as [`HalfPlane::mask`] does.
+#[inline]
+fn slot(distance: i64) -> usize {
+    // `DISTANCES` to a pixel.
+    let slot = (distance * 16).div_euclid(25) + FARTHEST as i64;
+    index(slot.clamp(0, 2 * FARTHEST as i64 - 1))
+}
+
+/// Returns whether a polygon is a rectangle with level and upright sides.
+#[inline]
+fn is_rectangle(vertices: &[Position]) -> bool {
+    let [a, b, c, d] = *vertices else {
+        return false;
+    };
+    (0..2).any(|axis| {
+        a[axis] == b[axis]
+            && b[1 - axis] == c[1 - axis]
+            && c[axis] == d[axis]
+            && d[1 - axis] == a[1 - axis]
+    })
 }
 
 /// Whether a convex polygon, of which the larger side of its box is known, is no wider than `TINIEST` in

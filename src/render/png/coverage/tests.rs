@@ -405,6 +405,31 @@ proptest! {
     }
 }
 
+/// The shortcut for rectangles covers the same samples as half planes do.
+#[test]
+fn rectangles_are_covered_as_other_polygons_are() {
+    for number in 0..2000i64 {
+        let least = [1000 + number * 37 % 100, 1000 + number * 7919 % 100];
+        let size = [number * 61 % 780 + 21, number * 104_729 % 777 + 21];
+        let most = [0, 1].map(|axis| least[axis] + size[axis]);
+        let corners = [
+            least,
+            [most[0], least[1]],
+            most,
+            [least[0], most[1]],
+            // The repeated vertex selects the general code.
+            [least[0], most[1]],
+        ];
+        let other = samples(|plane| assert!(plane.polygon_of::<5>(&corners)));
+        assert!(samples(|plane| assert!(plane.rectangle(least, most))) == other);
+        for turned in [[0, 1, 2, 3], [3, 2, 1, 0], [1, 2, 3, 0]] {
+            let turned = turned.map(|corner| corners[corner]);
+            let covered = samples(|plane| assert!(plane.polygon(&turned)));
+            assert!(covered == other, "{turned:?}");
+        }
+    }
+}
+
 #[test]
 fn small_ellipses_and_bars_have_their_ink_on_average() {
     let round = [3.0, 8.0, 12.0, 20.0, 40.0].map(|radius| [radius; 2]);

@@ -1,0 +1,72 @@
+//! Filled subpaths: polygons one by one where they have room, a region of those of very many vertices. tiny-skia
+//! fills large outlines of few vertices, which it does quickly.
+
+use std::sync::Arc;
+
+use crate::render::surface::Position;
+
+use super::Png;
+use super::coverage::{MOST_CORNERS, has_room};
+
+/// Number of vertices of a region after which it is covered before the path goes on.
+const MANY_VERTICES: usize = 1 << 20;
+
+impl Png<'_, '_> {
+    /// Ends a subpath that may be a polygon that is covered.
+    pub(super) fn end_ring(&mut self) {
+        if self.ring.is_empty() {
+            return;
+        }
+        if has_room(&self.ring) {
+            self.chunk.polygon(&self.ring);
+            self.ring.clear();
+            return;
+        }
+        let mut vertices = self.ring.drain(..);
+        if let Some(start) = vertices.next() {
+            self.outline.move_to(start);
+        }
+        vertices.for_each(|vertex| self.outline.line_to(vertex));
+        self.outline.close(&mut self.part.pixmap);
+    }
+
+    /// Adds vertices to the current subpath.
+    #[inline]
+    pub(super) fn ring_to(&mut self, to: impl ExactSizeIterator<Item = Position>) {
+        if !self.ring.is_empty() {
+            if to.len() <= MOST_CORNERS - self.ring.len() {
+                self.ring.extend(to);
+                return;
+            }
+            // The subpath becomes an outline of the region.
+            let mut vertices = self.ring.drain(..);
+            if let Some(start) = vertices.next() {
+                self.region.move_to(start);
+            }
+            vertices.for_each(|vertex| self.region.line_to(vertex));
+        }
+        to.for_each(|to| self.region.line_to(to));
+    }
+
+    /// Closes an outline of the region, and covers the region if it is large.
+    pub(super) fn close_region(&mut self) {
+        self.region.close();
+        if self.region.vertices() > MANY_VERTICES {
+            self.cover_region();
+        }
+    }
+
+    /// Covers the region.
+    pub(super) fn cover_region(&mut self) {
+        if self.region.is_empty() {
+            return;
+        }
+        let region = Arc::new(self.region.take());
+        for rows in region.pieces() {
+            if !self.chunk.is_empty() {
+                self.next_chunk();
+            }
+            self.chunk.region(Arc::clone(&region), rows);
+        }
+    }
+}
