@@ -41,7 +41,7 @@ pub(crate) use evaluator::{Evaluator, Moment};
 pub(crate) use spans::{Division, Ranks, walk_with};
 pub(crate) use start::Standing;
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::geometry::Frame;
 use crate::graph::CompileError;
@@ -178,6 +178,12 @@ pub trait Visitor {
     fn run(&mut self, run: &Run<'_>) -> Result<(), Self::Error> {
         run.elements()
             .try_for_each(|element| self.element(&element))
+    }
+
+    /// Returns the ages of the fractals that are visited, which are all unless a visitor overrides this.
+    /// Fractals of other ages are not counted in the numbers of the others.
+    fn ages(&self) -> RangeInclusive<u32> {
+        0..=u32::MAX
     }
 
     /// Ends the fractal. `joined` is whether its last element reaches the end of the chain from which the

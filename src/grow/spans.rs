@@ -7,7 +7,7 @@
 //! taken in order, with both.
 
 use std::num::NonZero;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::graph::Graph;
@@ -445,6 +445,10 @@ where
         self.asked.enter(subtree)
     }
 
+    fn ages(&self) -> RangeInclusive<u32> {
+        self.asked.ages()
+    }
+
     fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error> {
         self.make_room()?;
         self.is_open = true;
@@ -530,6 +534,10 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
 
     fn cuts(&self) -> Option<f64> {
         self.visitor.cuts()
+    }
+
+    fn ages(&self) -> RangeInclusive<u32> {
+        self.visitor.ages()
     }
 
     fn begin(&mut self, fractal: Fractal) -> Result<(), V::Error> {

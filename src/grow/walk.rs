@@ -1,3 +1,4 @@
+use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
 use crate::graph::{CompileError, Graph, Replacement};
@@ -106,6 +107,8 @@ pub(super) trait Sink {
 
     /// As [`Visitor::enter`].
     fn enter(&mut self, subtree: &Subtree) -> Enter;
+    /// Returns [`Visitor::ages`].
+    fn ages(&self) -> RangeInclusive<u32>;
     /// A fractal begins that was born in a step.
     fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error>;
     /// Elements of the fractal, or what stands for them.
@@ -169,6 +172,7 @@ pub(super) fn send<'g, S: Sink>(
         },
         stop,
         census,
+        ages: sink.ages(),
         sink,
         fractals: 0,
     };
@@ -182,6 +186,8 @@ struct Walk<'g, 'v, S> {
     leads_to_seeds: Vec<bool>,
     stop: Stop<'v>,
     census: Option<&'g Census>,
+    /// Ages of the fractals that are visited.
+    ages: RangeInclusive<u32>,
     sink: &'v mut S,
     fractals: u64,
 }
@@ -190,10 +196,16 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
     fn run(&mut self, first: Start<'g>) -> Result<(), S::Error> {
         let mut parents = Vec::new();
         let mut next = Some(first);
+        // Later seeds are too young.
+        let last_birth = self.steps.saturating_sub(*self.ages.start());
         loop {
             if let Some(start) = next.take() {
-                self.fractal(&start)?;
-                if self.graph.seeds && start.born < self.steps {
+                // Nothing may be left of what has been seeded before.
+                let age = self.steps.saturating_sub(start.born);
+                if self.ages.contains(&age) {
+                    self.fractal(&start, age)?;
+                }
+                if self.graph.seeds && start.born < last_birth {
                     parents.push(Parent::new(self.graph, start));
                 }
             }
@@ -229,7 +241,7 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
                 Next::End => {
                     parent.take_sown(self.graph, u32::MAX);
                     parent.queue.reverse();
-                    if parent.queue.is_empty() && !parent.go_on(self.graph, self.steps) {
+                    if parent.queue.is_empty() && !parent.go_on(self.graph, last_birth) {
                         parents.pop();
                     }
                 }
@@ -239,11 +251,10 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
     }
 
     /// The elements of one fractal of the last approximant.
-    fn fractal(&mut self, start: &Start<'g>) -> Result<(), S::Error> {
+    fn fractal(&mut self, start: &Start<'g>, age: u32) -> Result<(), S::Error> {
         let fractal = Fractal {
             number: self.fractals,
-            // Nothing may be left of what has been seeded before.
-            age: self.steps.saturating_sub(start.born),
+            age,
             is_ring: start.chain().is_ring(),
         };
         self.fractals += 1;
@@ -350,6 +361,10 @@ impl<V: Visitor> Sink for Direct<'_, '_, V> {
         self.visiting.visitor.enter(subtree)
     }
 
+    fn ages(&self) -> RangeInclusive<u32> {
+        self.visiting.visitor.ages()
+    }
+
     fn begin(&mut self, fractal: Fractal, _: u32) -> Result<(), Self::Error> {
         self.tally.begin(1);
         self.visiting.begin(fractal)
@@ -377,5 +392,89 @@ impl<V: Visitor> Sink for Direct<'_, '_, V> {
     #[inline]
     fn visit(&mut self, count: u64) -> Result<(), Self::Error> {
         self.tally.visit(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::convert::Infallible;
+    use std::ops::RangeInclusive;
+
+    use super::{Growth, walk};
+    use crate::catalogue::Catalogue;
+    use crate::document::Document;
+    use crate::grow::{Element, Enter, Fractal, Subtree, Visitor};
+
+    /// Records the elements of fractals of some ages, by age, and the number of calls of `enter`.
+    struct Aged {
+        ages: RangeInclusive<u32>,
+        age: u32,
+        seen: BTreeMap<u32, Vec<String>>,
+        asked: u64,
+    }
+
+    impl Visitor for Aged {
+        type Error = Infallible;
+
+        fn ages(&self) -> RangeInclusive<u32> {
+            self.ages.clone()
+        }
+
+        fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+            self.age = fractal.age;
+            Ok(())
+        }
+
+        fn enter(&mut self, _: &Subtree) -> Enter {
+            self.asked += 1;
+            Enter::Replace
+        }
+
+        fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+            let seen = self.seen.entry(self.age).or_default();
+            seen.push(format!("{element:?}"));
+            Ok(())
+        }
+
+        fn end(&mut self, _: bool) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    /// Fractals of other ages are not looked at.
+    #[test]
+    fn fractals_of_one_age_are_those_of_all() {
+        let catalogue = Catalogue::embedded();
+        for name in [
+            "self-seeding-square",
+            "self-seeding-square-adjacent",
+            "koch",
+        ] {
+            let source = catalogue.rule(name).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            let graph = document.resolve(&[]).unwrap().0.compile(5).unwrap();
+            let of = |ages: RangeInclusive<u32>| {
+                let mut aged = Aged {
+                    ages,
+                    age: 0,
+                    seen: BTreeMap::new(),
+                    asked: 0,
+                };
+                walk(&graph, &Growth::steps(5), &mut aged).unwrap();
+                aged
+            };
+            let all = of(0..=u32::MAX);
+            let mut asked = 0;
+            for age in 0..=6 {
+                let one = of(age..=age);
+                assert!(one.seen.keys().all(|&seen| seen == age), "{name} at {age}");
+                assert_eq!(one.seen.get(&age), all.seen.get(&age), "{name} at {age}");
+                asked += one.asked;
+            }
+            assert!(asked <= 2 * all.asked, "{name}: {asked} for {}", all.asked);
+            let young = of(0..=2);
+            assert!(young.seen.iter().eq(all.seen.range(..=2)), "{name}");
+        }
     }
 }

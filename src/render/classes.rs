@@ -110,9 +110,16 @@ impl Classes {
 
     /// Returns the steps in which the elements of a class are born; `None` if classes do not depend on steps.
     pub(super) fn steps(&self, class: u64) -> Option<RangeInclusive<u32>> {
-        if self.by != ColorBy::Step {
-            return None;
-        }
+        (self.by == ColorBy::Step).then(|| self.values(class))?
+    }
+
+    /// Returns the ages of the fractals whose elements are of a class; `None` if they may be any.
+    pub(super) fn ages(&self, class: u64) -> Option<RangeInclusive<u32>> {
+        (self.by == ColorBy::Age).then(|| self.values(class))?
+    }
+
+    /// Returns the values of a class, in steps.
+    fn values(&self, class: u64) -> Option<RangeInclusive<u32>> {
         let first = (0..=self.largest).find(|&step| self.of_value(step) >= class)?;
         let mut steps = (0..=self.largest).rev();
         let last = steps.find(|&step| self.of_value(step) <= class)?;

@@ -5,12 +5,16 @@ use std::collections::BTreeSet;
 use crate::geometry::{Bounds, Direction};
 use crate::graph::{Evaluated, Graph, Object, Replacement};
 use crate::grow::{Census, Growth};
+use crate::rule::Placement;
 use crate::style::{ColorBy, Style};
 
 use super::{Classes, Survey};
 
 /// Size of a set, relative to the unit length and to its coordinates, below which it is surveyed by a walk.
 const SPECK: f64 = 1e-6;
+
+/// Maximum number of steps for which the ages of seeded fractals are computed.
+const MOST_AGES: u32 = 256;
 
 /// Maximum number of steps of a forecast; beyond it the set is surveyed by a walk.
 const MOST_STEPS: u32 = 10_000;
@@ -44,12 +48,12 @@ impl<'g> Survey<'g> {
         seeds: bool,
     ) -> Option<Self> {
         let mut survey = Self::new(graph, style, steps);
-        let stands = Standing::at(graph, growth.steps)?;
+        let tells_ages = style.color_by == ColorBy::Age && seeds;
+        let stands = Standing::at(graph, growth.steps, tells_ages)?;
         survey.bounds = survey.known_bounds(growth)?;
         let used: Vec<u128> = match style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
-            // The ages of seeded fractals are not computed here.
-            ColorBy::Age if seeds => return None,
+            ColorBy::Age if seeds => stands.values(|stands| (growth.steps - stands.seeded).into()),
             ColorBy::Age => vec![growth.steps.into()],
             ColorBy::Fractal | ColorBy::Index => Vec::new(),
             ColorBy::Step => stands.values(|stands| stands.born.into()),
@@ -115,22 +119,28 @@ struct Kind {
     object: usize,
     direction: Direction,
     born: u32,
+    /// Step of birth of its fractal, if ages are computed; otherwise 0.
+    seeded: u32,
 }
 
 /// All kinds of visible elements of an approximant.
 struct Standing(BTreeSet<Kind>);
 
 impl Standing {
-    /// Computes the kinds; `None` if they depend on draws.
-    fn at(graph: &Graph, steps: u32) -> Option<Self> {
+    /// Computes the kinds, with the births of their fractals if `tells_ages`; `None` if they depend on draws,
+    /// or if there may be many ages.
+    fn at(graph: &Graph, steps: u32, tells_ages: bool) -> Option<Self> {
+        if tells_ages && (steps > MOST_AGES || !graph.roots.elements.is_empty()) {
+            return None;
+        }
         let mut stand = BTreeSet::new();
         let initiator = graph.initiator(steps).instances.iter();
-        let mut born: BTreeSet<(usize, Direction)> = initiator
-            .map(|instance| (instance.object, instance.frame.direction))
+        let mut born: BTreeSet<(usize, Direction, u32)> = initiator
+            .map(|instance| (instance.object, instance.frame.direction, 0))
             .collect();
         for level in 0..=steps {
             let mut next = BTreeSet::new();
-            for &(object, direction) in &born {
+            for &(object, direction, seeded) in &born {
                 let replacement = &graph.objects()[object].replacement;
                 if level == steps || matches!(replacement, Replacement::Kept) {
                     if graph.objects()[object].visible {
@@ -138,26 +148,40 @@ impl Standing {
                             object,
                             direction,
                             born: level,
+                            seeded,
                         });
                     }
                     continue;
                 }
+                let is_sown = |placement: Placement| tells_ages && placement.seeds();
                 // The direction is wrong for parts placed as the initiator, but their bounding box is unknown.
                 match replacement {
-                    Replacement::Fixed(production) => next.extend(
-                        production
-                            .placed_instances()
-                            .map(|(_, child)| (child.object, direction * child.frame.direction)),
-                    ),
+                    Replacement::Fixed(production) => {
+                        next.extend(production.placed_instances().map(|(placement, child)| {
+                            let direction = direction * child.frame.direction;
+                            let seeded = if is_sown(placement) {
+                                level + 1
+                            } else {
+                                seeded
+                            };
+                            (child.object, direction, seeded)
+                        }));
+                    }
                     Replacement::Evaluated(alternatives) => {
                         let ([only], Evaluated::Rule(rule)) =
                             (&alternatives[..], graph.evaluated())
                         else {
                             return None;
                         };
+                        if graph.parts(only).iter().any(|part| is_sown(part.placement)) {
+                            return None;
+                        }
                         let elements = rule.generators()[only.generator].elements();
                         let directions = elements.map(|element| direction * element.direction);
-                        next.extend(only.objects.iter().copied().zip(directions));
+                        let children = only.objects.iter().zip(directions);
+                        next.extend(
+                            children.map(|(&object, direction)| (object, direction, seeded)),
+                        );
                     }
                     Replacement::Kept | Replacement::Beyond => {}
                 }
@@ -189,7 +213,7 @@ mod tests {
     fn what_the_graph_tells_is_what_a_walk_finds() {
         let catalogue = Catalogue::embedded();
         let entries = catalogue.entries();
-        let mut told = 0;
+        let [mut told, mut aged] = [0; 2];
         for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
@@ -208,6 +232,7 @@ mod tests {
                             continue;
                         };
                         told += 1;
+                        aged += u32::from(graph.seeds && *color_by == ColorBy::Age);
                         let mut walked = Survey::new(&graph, &style, 3);
                         walk(&graph, &growth, &mut walked).unwrap();
                         let what = format!("{} at {steps} by {color_by:?}", entry.name);
@@ -228,7 +253,7 @@ mod tests {
                 }
             }
         }
-        assert!(told > 1000, "{told}");
+        assert!(told > 1000 && aged > 10, "{told}, {aged} of ages");
     }
     /// The cases are elements that are drawn in some steps only, and a set that has shrunk to a speck.
     #[test]

@@ -11,7 +11,7 @@ pub(super) use mark::{Kind, Line, Look, Mark, Sketch, class_width, width_class};
 pub(super) use speck::SPECK_WIDTHS;
 
 use std::io;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -439,6 +439,14 @@ impl Visitor for Sketcher<'_> {
 
     fn cuts(&self) -> Option<f64> {
         self.scene.sight.shortest()
+    }
+
+    fn ages(&self) -> RangeInclusive<u32> {
+        let ages = match self.pass {
+            Pass::Class(class) => self.scene.classes.ages(class),
+            Pass::Areas | Pass::Along => None,
+        };
+        ages.unwrap_or(0..=u32::MAX)
     }
 
     fn go_on(&mut self, fractal: Fractal) {
