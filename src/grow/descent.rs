@@ -513,7 +513,18 @@ impl<'g> Descent<'g> {
             Replacement::Fixed(production) => Ok(production
                 .seeds
                 .iter()
-                .map(|seed| start(seed, StartChain::Fixed(&seed.chain)))
+                .enumerate()
+                .map(|(number, seed)| {
+                    let chain = &seed.chain;
+                    let seed_of = [found.object, number];
+                    start(
+                        seed,
+                        StartChain::Fixed {
+                            chain,
+                            seed: seed_of,
+                        },
+                    )
+                })
                 .collect()),
             _ => {
                 let number = self.evaluate(&standing, found.object, found.level, found.rank)?;

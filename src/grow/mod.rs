@@ -13,6 +13,7 @@
 mod block;
 mod cells;
 mod census;
+mod colony;
 mod count;
 mod descent;
 mod evaluator;
@@ -27,6 +28,7 @@ mod tally;
 mod walk;
 
 pub use block::{Run, Stick};
+pub use colony::{Colony, Taken};
 pub use count::{Counted, count};
 pub use extent::extent;
 pub(crate) use outlines::{OutlineError, outlines};
@@ -37,6 +39,7 @@ pub use walk::{Growth, Walked, walk};
 
 pub(crate) use cells::{Field, Found, Layer, LimitCells, Search, Stopped};
 pub(crate) use census::{Census, Kind};
+pub(crate) use colony::{ColonyKind, ColonyKinds};
 pub(crate) use evaluator::{Evaluator, Moment};
 pub(crate) use spans::{Division, Ranks, walk_with};
 pub(crate) use start::Standing;
@@ -184,6 +187,21 @@ pub trait Visitor {
     /// Fractals of other ages are not counted in the numbers of the others.
     fn ages(&self) -> RangeInclusive<u32> {
         0..=u32::MAX
+    }
+
+    /// Tells how much of a colony the visitor takes without a walk, by [`Visitor::colony`]. Elements are then
+    /// not asked for one by one, and no fractal begins or ends. Not asked where seeds are not fixed.
+    fn takes(&self, _: &Colony<'_>) -> Taken {
+        Taken::Nothing
+    }
+
+    /// Takes as much of a colony as it was said to, between two fractals.
+    ///
+    /// # Errors
+    ///
+    /// Whatever ends the walk.
+    fn colony(&mut self, _: &Colony<'_>, _: Taken) -> Result<(), Self::Error> {
+        Ok(())
     }
 
     /// Ends the fractal. `joined` is whether its last element reaches the end of the chain from which the

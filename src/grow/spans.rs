@@ -15,6 +15,7 @@ use crate::parallel::{Line, Team, with_team};
 
 use super::block::{Blocks, MOST_LEAVES};
 use super::census::Census;
+use super::colony::{Colony, Taken};
 use super::descent::{Descent, Found, FoundSubtree, Next, Stop};
 use super::sizes::Sizes;
 use super::start::Start;
@@ -178,11 +179,13 @@ where
 }
 
 /// Item of a span.
-enum Item {
+enum Item<'w> {
     /// Beginning of a fractal, with the step of its birth.
     Begin(Fractal, u32),
     Element(Found),
     Subtree(FoundSubtree),
+    /// As much as is taken of a colony.
+    Colony(Colony<'w>, Taken),
     /// End of the fractal; the flag holds only if the preceding element ends where its subtree does.
     End(bool),
 }
@@ -199,18 +202,18 @@ struct Position {
 
 /// Consecutive part of a walk.
 #[derive(Default)]
-struct Span {
+struct Span<'w> {
     from: Position,
     /// Position where it ends.
     to: Position,
-    items: Vec<Item>,
+    items: Vec<Item<'w>>,
     /// Upper bound of its number of elements, plus 1 for each subtree and each fractal that begins.
     size: u64,
     /// Number of visits above its subtrees.
     visited: u64,
 }
 
-impl Span {
+impl<'w> Span<'w> {
     /// Restarts at the end of another span.
     fn follow(&mut self, other: &Self) {
         self.items.clear();
@@ -218,14 +221,14 @@ impl Span {
         (self.size, self.visited) = (0, 0);
     }
 
-    fn push(&mut self, item: Item, size: u64) {
+    fn push(&mut self, item: Item<'w>, size: u64) {
         self.items.push(item);
         self.size += size;
     }
 
     /// Returns whether the span begins within a fractal.
     fn goes_on(&self) -> bool {
-        !matches!(self.items.first(), Some(Item::Begin(..)))
+        !matches!(self.items.first(), Some(Item::Begin(..) | Item::Colony(..)))
     }
 }
 
@@ -234,7 +237,7 @@ struct Job<'w, V: Visitor> {
     graph: &'w Graph,
     blocks: Option<Arc<Blocks>>,
     descent: Descent<'w>,
-    span: Span,
+    span: Span<'w>,
     /// Range of ranks that the visitor receives, if known before.
     ranks: Option<Range<u128>>,
     visitor: V,
@@ -306,6 +309,10 @@ impl<V: Visitor> Job<'_, V> {
                         outcome.visited += std::mem::take(&mut self.descent.visited);
                     }
                 }
+                Item::Colony(colony, taken) => {
+                    outcome.fractals += taken.walked().fractals;
+                    visiting.colony(colony, *taken)?;
+                }
                 Item::End(meets_end) => visiting.end(joined && *meets_end)?,
             }
             joined = match item {
@@ -370,7 +377,7 @@ struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
     blocks: Option<Arc<Blocks>>,
     /// Visitor that decides about elements above the subtrees.
     asked: V,
-    span: Span,
+    span: Span<'w>,
     /// [`Seam::before`] of the remaining spans, if known from an earlier walk.
     told: &'w [u128],
     /// Census for ranks that include elements that are not visited.
@@ -432,7 +439,7 @@ where
     }
 }
 
-impl<'w, V, F, T> Sink for Spans<'_, 'w, '_, V, F, T>
+impl<'w, V, F, T> Sink<'w> for Spans<'_, 'w, '_, V, F, T>
 where
     V: Visitor + Send + 'w,
     V::Error: Send + 'w,
@@ -486,6 +493,16 @@ where
     fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
         self.is_open = false;
         self.span.push(Item::End(joined), 0);
+        Ok(())
+    }
+
+    fn takes(&self, colony: &Colony<'_>) -> Taken {
+        self.asked.takes(colony)
+    }
+
+    fn colony(&mut self, colony: Colony<'w>, taken: Taken) -> Result<(), Self::Error> {
+        self.make_room()?;
+        self.span.push(Item::Colony(colony, taken), 1);
         Ok(())
     }
 
@@ -559,6 +576,15 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
     fn run(&mut self, run: &Run<'_>) -> Result<(), V::Error> {
         self.visitor.run(run)?;
         self.count(run.count())
+    }
+
+    fn takes(&self, colony: &Colony<'_>) -> Taken {
+        self.visitor.takes(colony)
+    }
+
+    fn colony(&mut self, colony: &Colony<'_>, taken: Taken) -> Result<(), V::Error> {
+        self.visitor.colony(colony, taken)?;
+        self.count(1)
     }
 
     fn end(&mut self, joined: bool) -> Result<(), V::Error> {

@@ -90,7 +90,11 @@ pub(super) struct Start<'g> {
 pub(super) enum StartChain<'g> {
     /// Initiator, or a fractal seeded before: its instances are roots.
     Initiator(&'g Chain),
-    Fixed(&'g Chain),
+    /// What an object has seeded, by both numbers.
+    Fixed {
+        chain: &'g Chain,
+        seed: [usize; 2],
+    },
     Evaluated(Chain),
 }
 
@@ -131,7 +135,7 @@ impl<'g> Start<'g> {
 
     pub(super) fn chain(&self) -> &Chain {
         match &self.chain {
-            StartChain::Initiator(chain) | StartChain::Fixed(chain) => chain,
+            StartChain::Initiator(chain) | StartChain::Fixed { chain, .. } => chain,
             StartChain::Evaluated(chain) => chain,
         }
     }

@@ -1,10 +1,11 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
-use crate::graph::{CompileError, Graph, Replacement};
+use crate::graph::{CompileError, Graph, Instance, Object, Replacement};
 
 use super::block::{Blocks, Run};
 use super::census::Census;
+use super::colony::{Colony, Taken};
 use super::descent::{Descent, Found, FoundRun, Next, Stop};
 use super::start::Start;
 use super::tally::Tally;
@@ -54,7 +55,7 @@ struct Parent<'g> {
     /// The approximant whose elements are being replaced, and the walk over it.
     step: u32,
     descent: Descent<'g>,
-    /// Whether that approximant has an element that can be replaced.
+    /// Whether that approximant has an element whose place others take that may seed.
     is_fertile: bool,
     /// Seeds that are still to be walked, the next one last.
     queue: Vec<Start<'g>>,
@@ -102,7 +103,7 @@ impl<'g> Parent<'g> {
 }
 
 /// Who gets what a walk comes to.
-pub(super) trait Sink {
+pub(super) trait Sink<'g> {
     type Error: From<CompileError>;
 
     /// As [`Visitor::enter`].
@@ -115,6 +116,10 @@ pub(super) trait Sink {
     fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
     /// The fractal ends.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
+    /// As [`Visitor::takes`].
+    fn takes(&self, colony: &Colony<'_>) -> Taken;
+    /// A colony in the place of what is taken of it.
+    fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error>;
     /// So many elements have been visited on the way.
     fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
 }
@@ -150,40 +155,46 @@ pub fn walk<V: Visitor>(
 }
 
 /// Walks and sends what is found to a sink. With a census ranks count what is not visited.
-pub(super) fn send<'g, S: Sink>(
+pub(super) fn send<'g, S: Sink<'g>>(
     graph: &'g Graph,
     growth: &Growth<'_>,
     stop: Stop<'_>,
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    assert!(
-        graph.depth().is_none_or(|depth| depth >= growth.steps),
-        "the graph is not resolved for {} steps",
-        growth.steps
-    );
-    let mut walk = Walk {
-        graph,
-        steps: growth.steps,
-        leads_to_seeds: if graph.seeds {
-            graph.leads_to_seeds()
-        } else {
-            Vec::new()
-        },
-        stop,
-        census,
-        ages: sink.ages(),
-        sink,
-        fractals: 0,
-    };
+    let mut walk = Walk::new(graph, growth.steps, stop, census, sink);
     walk.run(Start::initiator(graph, growth.steps, growth.seed))
+}
+
+/// Walks over a fractal that has been seeded, with all that it seeds in turn if that is asked for.
+pub(super) fn walk_over<V: Visitor>(
+    graph: &Graph,
+    steps: u32,
+    start: Start<'_>,
+    is_whole: bool,
+    visitor: &mut V,
+) -> Result<Walked, WalkError<V::Error>> {
+    let mut sink = Direct {
+        visiting: Visiting::new(graph, visitor),
+        tally: Tally::new(&Growth::steps(steps)),
+    };
+    let mut walk = Walk::new(graph, steps, Stop::Nowhere, None, &mut sink);
+    if is_whole {
+        walk.run(start)?;
+    } else {
+        let age = steps.saturating_sub(start.born);
+        walk.fractal(&start, age)?;
+    }
+    Ok(sink.tally.finish())
 }
 
 struct Walk<'g, 'v, S> {
     graph: &'g Graph,
     steps: u32,
-    /// Whether seeds may come of an object, if there are any.
+    /// Whether seeds may come of an object, if there are any,
     leads_to_seeds: Vec<bool>,
+    /// and whether they may after its own.
+    goes_on: Vec<bool>,
     stop: Stop<'v>,
     census: Option<&'g Census>,
     /// Ages of the fractals that are visited.
@@ -192,7 +203,42 @@ struct Walk<'g, 'v, S> {
     fractals: u64,
 }
 
-impl<'g, S: Sink> Walk<'g, '_, S> {
+impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
+    fn new(
+        graph: &'g Graph,
+        steps: u32,
+        stop: Stop<'v>,
+        census: Option<&'g Census>,
+        sink: &'v mut S,
+    ) -> Self {
+        assert!(
+            graph.depth().is_none_or(|depth| depth >= steps),
+            "the graph is not resolved for {steps} steps",
+        );
+        let leads_to_seeds = if graph.seeds {
+            graph.leads_to_seeds()
+        } else {
+            Vec::new()
+        };
+        let leads = |instance: &Instance| leads_to_seeds[instance.object];
+        let goes_on = |object: &Object| match &object.replacement {
+            Replacement::Fixed(production) => production.body.instances.iter().any(leads),
+            _ => true,
+        };
+        let objects = graph.objects().iter().filter(|_| graph.seeds);
+        Self {
+            graph,
+            steps,
+            goes_on: objects.map(goes_on).collect(),
+            leads_to_seeds,
+            stop,
+            census,
+            ages: sink.ages(),
+            sink,
+            fractals: 0,
+        }
+    }
+
     fn run(&mut self, first: Start<'g>) -> Result<(), S::Error> {
         let mut parents = Vec::new();
         let mut next = Some(first);
@@ -202,10 +248,12 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             if let Some(start) = next.take() {
                 // Nothing may be left of what has been seeded before.
                 let age = self.steps.saturating_sub(start.born);
-                if self.ages.contains(&age) {
+                let taken = self.taken(&start)?;
+                if taken == Taken::Nothing && self.ages.contains(&age) {
                     self.fractal(&start, age)?;
                 }
-                if self.graph.seeds && start.born < last_birth {
+                let is_whole = matches!(taken, Taken::Whole(_) | Taken::Unseen);
+                if self.graph.seeds && start.born < last_birth && !is_whole {
                     parents.push(Parent::new(self.graph, start));
                 }
             }
@@ -230,7 +278,7 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             match found {
                 Next::Element(found) => {
                     if found.level == parent.step && self.replaces(&found) {
-                        parent.is_fertile = true;
+                        parent.is_fertile |= self.goes_on[found.object];
                         parent.take_sown(self.graph, found.standing.root);
                         parent.queue.extend(parent.descent.seeds(&found)?);
                         parent.queue.reverse();
@@ -248,6 +296,20 @@ impl<'g, S: Sink> Walk<'g, '_, S> {
             }
             self.sink.visit(visited)?;
         }
+    }
+
+    /// Gives the sink what it takes of a colony, and tells what.
+    fn taken(&mut self, start: &Start<'g>) -> Result<Taken, S::Error> {
+        let Some(colony) = Colony::of(self.graph, start, self.steps) else {
+            return Ok(Taken::Nothing);
+        };
+        let taken = self.sink.takes(&colony);
+        if !matches!(taken, Taken::Nothing | Taken::Unseen) {
+            self.fractals += taken.walked().fractals;
+            self.sink.colony(colony, taken)?;
+            self.sink.visit(1)?;
+        }
+        Ok(taken)
     }
 
     /// The elements of one fractal of the last approximant.
@@ -342,6 +404,16 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
         self.visitor.run(&run).map_err(WalkError::Visitor)
     }
 
+    pub(super) fn colony(
+        &mut self,
+        colony: &Colony<'_>,
+        taken: Taken,
+    ) -> Result<(), WalkError<V::Error>> {
+        self.seen += taken.walked().elements;
+        let visited = self.visitor.colony(colony, taken);
+        visited.map_err(WalkError::Visitor)
+    }
+
     pub(super) fn end(&mut self, joined: bool) -> Result<(), WalkError<V::Error>> {
         self.visitor.end(joined).map_err(WalkError::Visitor)
     }
@@ -353,7 +425,7 @@ struct Direct<'g, 'v, V> {
     tally: Tally<'v>,
 }
 
-impl<V: Visitor> Sink for Direct<'_, '_, V> {
+impl<'g, V: Visitor> Sink<'g> for Direct<'_, '_, V> {
     type Error = WalkError<V::Error>;
 
     #[inline]
@@ -387,6 +459,17 @@ impl<V: Visitor> Sink for Direct<'_, '_, V> {
 
     fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
         self.visiting.end(joined)
+    }
+
+    fn takes(&self, colony: &Colony<'_>) -> Taken {
+        self.visiting.visitor.takes(colony)
+    }
+
+    fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error> {
+        let Walked { elements, fractals } = taken.walked();
+        self.tally.begin(fractals);
+        self.tally.count(elements)?;
+        self.visiting.colony(&colony, taken)
     }
 
     #[inline]

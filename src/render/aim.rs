@@ -5,6 +5,7 @@ use crate::grow::Subtree;
 
 use super::scene::{Pass, Scene};
 use super::sketch::stands_alone;
+use super::stamps::Painted;
 
 /// What a pass is to paint, as far as it is known of an element before it is replaced: what becomes of
 /// others is left out.
@@ -50,6 +51,20 @@ impl Aim {
             let length = subtree.frame.stretch();
             subtree.born < *steps.end() && scene.sight.lasts(length, before)
         })
+    }
+
+    /// What of any elements is painted in a pass, if their births or objects tell it and nothing needs to be
+    /// known of the others.
+    pub(super) fn painted(&self, scene: &Scene<'_>, pass: Pass) -> Option<Painted> {
+        let Pass::Class(class) = pass else {
+            return None;
+        };
+        match &self.steps {
+            _ if !self.stands_alone => None,
+            Some(steps) => Some(Painted::Steps(*steps.start(), *steps.end())),
+            None if self.tells_objects() => Some(Painted::Class(class)),
+            None => (scene.classes.count() == 1).then_some(Painted::All),
+        }
     }
 
     /// Whether objects tell what is painted.

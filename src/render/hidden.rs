@@ -27,7 +27,8 @@ const BROADENED: f64 = 0.75;
 ///
 /// - all that hides has been drawn already, and is drawn once: nothing is hidden by itself, or by what
 ///   may yet be left out;
-/// - coverage of one opaque colour neither grows nor changes where it is whole;
+/// - coverage of one opaque colour neither grows nor changes where it is whole; of areas and strokes in two
+///   colours, which are one path, the strokes lie on top and hide both;
 /// - what is left out joins nothing: lines that go on behind it begin where all is covered, and no caps
 ///   or corners show there;
 /// - all of it would be drawn as coverage, which has no order. Paths that are drawn in pieces, by the
@@ -90,8 +91,8 @@ impl Hidden {
     /// in pixels; where widths are relative, some may be.
     fn is_narrow(graph: &Graph, style: &Style) -> bool {
         let mut drawn = graph.objects().iter().filter(|object| object.visible);
-        let draws_lines =
-            drawn.any(|object| !graph.base_elements()[object.base_element].is_closed());
+        let draws_lines = style.outlines_polygons()
+            || drawn.any(|object| !graph.base_elements()[object.base_element].is_closed());
         match style.width {
             Width::Pixels(width) if draws_lines => {
                 width * graph.widest().unwrap_or(1.0) <= WIDEST_COVERED
@@ -104,7 +105,19 @@ impl Hidden {
     /// most.
     #[inline]
     pub(super) fn reach(&self, scene: &Scene<'_>, object: usize, length: f64) -> f64 {
-        self.reaches[object] * scene.canvas.scale() * length + self.overhang
+        self.reach_of(scene, self.reaches[object], length)
+    }
+
+    /// The same of what has a radius as a multiple of its length.
+    #[inline]
+    pub(super) fn reach_of(&self, scene: &Scene<'_>, radius: f64, length: f64) -> f64 {
+        radius * scene.canvas.scale() * length + self.overhang
+    }
+
+    /// How far from the middle of its frame what becomes of an object reaches without its strokes, as a
+    /// multiple of its length.
+    pub(super) fn radius(&self, object: usize) -> f64 {
+        self.reaches[object]
     }
 
     /// Whether all that becomes of an element of a class is.

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use crate::grow::Seam;
 use crate::style::{Cap, Colour, Join, Width};
 
+use super::aim::Aim;
 use super::coarse::Coarse;
 use super::comb::Comb;
+use super::filled::Filled;
 use super::hidden::Hidden;
 use super::pen;
 use super::scene::{Pass, Scene};
@@ -99,7 +101,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         }
         let Scene { classes, style, .. } = self.scene;
         let kinds = self.kinds();
-        let mut filled = None;
+        let mut filled: Option<Arc<Filled>> = None;
         let mut inks = BTreeSet::new();
         let all = match pass {
             Pass::Along => classes.all(),
@@ -115,15 +117,18 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                     kind,
                     ..Look::TUFTS
                 });
-                inks.insert(
-                    paint
-                        .fill
-                        .or(paint.stroke.map(|stroke| stroke.colour))?
-                        .rgba(),
-                );
-                filled = Some(self.tracer.filled(&paint)?);
+                let stroke = paint.stroke.map(|stroke| stroke.colour);
+                inks.extend([paint.fill, stroke].into_iter().flatten().map(Colour::rgba));
+                let known = self.tracer.filled(&paint)?;
+                if filled.is_some_and(|filled| !Arc::ptr_eq(&filled, &known)) {
+                    return None;
+                }
+                filled = Some(known);
             }
-            if inks.len() != 1 {
+            // Areas lie below the strokes of their own path only.
+            let is_one_path = kinds.len() == 1 && pass != Pass::Along && self.scene.has_one_width();
+            let most = if is_one_path { 2 } else { 1 };
+            if inks.is_empty() || inks.len() > most {
                 return None;
             }
         }
@@ -137,7 +142,12 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// What makes stamps, if they may be put in one opaque colour a class: where everything may be
     /// hidden that is covered already.
-    pub(super) fn stamps(&mut self, pass: Pass, hidden: Option<&Arc<Hidden>>) -> Option<Stamps> {
+    pub(super) fn stamps(
+        &mut self,
+        pass: Pass,
+        aim: &Aim,
+        hidden: Option<&Arc<Hidden>>,
+    ) -> Option<Stamps<'a>> {
         let hidden = hidden?;
         if pass == Pass::Along {
             self.colour = self.scene.classes.colour(0, self.scene.style);
@@ -150,8 +160,15 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             self.tracer.stencil(&paint)
         });
         let first = stencils.next()??;
-        let pen = stencils.try_fold(first.pen, |pen, stencil| Some(pen.or(stencil?.pen)))?;
-        Stamps::new(self.scene, Stencil { pen }, Arc::clone(hidden))
+        let stencil = stencils.try_fold(first, |all, stencil| {
+            let stencil = stencil?;
+            Some(Stencil {
+                pen: all.pen.or(stencil.pen),
+                outlines: all.outlines || stencil.outlines,
+            })
+        })?;
+        let painted = aim.painted(self.scene, pass);
+        Stamps::new(self.scene, stencil, painted, Arc::clone(hidden))
     }
 
     /// The kinds of what is drawn.

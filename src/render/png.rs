@@ -231,6 +231,14 @@ impl<'t, 'w> Png<'t, 'w> {
     }
 }
 
+/// The colours that the planes are drawn in, one or both, by those of areas and strokes.
+fn inks(fill: Option<Colour>, stroke: Option<Colour>) -> [Option<Colour>; 2] {
+    match (fill, stroke) {
+        (Some(fill), Some(stroke)) if fill != stroke => [Some(fill), Some(stroke)],
+        (fill, stroke) => [stroke.or(fill), None],
+    }
+}
+
 impl Surface for Png<'_, '_> {
     #[inline]
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
@@ -256,13 +264,10 @@ impl Surface for Png<'_, '_> {
         let has_holes = std::mem::take(&mut self.has_holes);
         self.covers = may_cover && is_opaque && !has_holes && (paint.stroke.is_none() || strokes);
         let stroke = paint.stroke.map(|stroke| stroke.colour);
-        let inks = match (
+        let inks = inks(
             paint.fill.filter(|_| self.covers),
             stroke.filter(|_| strokes),
-        ) {
-            (Some(fill), Some(stroke)) if fill != stroke => [Some(fill), Some(stroke)],
-            (fill, stroke) => [stroke.or(fill), None],
-        };
+        );
         if self.covers || strokes {
             self.part.begin(inks, self.threads);
             self.part.begin_layer(self.layer);
@@ -407,15 +412,14 @@ impl Surface for Png<'_, '_> {
     }
 
     fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
-        let pen = match (paint.fill, &paint.stroke) {
-            (Some(_), None) => None,
-            (None, Some(stroke)) => match self.nibs.nib(stroke.pen)? {
-                Nib::Round(pen) => Some(pen),
-                Nib::Hair(_) | Nib::Flat(_) => return None,
-            },
-            _ => return None,
+        let pen = match paint.stroke.map(|stroke| self.nibs.nib(stroke.pen)) {
+            None => None,
+            Some(Some(Nib::Round(pen))) => Some(pen),
+            Some(Some(Nib::Hair(_) | Nib::Flat(_)) | None) => return None,
         };
-        self.part.may_cover().then_some(Stencil { pen })
+        let outlines = paint.fill.is_some() && pen.is_some();
+        let draws = paint.fill.is_some() || pen.is_some();
+        (draws && self.part.may_cover()).then_some(Stencil { pen, outlines })
     }
 
     fn stamps(&mut self, stamps: &[Stamped]) {
@@ -427,13 +431,13 @@ impl Surface for Png<'_, '_> {
             let pen = stroke.pen;
             pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0
         };
-        let colour = match (paint.fill, &paint.stroke) {
-            (Some(fill), None) => Some(fill),
-            (None, Some(stroke)) if is_round(stroke) => Some(stroke.colour),
-            _ => None,
-        };
-        let is_opaque = colour.is_some_and(|colour| colour == colour.opaque());
-        (is_opaque && self.part.may_cover()).then(|| self.part.filled(self.threads))
+        let is_covered = paint.stroke.as_ref().is_none_or(is_round);
+        let inks = inks(paint.fill, paint.stroke.map(|stroke| stroke.colour));
+        let mut all = inks.iter().flatten();
+        let is_opaque = inks[0].is_some() && all.all(|ink| *ink == ink.opaque());
+        let top = usize::from(inks[1].is_some());
+        let is_known = is_covered && is_opaque && self.part.may_cover();
+        is_known.then(|| self.part.filled(top, self.threads))
     }
 
     fn layer(&mut self, layer: u64) {

@@ -2,7 +2,7 @@ use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::{Arc, OnceLock};
 
-use crate::graph::Graph;
+use crate::graph::{Graph, Object};
 use crate::grow::{self, Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
@@ -10,8 +10,9 @@ use crate::style::{ColorBy, Colour, Style, Width};
 use super::aim::Aim;
 use super::coarse::Coarse;
 use super::painter::Painter;
-use super::sight::Sight;
+use super::sight::{Sight, starts_rings};
 use super::sketch::{Means, Sketcher};
+use super::stamps::USES;
 use super::surface::{Pen, Surface};
 use super::survey::{Ranks, span};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
@@ -31,6 +32,8 @@ pub(crate) struct Scene<'a> {
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
+    /// How often a stamp should be used.
+    pub(super) uses: u64,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
     /// Outlines without what is too fine, once a surface has said what that is.
@@ -58,7 +61,9 @@ impl<'a> Scene<'a> {
             && matches!(style.width, Width::Pixels(_))
             && graph.widest().is_none()
             && classes.keep_fractals_whole();
-        let areas = (style.fill.is_some() && !together).then_some(Pass::Areas);
+        let is_open = |object: &Object| !graph.base_elements()[object.base_element].is_closed();
+        let has_areas = starts_rings(graph) && graph.objects().iter().any(is_open);
+        let areas = (style.fill.is_some() && !together && has_areas).then_some(Pass::Areas);
         let painted = if classes.come_in_order(graph) {
             vec![Pass::Along]
         } else {
@@ -81,9 +86,15 @@ impl<'a> Scene<'a> {
             elements: survey.elements,
             ranks: survey.ranks.clone(),
             is_to_detail: survey.is_to_detail,
+            uses: USES,
             fills_strokes: together && style.fill.is_some(),
             coarse: OnceLock::new(),
         }
+    }
+
+    /// Whether all strokes are as wide.
+    pub(super) fn has_one_width(&self) -> bool {
+        matches!(self.style.width, Width::Pixels(_)) && self.graph.widest().is_none()
     }
 }
 
@@ -116,13 +127,15 @@ impl Drawing for Scene<'_> {
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
             let hidden = painter.hidden(pass).map(Arc::new);
+            let aim = Arc::new(Aim::of(self, pass));
+            let stamps = painter.stamps(pass, &aim, hidden.as_ref());
             let means = Means {
                 comb: painter.comb().map(Arc::new),
                 coarse: painter.coarse(),
                 broadens: painter.broadens(),
-                stamps: painter.stamps(pass, hidden.as_ref()).map(Arc::new),
+                stamps: stamps.map(Arc::new),
                 hidden,
-                aim: Arc::new(Aim::of(self, pass)),
+                aim,
             };
             let fresh = || Sketcher::new(self, pass, means.clone());
             let walked = walk_with(
@@ -177,7 +190,7 @@ mod tests {
     use crate::render::layout::Layout;
     use crate::render::sketch::Means;
     use crate::render::{Detail, Format, Options, Size, write_drawing};
-    use crate::style::ColorBy;
+    use crate::style::{ColorBy, Colour};
 
     #[test]
     fn one_walk_paints_classes_that_come_in_order() {
@@ -234,6 +247,25 @@ mod tests {
                     "{name} on {threads} threads"
                 );
             }
+        }
+    }
+
+    /// Areas are those of fractals, of whose open elements each joins the one before.
+    #[test]
+    fn areas_are_looked_for_where_there_may_be_any() {
+        let catalogue = Catalogue::embedded();
+        for (name, has_areas) in [("mandala", false), ("koch", false), ("koch-island", true)] {
+            let source = catalogue.rule(name).unwrap();
+            let document = Document::read(&source, &catalogue).unwrap();
+            let model = document.resolve(&[]).unwrap().0;
+            let graph = model.compile(2).unwrap();
+            let mut options = Options::of(model.heading());
+            options.style.fill = Some(Colour::BLACK);
+            options.style.color_by = ColorBy::Step;
+            let growth = Growth::steps(2);
+            let layout = Layout::find(&graph, &growth, &options).unwrap();
+            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            assert_eq!(scene.passes.contains(&Pass::Areas), has_areas, "{name}");
         }
     }
 

@@ -15,7 +15,7 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, Enter, Fractal, Run, Subtree, Visitor};
+use crate::grow::{Colony, Element, Enter, Fractal, Run, Subtree, Taken, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
@@ -68,7 +68,7 @@ pub(super) struct Means<'a> {
     /// what need not be drawn,
     pub(super) hidden: Option<Arc<Hidden>>,
     /// what many runs cover, drawn once,
-    pub(super) stamps: Option<Arc<Stamps>>,
+    pub(super) stamps: Option<Arc<Stamps<'a>>>,
     /// and what the pass is to paint.
     pub(super) aim: Arc<Aim>,
 }
@@ -434,7 +434,8 @@ impl Visitor for Sketcher<'_> {
     fn longest_run(&self) -> u64 {
         let longest = span(self.scene.graph);
         let stamps = self.means.stamps.as_ref();
-        stamps.map_or(longest, |stamps| longest.min(stamps.longest_run))
+        let stamped = stamps.and_then(|stamps| stamps.longest_run());
+        stamped.map_or(longest, |stamped| longest.min(stamped))
     }
 
     fn cuts(&self) -> Option<f64> {
@@ -525,6 +526,16 @@ impl Visitor for Sketcher<'_> {
                 _ => run.elements().for_each(|element| self.see(&element)),
             },
         }
+        Ok(())
+    }
+
+    fn takes(&self, colony: &Colony<'_>) -> Taken {
+        let stamps = self.means.stamps.as_ref();
+        stamps.map_or(Taken::Nothing, |stamps| stamps.takes(colony))
+    }
+
+    fn colony(&mut self, colony: &Colony<'_>, _: Taken) -> io::Result<()> {
+        self.stamp_colony(colony);
         Ok(())
     }
 

@@ -1,36 +1,35 @@
-//! Stamps: what runs of small elements cover, drawn once for all that lie alike.
+//! Stamps: what runs of small elements cover, or small fractals, drawn once for all that lie alike.
 //!
 //! Where the maps of a graph turn elements to a few sides only, or all of a step to the same, runs are
-//! equal but for where they stand; so are filled elements of a few lengths. In pictures to a detail they
-//! are put on a grid that is some ten times as fine as the detail: of 1/128 of a pixel if there are enough
-//! of them, else of 1/64, and half as fine for lines, whose pens stand on a grid of 1/16. That moves them by
-//! no more than 1/128 of a pixel, lines by 1/64. What a run covers is worked out on the grid, so it hangs on
-//! nothing but the run, whoever draws it first.
+//! equal but for where they stand; so are filled elements of a few lengths, and fractals that have been
+//! seeded, with all that they seed in turn. In pictures to a detail they are put on a grid that is some ten
+//! times as fine as the detail: of 1/128 of a pixel if there are enough of them, else of 1/64, and half as
+//! fine for lines and outlines, whose pens stand on a grid of 1/16. That moves them by no more than 1/128 of
+//! a pixel, lines by 1/64. What a stamp covers is worked out on the grid, so it hangs on nothing but what it
+//! is of, whoever draws it first. Areas and their outlines in another colour are covered apart.
 //!
 //! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one
 //! by no more than 40/255, which are ten of the samples that tell its coverage.
 
+mod colonies;
+mod runs;
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
-use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
-use crate::grow::{Element, Run};
-use crate::mix::{MixMap, MixSet};
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::grow::Element;
+use crate::mix::MixMap;
 use crate::rule::Piece;
 
+use self::colonies::Colonies;
+pub(super) use self::colonies::Put;
+use self::runs::Runs;
 use super::hidden::Hidden;
 use super::png::{Sheet, Stamp};
 use super::scene::Scene;
+use super::sketch::Kind;
 use super::surface::{FINE, Position, Stamped, Stencil, position};
-
-/// Places to a pixel, along either axis, and the most elements of a run: the first of these for which
-/// there are enough runs. For lines half as many places; of outlines that have more than four pieces as
-/// many fewer elements, but no less than few.
-const GRIDS: [(f64, u64); 3] = [(128.0, 128), (128.0, 64), (64.0, 64)];
-
-/// The same where elements are not equally long.
-const UNEVEN_GRIDS: [(f64, u64); 3] = [(128.0, 64), (128.0, 16), (64.0, 16)];
-const FEW_ELEMENTS: u64 = 8;
 
 /// Steps to a pixel in which linear parts are told apart.
 const LINEAR: f64 = 4096.0;
@@ -43,10 +42,7 @@ const FEWEST_IN_PICTURE: u64 = 1 << 20;
 const LARGEST: f64 = 32.0;
 
 /// How often a stamp should be used.
-const USES: u64 = 3;
-
-/// More sides than this are too many.
-const MOST_SIDES: usize = 1 << 8;
+pub(super) const USES: u64 = 3;
 
 /// What is kept of all stamps: no more bytes than this.
 const MOST_MEMORY: usize = 1 << 26;
@@ -54,15 +50,24 @@ const MOST_MEMORY: usize = 1 << 26;
 /// Tables that are locked apart.
 const TABLES: u64 = 64;
 
-/// What runs have in common that cover the same but for where they stand.
+/// What runs, or colonies, have in common that cover the same but for where they stand.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
-    run: u64,
+    of: Of,
     linear: [i64; 4],
     painted: Painted,
 }
 
-/// The stamps of runs that are alike, by place in a pixel; none where nothing could be drawn.
+/// What a stamp is of.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Of {
+    /// A run, by its number.
+    Run(u64),
+    /// A colony, by the number of its kind.
+    Colony(usize),
+}
+
+/// The stamps of what is alike, by place in a pixel; none where nothing could be drawn.
 type Places = [OnceLock<Option<Arc<Stamp>>>];
 
 /// What of a run is painted.
@@ -75,21 +80,37 @@ pub(super) enum Painted {
     Class(u64),
 }
 
+impl Painted {
+    /// The same with steps from one on, so that those of other steps are the same.
+    fn since(self, born: u32) -> Self {
+        match self {
+            Self::Steps(first, last) => {
+                let [first, last] = [first, last].map(|step| step.saturating_sub(born));
+                Self::Steps(first, last)
+            }
+            painted => painted,
+        }
+    }
+}
+
 /// The stamps of a pass.
-pub(super) struct Stamps {
+pub(super) struct Stamps<'a> {
     stencil: Stencil,
     hidden: Arc<Hidden>,
-    /// The most elements of a run, and how many plain ones one of them is worth.
-    pub(super) longest_run: u64,
-    worth: u64,
-    phases: f64,
+    runs: Option<Runs>,
+    colonies: Option<Colonies<'a>>,
     tables: Vec<RwLock<MixMap<Key, Arc<Places>>>>,
     bytes: AtomicUsize,
 }
 
-impl Stamps {
-    /// Those of a scene, if many of its runs lie alike.
-    pub(super) fn new(scene: &Scene<'_>, stencil: Stencil, hidden: Arc<Hidden>) -> Option<Self> {
+impl<'a> Stamps<'a> {
+    /// Those of a scene, if many of its runs lie alike, or of its fractals, of which something is painted.
+    pub(super) fn new(
+        scene: &Scene<'a>,
+        stencil: Stencil,
+        painted: Option<Painted>,
+        hidden: Arc<Hidden>,
+    ) -> Option<Self> {
         let Scene { graph, .. } = scene;
         let drawn = graph.objects().iter().filter(|object| object.visible);
         let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
@@ -99,71 +120,63 @@ impl Stamps {
         if !is_large || graph.coats() {
             return None;
         }
-        // Lines that are not equally long are drawn as soon one by one.
-        let is_filled = stencil.pen.is_none();
-        let grids = match graph.even_lengths() {
-            Some(_) => GRIDS,
-            None if is_filled && graph.is_plain() && graph.is_similar() => UNEVEN_GRIDS,
-            None => return None,
-        };
-        let part = if is_filled { 1.0 } else { 0.5 };
-        let grids = grids.into_iter();
-        let mut grids =
-            grids.map(|(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
-        let (phases, longest_run) = grids.find(|(phases, longest_run)| {
-            let sides = sides(scene, *longest_run).unwrap_or(u64::MAX);
-            let runs = scene.elements / longest_run / sides;
-            let places = whole(phases * phases).unsigned_abs();
-            runs >= places.saturating_mul(USES)
-        })?;
-        Some(Self {
+        let has_pen = stencil.pen.is_some();
+        let painted = painted.filter(|_| !scene.sight.is_bounded());
+        let colonies = painted.and_then(|painted| Colonies::of(scene, &hidden, painted, has_pen));
+        let runs = Runs::of(scene, &stencil, worth);
+        let is_any = runs.is_some() || colonies.is_some();
+        is_any.then(|| Self {
             stencil,
             hidden,
-            longest_run,
-            worth,
-            phases,
+            runs,
+            colonies,
             tables: (0..TABLES).map(|_| RwLock::default()).collect(),
             bytes: AtomicUsize::new(0),
         })
     }
 
-    /// What of a run is painted, by a stamp.
-    pub(super) fn of(&self, scene: &Scene<'_>, run: &Run<'_>, painted: Painted) -> Option<Stamped> {
-        let map = scene.canvas.map(run.map());
-        let reach = self
-            .hidden
-            .reach(scene, run.object(), run.frame().stretch());
-        if run.count() * self.worth < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
-            return None;
+    /// The most elements of a run, if any are stamped.
+    pub(super) fn longest_run(&self) -> Option<u64> {
+        self.runs.as_ref().map(|runs| runs.longest)
+    }
+
+    /// What paths are made of in which colonies are put.
+    pub(super) fn kind(&self) -> Kind {
+        if self.stencil.pen.is_some() && !self.stencil.outlines {
+            Kind::Line
+        } else {
+            Kind::Polygon
         }
-        let grid = map.translation * self.phases;
+    }
+}
+
+impl Stamps<'_> {
+    /// The stamp of what stands at a point, on a grid of so many places to a pixel: known, or drawn for its
+    /// place in a pixel.
+    fn put(
+        &self,
+        key: &Key,
+        at: DVec2,
+        phases: f64,
+        drawn: impl FnOnce(DVec2) -> Option<Stamp>,
+    ) -> Option<Stamped> {
+        let grid = at * phases;
         let place = [grid.x, grid.y].map(whole);
-        let phases = whole(self.phases);
-        let key = Key {
-            run: run.number(),
-            linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),
-            painted: match painted {
-                // From its own on, so that those of other steps are the same.
-                Painted::Steps(first, last) => {
-                    let [first, last] = [first, last].map(|step| step.saturating_sub(run.born()));
-                    Painted::Steps(first, last)
-                }
-                painted => painted,
-            },
-        };
-        let pixel = place.map(|place| place.div_euclid(phases));
-        let phase = place.map(|place| place.rem_euclid(phases));
+        let count = whole(phases);
+        let pixel = place.map(|place| place.div_euclid(count));
+        let phase = place.map(|place| place.rem_euclid(count));
         let drawn = || {
-            let stamp = self.drawn(scene, run, painted, reach, (&key, phase));
-            stamp.map(Arc::new)
+            #[expect(clippy::cast_precision_loss, reason = "places in a pixel")]
+            let phase = phase.map(|place| place as f64 / phases);
+            drawn(DVec2::from_array(phase)).map(Arc::new)
         };
-        let number = usize::try_from(phase[0] + phases * phase[1]).ok()?;
-        let places = self.places(&key);
+        let number = usize::try_from(phase[0] + count * phase[1]).ok()?;
+        let places = self.places(key, usize::try_from(count * count).ok()?);
         let known = places.as_deref().map(|places| &places[number]);
         let stamp = known.and_then(OnceLock::get).cloned().unwrap_or_else(|| {
             let stamp = drawn();
-            let bytes = stamp.as_ref().map_or(0, |stamp| size_of_val(&*stamp.cells));
-            if let Some(known) = known.filter(|_| self.take(bytes + size_of::<Stamp>())) {
+            let bytes = stamp.as_ref().map_or(0, |stamp| stamp.bytes());
+            if let Some(known) = known.filter(|_| self.take(bytes)) {
                 let _ = known.set(stamp.clone());
             }
             stamp
@@ -172,15 +185,18 @@ impl Stamps {
         Some(Stamped { stamp, pixel })
     }
 
-    /// The stamps of a key, if there is memory for them.
-    fn places(&self, key: &Key) -> Option<Arc<Places>> {
-        let table = &self.tables[usize::try_from(key.run % TABLES).unwrap_or(0)];
+    /// The stamps of a key by so many places, if there is memory for them.
+    fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
+        let number = match key.of {
+            Of::Run(number) => number,
+            Of::Colony(kind) => kind as u64,
+        };
+        let table = &self.tables[usize::try_from(number % TABLES).unwrap_or(0)];
         let known = table.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(places) = known.get(key) {
             return Some(Arc::clone(places));
         }
         drop(known);
-        let count = usize::try_from(whole(self.phases * self.phases)).ok()?;
         if !self.take(count * size_of::<OnceLock<Option<Arc<Stamp>>>>()) {
             return None;
         }
@@ -194,52 +210,28 @@ impl Stamps {
         self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
     }
 
-    /// Draws the stamp of a key for a place in a pixel.
+    /// Draws a stamp of what has a linear map, for a place in a pixel: within a disc about that.
     fn drawn(
         &self,
-        scene: &Scene<'_>,
-        run: &Run<'_>,
-        painted: Painted,
-        reach: f64,
-        (key, phase): (&Key, [i64; 2]),
+        linear: DMat2,
+        phase: DVec2,
+        (middle, reach): (DVec2, f64),
+        draw: impl FnOnce(DAffine2, &mut Sheet),
     ) -> Option<Stamp> {
-        #[expect(clippy::cast_precision_loss, reason = "places in a small picture")]
-        let [linear, phase] = [
-            key.linear.map(|part| part as f64 / LINEAR),
-            [phase[0], phase[1], 0, 0].map(|part| part as f64 / self.phases),
-        ];
-        let linear = DMat2::from_cols_array(&linear);
-        let phase = DVec2::new(phase[0], phase[1]);
         // All of it comes to lie on the sheet, with a pixel on every side.
         let reach = reach + 2.0;
-        let corner = phase + linear * scene.graph.middle() - reach;
+        let corner = phase + middle - reach;
         let pixel = [-corner.x, -corner.y].map(whole);
         #[expect(clippy::cast_precision_loss, reason = "places in a small picture")]
         let shift = DVec2::new(pixel[0] as f64, pixel[1] as f64);
         let side = u32::try_from(whole(2.0 * reach) + 2).ok()?;
-        let mut sheet = Sheet::new([side; 2], self.stencil.pen.clone());
-        let moved = run.moved_to(DAffine2 {
+        let Stencil { pen, outlines } = &self.stencil;
+        let mut sheet = Sheet::new([side; 2], pen.clone(), *outlines);
+        let map = DAffine2 {
             matrix2: linear,
             translation: phase + shift,
-        });
-        let mut points = Vec::new();
-        let mut draw = |element: Element| {
-            outline(scene, &element, &mut points, &mut sheet);
         };
-        match painted {
-            Painted::All => moved.elements().for_each(draw),
-            Painted::Steps(first, last) => {
-                let born = moved.born_in(first..=last);
-                born.for_each(|(_, element)| draw(element));
-            }
-            Painted::Class(class) => {
-                let of = |element: &Element| {
-                    let object = &scene.graph.objects()[element.object];
-                    scene.classes.of_object(object) == Some(class)
-                };
-                moved.chosen(of).for_each(|(_, element)| draw(element));
-            }
-        }
+        draw(map, &mut sheet);
         sheet.into_stamp(pixel)
     }
 }
@@ -254,14 +246,16 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
     let is_closed = base_element.is_closed();
     let map = &element.frame.map;
     let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
-    points.clear();
     let coarse = scene.coarse.get().and_then(Option::as_ref);
     let stretch = element.frame.stretch();
     let corners =
         coarse.and_then(|coarse| coarse.corners(scene.graph, object.base_element, stretch));
-    if let Some(corners) = corners {
-        points.extend(corners.iter().map(|corner| fine(*corner)));
-    } else {
+    let trace = |points: &mut Vec<Position>, encircles: bool| {
+        points.clear();
+        if let Some(corners) = corners {
+            points.extend(corners.iter().map(|corner| fine(*corner)));
+            return;
+        }
         let mut at = fine(base_element.start());
         points.push(at);
         for piece in base_element.pieces() {
@@ -269,7 +263,7 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
                 Piece::Line(end) => points.push(fine(end)),
                 Piece::Cubic(a, b, end) => {
                     let curve = [at, fine(a), fine(b), fine(end)];
-                    Sheet::add_curve(points, curve, is_closed);
+                    Sheet::add_curve(points, curve, encircles);
                 }
             }
             at = fine(piece.end());
@@ -277,57 +271,19 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
         if is_closed {
             points.pop();
         }
+    };
+    trace(points, is_closed);
+    if !is_closed {
+        return sheet.line(points);
     }
-    if is_closed {
-        sheet.polygon(points);
-    } else {
-        sheet.line(points);
-    }
-}
-
-/// How many objects turned to how many sides there are after the last step; where elements are replaced
-/// down to a length instead, about how many of how many lengths become runs of so many elements. `None` if
-/// they are too many.
-fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
-    /// Turns and lengths are told apart by so many steps.
-    const TURNS: f64 = 1e9;
-    let Scene { graph, growth, .. } = scene;
-    let shortest = scene.sight.shortest().filter(|&shortest| shortest > 0.0);
-    // What is shorter becomes no more than such a run if it fills an area.
-    #[expect(clippy::cast_precision_loss, reason = "a small number")]
-    let long = shortest.map_or(0.0, |shortest| shortest * (longest_run as f64).sqrt());
-    let turned = |map: &DMat2| *map * (1.0 / map.x_axis.length());
-    let start = graph.initiator(0).instances.iter();
-    let start = start.map(|instance| (DMat2::IDENTITY, Direction::Normal, instance));
-    let mut standing = start.collect::<Vec<_>>();
-    let (mut runs, mut sides) = (MixSet::default(), Vec::new());
-    for step in 0..=growth.steps {
-        let mut known = MixSet::default();
-        sides.clear();
-        for (linear, direction, instance) in standing.drain(..) {
-            let linear = linear * instance.frame.map.matrix2;
-            let direction = direction * instance.frame.direction;
-            let length = linear.x_axis.length();
-            let size = shortest.map_or(0.0, |_| libm::log2(length));
-            let turn = turned(&linear).to_cols_array();
-            let [a, b, c, d] = turn.map(|part| whole(part * TURNS));
-            let size = whole(size * TURNS);
-            let key = (instance.object, [a, b, c, d, size], direction.is_reversed());
-            if step == growth.steps || length < long {
-                runs.insert(key);
-            } else if known.insert(key) {
-                sides.push((instance.object, linear, direction));
-            }
-            if sides.len().max(runs.len()) > MOST_SIDES {
-                return None;
-            }
+    sheet.polygon(points);
+    if sheet.outlines {
+        let is_curve = |piece: &Piece| matches!(piece, Piece::Cubic(..));
+        if corners.is_none() && base_element.pieces().iter().any(is_curve) {
+            trace(points, false);
         }
-        standing.extend(sides.iter().flat_map(|&(object, linear, direction)| {
-            let children = graph.children(object);
-            children.map(move |(_, instance)| (linear, direction, instance))
-        }));
+        sheet.outline(points);
     }
-    Some(runs.len().max(1) as u64)
 }
 
 #[expect(
@@ -339,79 +295,4 @@ fn whole(value: f64) -> i64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::num::NonZero;
-
-    use crate::catalogue::Catalogue;
-    use crate::document::Document;
-    use crate::grow::Growth;
-    use crate::parallel::with_team;
-    use crate::render::layout::Layout;
-    use crate::render::png::Png;
-    use crate::render::scene::Scene;
-    use crate::render::{Detail, Drawing, Options, Size};
-
-    fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {
-        with_team(NonZero::new(threads).unwrap(), |team| {
-            let mut png = Png::begin(scene.size(), scene.background(), team).unwrap();
-            scene.draw(&mut png, team).unwrap();
-            png.into_pixels().0.take()
-        })
-    }
-
-    /// The largest difference of pixels, the mean one, and that of the means.
-    fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
-        let differences = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
-        let sum = |values: &mut dyn Iterator<Item = u8>| values.map(f64::from).sum::<f64>();
-        let mean = sum(&mut differences.clone()) / a.len() as f64;
-        let [all, others] = [a, b].map(|all| sum(&mut all.iter().copied()));
-        let of_means = (all - others) / a.len() as f64;
-        (differences.max().unwrap(), mean, of_means.abs())
-    }
-
-    #[test]
-    fn stamps_cover_what_elements_do() {
-        let catalogue = Catalogue::embedded();
-        for name in [
-            "carpet",
-            "t-square",
-            "terdragon",
-            "terdragon-rose",
-            "twindragon-ifs",
-            "square-filled",
-            "pentaflake",
-            // All of a step is turned alike; of two lengths.
-            "complex-pair",
-            "snowflake-tiles",
-        ] {
-            let source = catalogue.rule(name).unwrap();
-            let document = Document::read(&source, &catalogue).unwrap();
-            let model = document.resolve(&[]).unwrap().0;
-            let graph = model.compile(30).unwrap();
-            let options = Options {
-                size: Size::Long(128),
-                detail: Some(Detail {
-                    pixels: 0.5,
-                    decides_steps: true,
-                }),
-                ..Options::of(model.heading())
-            };
-            let growth = Growth::steps(30);
-            let layout = Layout::find(&graph, &growth, &options).unwrap();
-            let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
-            // As if there were so many that they are worth it.
-            scene.elements = u64::MAX;
-            scene.is_to_detail = false;
-            let one_by_one = drawn(&scene, 1);
-            scene.is_to_detail = true;
-            let stamped = drawn(&scene, 1);
-            // The squares of some stand on the grid.
-            let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
-            assert!(shows, "{name}: nothing is stamped");
-            assert!(stamped == drawn(&scene, 3), "{name} on three threads");
-            let (most, mean, of_means) = difference(&stamped, &one_by_one);
-            let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
-            assert!(is_near, "{name}: {most}, {mean}, {of_means}");
-        }
-    }
-}
+mod tests;

@@ -98,10 +98,13 @@ pub(crate) struct Stamped {
     pub(crate) pixel: [i64; 2],
 }
 
-/// What stamps are drawn with: shapes are filled, and lines drawn with a pen if there is one.
+/// The means that stamps are drawn with: shapes are filled, and lines drawn with a pen if there is one.
 #[derive(Clone)]
 pub(crate) struct Stencil {
+    /// The pen of lines and outlines.
     pub(crate) pen: Option<Arc<RoundPen>>,
+    /// Whether it outlines shapes as well.
+    pub(crate) outlines: bool,
 }
 
 /// Where the parts of pictures are made: a picture's format.
@@ -166,7 +169,8 @@ pub(crate) trait Surface {
     fn stamps(&mut self, _: &[Stamped]) {}
 
     /// What tells which pixels are covered all over, where paths that are painted so are drawn by
-    /// layers, each of one opaque colour; nothing unless said otherwise.
+    /// layers, each of one opaque colour, or of two, of which that of strokes lies on top and is asked for;
+    /// nothing unless said otherwise.
     fn filled(&mut self, _: &Paint) -> Option<Arc<Filled>> {
         None
     }

@@ -106,6 +106,30 @@ fn threads_do_not_show_where_curves_retrace_themselves() {
     }
 }
 
+/// Areas in one colour or two, whose strokes lie on top and hide what comes later.
+#[test]
+fn threads_do_not_show_where_areas_are_outlined() {
+    let cases = [
+        ("mandala", 4, 60),
+        ("pentaflake", 5, 40),
+        ("snowflake-tiles", 4, 50),
+    ];
+    for ((name, steps, size), seed) in cases.into_iter().zip(1u64..) {
+        for width in [0.2, 0.8, 3.0] {
+            for stroke in [Colour::BLACK, Colour::of_rgba([200, 90, 40, 255])] {
+                let options = |options: &mut Options| {
+                    options.size = Size::Long(size);
+                    options.style.width = Width::Pixels(width);
+                    options.style.fill = Some(Colour::of_rgba([200, 90, 40, 255]));
+                    options.style.stroke = Some(stroke);
+                    options.style.color_by = [ColorBy::None, ColorBy::Step][usize::from(seed == 1)];
+                };
+                shows_no_threads(name, None, steps, seed, &options).unwrap();
+            }
+        }
+    }
+}
+
 /// Words that go back and forth on a lattice.
 fn word() -> impl Strategy<Value = String> {
     let wide = ["!(1)", "!(0.1)", "!(3)"];

@@ -217,8 +217,12 @@ impl Chunk {
                 }
                 Command::Stamps(count) => {
                     let (now, rest) = stamps.split_at(*count);
-                    now.iter()
-                        .for_each(|Stamped { stamp, pixel }| plane.stamp(stamp, *pixel));
+                    for Stamped { stamp, pixel } in now {
+                        over.stamp(&stamp.strokes, *pixel);
+                    }
+                    for Stamped { stamp, pixel } in now {
+                        plane.stamp(&stamp.areas, *pixel);
+                    }
                     stamps = rest;
                 }
             }

@@ -131,14 +131,14 @@ impl Part {
     /// Says of what layer the paths are that are covered.
     #[inline]
     pub(super) fn begin_layer(&self, layer: u64) {
-        if let Some(planes) = &self.layers[0].planes {
+        for planes in self.layers.iter().filter_map(|it| it.planes.as_ref()) {
             planes.filled().begin(layer);
         }
     }
 
-    /// Which pixels are covered all over.
-    pub(super) fn filled(&mut self, threads: usize) -> Arc<Filled> {
-        Arc::clone(self.made_planes(0, threads).filled())
+    /// Which pixels are covered all over, of paths or of the strokes on top of them.
+    pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<Filled> {
+        Arc::clone(self.made_planes(layer, threads).filled())
     }
 
     fn made_planes(&mut self, layer: usize, threads: usize) -> &Arc<Planes> {

@@ -1,8 +1,10 @@
 //! Runs of elements, many at once.
 
+use std::sync::Arc;
+
 use crate::geometry::DVec2;
-use crate::grow::{Element, Run, Stick};
-use crate::render::stamps::Painted;
+use crate::grow::{Colony, Element, Run, Stick};
+use crate::render::stamps::{Painted, Put};
 use crate::render::surface::{FINE, position};
 
 use super::{Kind, Line, Look, Mark, Sketcher, width_class};
@@ -95,6 +97,37 @@ impl Sketcher<'_> {
         true
     }
 
+    /// What of a colony is painted: by a stamp, or else one by one.
+    pub(super) fn stamp_colony(&mut self, colony: &Colony<'_>) {
+        let Some(stamps) = self.means.stamps.as_ref() else {
+            return;
+        };
+        match stamps.of_colony(self.scene, colony) {
+            Put::Nothing => return,
+            Put::Stamp(stamped) => {
+                let kind = stamps.kind();
+                self.sketch.stamps.push(stamped);
+                return self.mark_stamps(kind);
+            }
+            Put::Elements => {}
+        }
+        let stamps = Arc::clone(stamps);
+        stamps.see(self.scene, colony, |element| self.see(element));
+        self.pass_by(Mark::Break);
+    }
+
+    /// One more stamp of what looks alike.
+    fn mark_stamps(&mut self, kind: Kind) {
+        let look = Look {
+            kind,
+            ..Look::TUFTS
+        };
+        match self.sketch.marks.last_mut() {
+            Some(Mark::Stamps { look: last, count }) if *last == look => *count += 1,
+            _ => self.mark(Mark::Stamps { look, count: 1 }),
+        }
+    }
+
     /// What of a run is painted, by a stamp; whether there is one.
     pub(super) fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
         let stamps = self.means.stamps.as_ref();
@@ -107,26 +140,14 @@ impl Sketcher<'_> {
             object.visible && !graph.base_elements()[object.base_element].is_closed()
         };
         let end = run.last().filter(is_open);
-        let kind = if end.is_some() {
-            Kind::Line
-        } else {
-            Kind::Polygon
-        };
-        let look = Look {
-            kind,
-            ..Look::TUFTS
-        };
         self.sketch.stamps.push(stamped);
         // What joins the run goes on where it ends; of other runs nobody needs to know.
-        match (self.sketch.marks.last_mut(), end) {
-            (Some(Mark::Stamps { look: last, count }), None) if *last == look => *count += 1,
-            (_, end) => {
-                self.mark(Mark::Stamps { look, count: 1 });
-                if let Some(end) = end {
-                    self.pass_by(Mark::Skip { meets_frame: true });
-                    self.start_at(end.frame.ends()[1]);
-                }
-            }
+        if let Some(end) = end {
+            self.mark_stamps(Kind::Line);
+            self.pass_by(Mark::Skip { meets_frame: true });
+            self.start_at(end.frame.ends()[1]);
+        } else {
+            self.mark_stamps(Kind::Polygon);
         }
         true
     }

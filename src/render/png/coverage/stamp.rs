@@ -6,55 +6,92 @@ use super::{MARGIN, Plane, Position, RoundPen, bounding, cover, flattened, index
 /// What is covered of some pixels, drawn once to be put in many places.
 #[derive(Debug)]
 pub(crate) struct Stamp {
-    /// Its upper left pixel, seen from that on which it is put,
-    pub(crate) corner: [i64; 2],
-    /// and how many of them are in a row.
-    pub(crate) width: usize,
-    /// What is covered of each, by rows: samples as bits.
-    pub(crate) cells: Box<[u64]>,
+    /// What areas cover,
+    pub(crate) areas: Print,
+    /// and what lines and outlines do, which may lie on top in another colour.
+    pub(crate) strokes: Print,
 }
 
-/// A small plane apart from any picture, on which a stamp is drawn.
+impl Stamp {
+    /// The bytes of memory that it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        let cells = [&self.areas, &self.strokes].map(|print| size_of_val(&*print.cells));
+        size_of::<Self>() + cells[0] + cells[1]
+    }
+}
+
+/// What is covered of some pixels.
+#[derive(Debug, Default)]
+pub(crate) struct Print {
+    /// Its upper left pixel, seen from that on which it is put,
+    corner: [i64; 2],
+    /// and how many of them are in a row.
+    width: usize,
+    /// What is covered of each, by rows: samples as bits.
+    cells: Box<[u64]>,
+}
+
+/// Small planes apart from any picture, on which a stamp is drawn.
 pub(crate) struct Sheet {
-    plane: Plane,
-    /// What draws lines.
+    /// Of areas, and of strokes if there may be any.
+    areas: Plane,
+    strokes: Option<Plane>,
+    /// What draws lines,
     pen: Option<Arc<RoundPen>>,
+    /// and whether it outlines areas.
+    pub(crate) outlines: bool,
     /// Whether all could be drawn that was to be.
     is_whole: bool,
 }
 
 impl Sheet {
-    /// An empty one of so many pixels.
-    pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>) -> Self {
+    /// An empty one of so many pixels, with a pen for lines, which outlines areas as well if it is to.
+    pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>, outlines: bool) -> Self {
+        let plane = || Plane::of_rows(size, 0..size[1]);
         Self {
-            plane: Plane::of_rows(size, 0..size[1]),
+            areas: plane(),
+            strokes: pen.is_some().then(plane),
             pen,
+            outlines,
             is_whole: true,
         }
     }
 
     /// Covers what a closed outline encircles.
     pub(crate) fn polygon(&mut self, vertices: &[Position]) {
-        self.is_whole &= self.plane.shape(vertices);
+        self.is_whole &= self.areas.shape(vertices);
     }
 
     /// Covers a line through points.
     pub(crate) fn line(&mut self, points: &[Position]) {
-        let (Some(pen), Some((&start, rest))) = (&self.pen, points.split_first()) else {
+        let (Some(pen), Some(plane)) = (&self.pen, &mut self.strokes) else {
             self.is_whole = false;
             return;
         };
-        self.plane.dot(pen, start);
+        let Some((&start, rest)) = points.split_first() else {
+            return;
+        };
+        plane.dot(pen, start);
         let mut from = start;
         for &to in rest {
-            self.plane.line(pen, from, to);
+            plane.line(pen, from, to);
             from = to;
         }
     }
 
-    /// Adds the points of a curve, but the first, to those of a line or an outline.
-    pub(crate) fn add_curve(points: &mut Vec<Position>, curve: [Position; 4], is_closed: bool) {
-        if is_closed {
+    /// Covers the outline of a polygon.
+    pub(crate) fn outline(&mut self, vertices: &[Position]) {
+        self.line(vertices);
+        if let (Some(&start), Some(&end)) = (vertices.first(), vertices.last())
+            && start != end
+        {
+            self.line(&[end, start]);
+        }
+    }
+
+    /// Adds the points of a curve, but the first, to those of a line, or of what encircles an area.
+    pub(crate) fn add_curve(points: &mut Vec<Position>, curve: [Position; 4], encircles: bool) {
+        if encircles {
             points.extend(bounding(curve));
         } else {
             points.extend(flattened(curve));
@@ -63,32 +100,40 @@ impl Sheet {
 
     /// What has been covered, if all could be drawn; a pixel of the sheet is to come to the pixel that it
     /// is put on.
-    pub(crate) fn into_stamp(mut self, pixel: [i64; 2]) -> Option<Stamp> {
-        if !self.is_whole {
-            return None;
-        }
-        let [rows, columns] = self.plane.take_touched();
-        let stride = self.plane.stride;
+    pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Stamp> {
+        let strokes = self.strokes.map(|plane| Print::of(plane, pixel));
+        self.is_whole.then(|| Stamp {
+            areas: Print::of(self.areas, pixel),
+            strokes: strokes.unwrap_or_default(),
+        })
+    }
+}
+
+impl Print {
+    /// What a plane covers, of which a pixel is to come to the pixel that it is put on.
+    fn of(mut plane: Plane, pixel: [i64; 2]) -> Self {
+        let [rows, columns] = plane.take_touched();
+        let stride = plane.stride;
         let first = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
         let cells = rows.clone().flat_map(|row| {
             let start = row * stride;
-            &self.plane.cells[start + columns.start..start + columns.end]
+            &plane.cells[start + columns.start..start + columns.end]
         });
-        Some(Stamp {
+        Self {
             cells: cells.map(|cell| cell.load(Relaxed)).collect(),
             width: columns.len(),
             corner: [
                 first(columns.start) - MARGIN - pixel[0],
                 first(rows.start) - MARGIN - pixel[1],
             ],
-        })
+        }
     }
 }
 
 impl Plane {
-    /// Covers what a stamp does that is put on a pixel.
-    pub(crate) fn stamp(&mut self, stamp: &Stamp, pixel: [i64; 2]) {
-        let Stamp { corner, width, .. } = *stamp;
+    /// Covers what a print does that is put on a pixel.
+    pub(crate) fn stamp(&mut self, stamp: &Print, pixel: [i64; 2]) {
+        let Print { corner, width, .. } = *stamp;
         if width == 0 {
             return;
         }
@@ -141,29 +186,39 @@ mod tests {
         let square = [[310, 290], [370, 300], [360, 360], [300, 350]];
         let line = [[120, 150], [310, 480], [150, 600]];
         for pixel in [[3, 4], [0, 0], [-3, 2], [9, 9], [40, 4], [-20, -20]] {
-            let mut sheet = Sheet::new([8, 8], Some(Arc::clone(&pen)));
+            let mut sheet = Sheet::new([8, 8], Some(Arc::clone(&pen)), true);
             sheet.polygon(&square);
             sheet.line(&line);
+            sheet.outline(&square);
             let stamp = sheet.into_stamp([2, 2]).unwrap();
-            let mut stamped = Plane::new([12, 12]);
-            stamped.stamp(&stamp, pixel);
+            let mut stamped = [Plane::new([12, 12]), Plane::new([12, 12])];
+            stamped[0].stamp(&stamp.areas, pixel);
+            stamped[1].stamp(&stamp.strokes, pixel);
             let moved = |point: [i64; 2]| [0, 1].map(|a| point[a] + (pixel[a] - 2) * FINE);
-            let mut drawn = Plane::new([12, 12]);
-            drawn.shape(&square.map(moved));
-            let line = line.map(moved);
-            drawn.dot(&pen, line[0]);
-            drawn.line(&pen, line[0], line[1]);
-            drawn.line(&pen, line[1], line[2]);
-            assert_eq!(drained(&mut stamped), drained(&mut drawn), "{pixel:?}");
+            let mut drawn = [Plane::new([12, 12]), Plane::new([12, 12])];
+            let [square, line] = [square.map(moved).to_vec(), line.map(moved).to_vec()];
+            drawn[0].shape(&square);
+            let ring = [&square[..], &square[..1]].concat();
+            for line in [line, ring] {
+                drawn[1].dot(&pen, line[0]);
+                for ends in line.windows(2) {
+                    drawn[1].line(&pen, ends[0], ends[1]);
+                }
+            }
+            assert_eq!(
+                stamped.each_mut().map(drained),
+                drawn.each_mut().map(drained),
+                "{pixel:?}"
+            );
         }
     }
 
     #[test]
     fn what_cannot_be_drawn_makes_no_stamp() {
-        let mut sheet = Sheet::new([8, 8], None);
+        let mut sheet = Sheet::new([8, 8], None, false);
         sheet.polygon(&[[100, 100], [50_000, 100], [300, 20_000], [400, 60_000]]);
         assert!(sheet.into_stamp([0, 0]).is_none());
-        let mut sheet = Sheet::new([8, 8], None);
+        let mut sheet = Sheet::new([8, 8], None, false);
         sheet.line(&[[100, 100], [500, 100]]);
         assert!(sheet.into_stamp([0, 0]).is_none());
     }

@@ -1,0 +1,347 @@
+//! Colonies: fractals that have been seeded, each with all that it seeds in turn, as one.
+//!
+//! Where all maps are fixed, what a seeded fractal becomes depends on the seed, on the step of its birth and,
+//! where nothing is replaced that is shorter than a length, on how long the element was that seeded it. A
+//! visitor that knows all colonies of a kind by one of them takes them without a walk.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame};
+use crate::graph::{Chain, Graph, Instance, Replacement, Seed};
+
+use super::start::{Standing, Start, StartChain};
+use super::walk::walk_over;
+use super::{Visitor, WalkError, Walked};
+
+/// More kinds of elements than this, that seeds may come of, are not told apart.
+const MOST_KINDS: usize = 1 << 14;
+
+/// Lengths that differ by no more than this part of them are one.
+const NEAR: f64 = 1e-10;
+
+/// Turns are told apart by so many steps.
+const TURNS: f64 = 1e6;
+
+/// A fractal that has been seeded, with all that it seeds in turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Colony<'g> {
+    graph: &'g Graph,
+    /// The object that has seeded it, and the number of the seed.
+    seed: [usize; 2],
+    standing: Standing,
+    born: u32,
+    steps: u32,
+}
+
+/// How much of a colony a visitor takes without a walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// Nothing.
+    Nothing,
+    /// The elements of its first fractal, but not what that seeds.
+    Own {
+        /// How many they are.
+        elements: u64,
+    },
+    /// All of it.
+    Whole(Walked),
+    /// All of it, and no more is asked: nothing of it is to be seen.
+    Unseen,
+}
+
+impl Taken {
+    /// The elements and fractals that are taken.
+    pub(super) fn walked(self) -> Walked {
+        match self {
+            Self::Nothing | Self::Unseen => Walked::default(),
+            Self::Own { elements } => Walked {
+                elements,
+                fractals: 1,
+            },
+            Self::Whole(walked) => walked,
+        }
+    }
+}
+
+impl<'g> Colony<'g> {
+    /// The colony of a fractal that grows to a number of steps, if it has been seeded by fixed elements.
+    pub(super) fn of(graph: &'g Graph, start: &Start<'g>, steps: u32) -> Option<Self> {
+        let StartChain::Fixed { seed, .. } = start.chain else {
+            return None;
+        };
+        Some(Self {
+            graph,
+            seed,
+            standing: start.standing,
+            born: start.born,
+            steps,
+        })
+    }
+
+    /// The place of the element that has seeded it.
+    pub(crate) fn frame(&self) -> Frame {
+        self.standing.frame
+    }
+
+    /// The step in which its first fractal was born.
+    pub(crate) fn born(&self) -> u32 {
+        self.born
+    }
+
+    /// The same colony in another place.
+    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
+        let mut moved = *self;
+        moved.standing.frame.map = map;
+        moved
+    }
+
+    /// Walks over the elements of its first fractal, or over all of it.
+    ///
+    /// # Errors
+    ///
+    /// As [`walk`](super::walk()).
+    pub(crate) fn walk<V: Visitor>(
+        &self,
+        is_whole: bool,
+        visitor: &mut V,
+    ) -> Result<Walked, WalkError<V::Error>> {
+        let Some(seed) = seed_of(self.graph, self.seed) else {
+            return Ok(Walked::default());
+        };
+        let start = Start {
+            chain: StartChain::Fixed {
+                chain: &seed.chain,
+                seed: self.seed,
+            },
+            standing: self.standing,
+            born: self.born,
+            sown: 0..0,
+        };
+        walk_over(self.graph, self.steps, start, is_whole, visitor)
+    }
+}
+
+fn seed_of(graph: &Graph, [object, number]: [usize; 2]) -> Option<&Seed> {
+    match &graph.objects()[object].replacement {
+        Replacement::Fixed(production) => production.seeds.get(number),
+        _ => None,
+    }
+}
+
+/// Colonies that are the same but for where they stand.
+#[derive(Clone, Debug)]
+pub(crate) struct ColonyKind<'g> {
+    /// One of them.
+    pub(crate) example: Colony<'g>,
+    /// How many there are.
+    pub(crate) count: u64,
+    /// To how many sides they are turned, those alike that look the same.
+    pub(crate) turns: u64,
+    /// The maps of the unit frame, the identity among them, that leave the first fractal as it is.
+    symmetries: Vec<DAffine2>,
+}
+
+impl ColonyKind<'_> {
+    /// The instances that the first fractal of each starts with, seen from what has seeded it.
+    pub(crate) fn instances(&self) -> &[Instance] {
+        let seed = seed_of(self.example.graph, self.example.seed);
+        seed.map_or(&[], |seed| &seed.chain.instances)
+    }
+
+    /// The map out of those that put the same in the same place that all choose which look the same.
+    pub(crate) fn turned(&self, map: &DAffine2) -> DAffine2 {
+        turned(map, &self.symmetries)
+    }
+}
+
+/// The kinds of colonies of an approximant.
+#[derive(Debug, Default)]
+pub(crate) struct ColonyKinds<'g> {
+    pub(crate) all: Vec<ColonyKind<'g>>,
+    /// By what tells them apart but for their length: their numbers.
+    numbers: BTreeMap<Key, Vec<usize>>,
+}
+
+/// What colonies have in common that may differ in their length.
+type Key = ([usize; 2], u32, Direction);
+
+/// An element that may seed, by what tells it apart.
+type Fertile = BTreeMap<(usize, Direction, i64, [i64; 4]), (DMat2, u64)>;
+
+impl<'g> ColonyKinds<'g> {
+    /// Those of approximant `steps`, where nothing is replaced that is shorter than a length; none where
+    /// the graph does not tell, or where there are too many.
+    pub(crate) fn of(graph: &'g Graph, steps: u32, shortest: f64) -> Self {
+        let tells = graph.seeds
+            && graph.is_plain()
+            && graph.is_similar()
+            && !graph.counts_index()
+            && !graph.is_levelled()
+            && !graph.draws()
+            && !graph.coats()
+            && graph.roots.elements.is_empty()
+            && !graph.resets().contains(&true);
+        if !tells {
+            return Self::default();
+        }
+        let leads = graph.leads_to_seeds();
+        let mut kinds = Self::default();
+        let mut turns: Vec<BTreeMap<[i64; 4], u64>> = Vec::new();
+        let mut standing = Fertile::new();
+        let add = |standing: &mut Fertile, from: (Direction, DMat2, u64), chain: &Chain| {
+            let (direction, linear, count) = from;
+            for instance in chain.instances.iter().filter(|it| leads[it.object]) {
+                let linear = linear * instance.frame.map.matrix2;
+                let direction = direction * instance.frame.direction;
+                let length = round(libm::log2(stretch(&linear)) * TURNS);
+                let key = (instance.object, direction, length, turn(&linear));
+                standing.entry(key).or_insert((linear, 0)).1 += count;
+            }
+        };
+        let start = (Direction::Normal, DMat2::IDENTITY, 1);
+        add(&mut standing, start, graph.initiator(steps));
+        let mut visited = 0;
+        for step in 0..steps {
+            visited += standing.len();
+            if visited > MOST_KINDS {
+                return Self::default();
+            }
+            let mut next = Fertile::new();
+            for ((object, direction, ..), (linear, count)) in standing {
+                let Replacement::Fixed(production) = &graph.objects()[object].replacement else {
+                    continue;
+                };
+                if stretch(&linear) < shortest {
+                    continue;
+                }
+                let from = (direction, linear, count);
+                add(&mut next, from, &production.body);
+                for (number, seed) in production.seeds.iter().enumerate() {
+                    add(&mut next, from, &seed.chain);
+                    let frame = Frame {
+                        map: DAffine2::from_mat2(linear),
+                        direction,
+                    };
+                    let example = Colony {
+                        graph,
+                        seed: [object, number],
+                        standing: Standing {
+                            frame,
+                            ..Standing::whole(0)
+                        },
+                        born: step + 1,
+                        steps,
+                    };
+                    let kind = kinds.kind(example, &seed.chain);
+                    turns.resize_with(kinds.all.len(), BTreeMap::new);
+                    let turned = turned(&frame.map, &kinds.all[kind].symmetries);
+                    *turns[kind].entry(turn(&turned.matrix2)).or_default() += count;
+                }
+            }
+            standing = next;
+        }
+        for (kind, turns) in kinds.all.iter_mut().zip(turns) {
+            kind.turns = turns.len() as u64;
+            kind.count = turns.values().sum();
+        }
+        kinds
+    }
+
+    /// The number of the kind of a colony, added if there is none yet.
+    fn kind(&mut self, example: Colony<'g>, chain: &Chain) -> usize {
+        if let Some(number) = self.number(&example) {
+            return number;
+        }
+        let number = self.all.len();
+        self.all.push(ColonyKind {
+            example,
+            count: 0,
+            turns: 0,
+            symmetries: symmetries(chain),
+        });
+        self.numbers.entry(key(&example)).or_default().push(number);
+        number
+    }
+
+    /// The number of the kind of a colony, if it is known.
+    pub(crate) fn number(&self, colony: &Colony<'_>) -> Option<usize> {
+        let length = colony.frame().stretch();
+        let mut alike = self.numbers.get(&key(colony))?.iter().copied();
+        alike.find(|&number| {
+            let other = self.all[number].example.frame().stretch();
+            (other - length).abs() <= NEAR * length
+        })
+    }
+}
+
+fn key(colony: &Colony<'_>) -> Key {
+    (colony.seed, colony.born, colony.frame().direction)
+}
+
+/// The maps that take every instance of a chain to one that is the same, the identity first.
+fn symmetries(chain: &Chain) -> Vec<DAffine2> {
+    /// Chains of more instances are not looked at.
+    const MOST: usize = 64;
+    let all = &chain.instances;
+    let is_looked_at = all.len() <= MOST && all.iter().all(|instance| !instance.joined);
+    let (Some(first), true) = (all.first(), is_looked_at) else {
+        return vec![DAffine2::IDENTITY];
+    };
+    let same =
+        |a: &Instance, b: &Instance| a.object == b.object && a.frame.direction == b.frame.direction;
+    let is_at = |a: &DAffine2, b: &DAffine2| a.abs_diff_eq(*b, NEAR);
+    let back = first.frame.map.inverse();
+    let candidates = all.iter().filter(|instance| same(instance, first));
+    let maps = candidates.map(|instance| instance.frame.map * back);
+    let stays = |map: &DAffine2| {
+        all.iter().all(|from| {
+            let to = *map * from.frame.map;
+            let mut all = all.iter();
+            all.any(|other| same(from, other) && is_at(&to, &other.frame.map))
+        })
+    };
+    let mut found = vec![DAffine2::IDENTITY];
+    for map in maps.filter(stays) {
+        if !found.iter().any(|known| is_at(known, &map)) {
+            found.push(map);
+        }
+    }
+    found
+}
+
+/// The map with a symmetry before it whose first axis points most to the right.
+fn turned(map: &DAffine2, symmetries: &[DAffine2]) -> DAffine2 {
+    // Turned by as much are those that differ by rounding.
+    let slack = map.matrix2.x_axis.length() / TURNS;
+    let all = symmetries.iter().map(|symmetry| {
+        let axis = map.matrix2 * symmetry.matrix2.x_axis;
+        (axis, symmetry)
+    });
+    let further = |(a, _): &(DVec2, _), (b, _): &(DVec2, _)| {
+        let is_as_far = (a.x - b.x).abs() <= slack;
+        b.x > a.x + slack || is_as_far && b.y > a.y + slack
+    };
+    let found = all.reduce(|a, b| if further(&a, &b) { b } else { a });
+    found.map_or(*map, |(_, symmetry)| *map * *symmetry)
+}
+
+/// A linear map, but for how long it makes things.
+fn turn(linear: &DMat2) -> [i64; 4] {
+    let unit = *linear * stretch(linear).recip();
+    unit.to_cols_array().map(|part| round(part * TURNS))
+}
+
+fn stretch(linear: &DMat2) -> f64 {
+    crate::geometry::stretch(linear)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn round(value: f64) -> i64 {
+    (value + 0.5).floor() as i64
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,365 @@
+//! Stamps of colonies: fractals that have been seeded, alone or with all that they seed in turn.
+
+use std::convert::Infallible;
+
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::grow::{
+    Colony, ColonyKind, ColonyKinds, Element, Enter, Fractal, Subtree, Taken, Visitor,
+};
+use crate::render::hidden::Hidden;
+use crate::render::png::Sheet;
+use crate::render::scene::Scene;
+use crate::render::surface::Stamped;
+
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
+
+/// Places to a pixel, along either axis, on which fractals are put; for strokes half as many.
+const PLACES: f64 = 128.0;
+
+/// How many times as often a stamp of a fractal with all that it seeds should be used: it takes longer to
+/// draw than the stamps of what it is made of.
+const USES_OF_WHOLE: u64 = 5;
+
+/// Colonies of more elements are put together of smaller ones.
+const MOST_ELEMENTS: u64 = 1 << 10;
+
+/// The colonies of a pass that are stamped.
+pub(super) struct Colonies<'a> {
+    kinds: ColonyKinds<'a>,
+    /// By kind.
+    means: Vec<Means>,
+    painted: Painted,
+    phases: f64,
+}
+
+/// What is known of the colonies of a kind.
+struct Means {
+    /// How much is taken of each.
+    taken: Taken,
+    /// What of it is painted.
+    shows: Shows,
+    /// A disc that holds it, without strokes, as seen from what has seeded it: the middle, and the radius
+    /// as a multiple of its length.
+    middle: DVec2,
+    radius: f64,
+}
+
+/// What is painted of a colony, of which some is taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shows {
+    Nothing,
+    /// Elements of the first fractal.
+    Own,
+    /// Elements of any.
+    Any,
+}
+
+/// A colony in place of elements.
+pub(in crate::render) enum Put {
+    /// Nothing of it is painted.
+    Nothing,
+    Stamp(Stamped),
+    /// It cannot be drawn once for all.
+    Elements,
+}
+
+impl<'a> Colonies<'a> {
+    /// The colonies of a scene, of which something is painted, that are worth a stamp.
+    pub(super) fn of(
+        scene: &Scene<'a>,
+        hidden: &Hidden,
+        painted: Painted,
+        strokes: bool,
+    ) -> Option<Self> {
+        let shortest = scene.sight.shortest().unwrap_or(0.0);
+        let kinds = ColonyKinds::of(scene.graph, scene.growth.steps, shortest);
+        let phases = if strokes { PLACES / 2.0 } else { PLACES };
+        let places = whole(phases * phases).unsigned_abs();
+        let means = |kind| Means::of(scene, hidden, kind, (painted, places));
+        let means: Vec<_> = kinds.all.iter().map(means).collect();
+        let is_any = means.iter().any(|means| means.taken != Taken::Nothing);
+        is_any.then_some(Self {
+            kinds,
+            means,
+            painted,
+            phases,
+        })
+    }
+
+    fn means(&self, colony: &Colony<'_>) -> Option<(usize, &Means)> {
+        let number = self.kinds.number(colony)?;
+        Some((number, &self.means[number]))
+    }
+}
+
+impl Means {
+    const NOTHING: Self = Self {
+        taken: Taken::Nothing,
+        shows: Shows::Nothing,
+        middle: DVec2::ZERO,
+        radius: 0.0,
+    };
+
+    /// The means to paint something of the colonies of a kind, by stamps on so many places of a pixel.
+    fn of(
+        scene: &Scene<'_>,
+        hidden: &Hidden,
+        kind: &ColonyKind<'_>,
+        (painted, places): (Painted, u64),
+    ) -> Self {
+        let uses = kind.count / places.saturating_mul(kind.turns).max(1);
+        let instances = kind.instances();
+        if uses < scene.uses || instances.is_empty() {
+            return Self::NOTHING;
+        }
+        let discs = instances.iter().map(|instance| {
+            let middle = instance.frame.map.transform_point2(scene.graph.middle());
+            let radius = hidden.radius(instance.object) * instance.frame.stretch();
+            (middle, radius)
+        });
+        #[expect(clippy::cast_precision_loss, reason = "few instances")]
+        let count = instances.len() as f64;
+        let middle = discs.clone().map(|(middle, _)| middle).sum::<DVec2>() / count;
+        let radii = discs.map(|(other, radius)| other.distance(middle) + radius);
+        let radius = radii.fold(0.0, f64::max);
+        let length = kind.example.frame().stretch();
+        if 2.0 * hidden.reach_of(scene, radius, length) > LARGEST {
+            return Self::NOTHING;
+        }
+        let means = |taken, shows| Self {
+            taken,
+            shows,
+            middle,
+            radius,
+        };
+        let mut census = Census::of(scene);
+        let whole = kind.example.walk(true, &mut census).ok();
+        let later = painted.meets(&census.births[1]);
+        if whole.is_none() {
+            census = Census::of(scene);
+            if kind.example.walk(false, &mut census).is_err() {
+                return Self::NOTHING;
+            }
+        }
+        let own = painted.meets(&census.births[0]);
+        let shows = if own { Shows::Own } else { Shows::Nothing };
+        let [elements, seeded] = census.counts;
+        let is_worth = uses >= USES_OF_WHOLE * scene.uses && elements + seeded >= FEWEST_IN_RUN;
+        match whole {
+            Some(_) if !own && !later => means(Taken::Unseen, shows),
+            Some(walked) if !later && elements >= FEWEST_IN_RUN => {
+                means(Taken::Whole(walked), shows)
+            }
+            Some(walked) if is_worth => means(Taken::Whole(walked), Shows::Any),
+            _ if elements >= FEWEST_IN_RUN => means(Taken::Own { elements }, shows),
+            _ => Self::NOTHING,
+        }
+    }
+}
+
+impl Painted {
+    /// Whether something that is born in some steps, from the first to the last, may be painted.
+    fn meets(self, births: &[u32; 2]) -> bool {
+        match self {
+            Self::Steps(first, last) => first <= births[1] && last >= births[0],
+            Self::All | Self::Class(_) => births[0] <= births[1],
+        }
+    }
+}
+
+impl Stamps<'_> {
+    /// How much of a colony is put as a stamp.
+    pub(in crate::render) fn takes(&self, colony: &Colony<'_>) -> Taken {
+        let means = self.colonies.as_ref().and_then(|all| all.means(colony));
+        means.map_or(Taken::Nothing, |(_, means)| means.taken)
+    }
+
+    /// What is taken of a colony, as a stamp if that can be drawn once for all.
+    pub(in crate::render) fn of_colony(&self, scene: &Scene<'_>, colony: &Colony<'_>) -> Put {
+        let Some(colonies) = &self.colonies else {
+            return Put::Elements;
+        };
+        match colonies.means(colony) {
+            Some((_, means)) if means.shows == Shows::Nothing => Put::Nothing,
+            Some((number, means)) => {
+                let stamped = self.stamped(scene, colony, colonies, (number, means));
+                stamped.map_or(Put::Elements, Put::Stamp)
+            }
+            None => Put::Elements,
+        }
+    }
+
+    fn stamped(
+        &self,
+        scene: &Scene<'_>,
+        colony: &Colony<'_>,
+        colonies: &Colonies<'_>,
+        (number, means): (usize, &Means),
+    ) -> Option<Stamped> {
+        let kind = &colonies.kinds.all[number];
+        let map = scene.canvas.map(&kind.turned(&colony.frame().map));
+        let key = Key {
+            of: Of::Colony(number),
+            linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),
+            painted: colonies.painted.since(colony.born()),
+        };
+        let length = kind.example.frame().stretch() * scene.canvas.scale();
+        self.put(&key, map.translation, colonies.phases, |phase| {
+            let linear = turned(&map.matrix2, &key.linear, length);
+            let reach = self
+                .hidden
+                .reach_of(scene, means.radius, length / scene.canvas.scale());
+            let draw = |map: DAffine2, sheet: &mut Sheet| {
+                let mut points = Vec::new();
+                let mut visitor = Members {
+                    scene,
+                    scale: scene.canvas.scale(),
+                    painted: colonies.painted,
+                    see: |element: &Element| outline(scene, element, &mut points, sheet),
+                };
+                // Those of one were not too many.
+                let moved = colony.moved_to(map);
+                let _ = moved.walk(means.shows == Shows::Any, &mut visitor);
+            };
+            self.drawn(linear, phase, (linear * means.middle, reach), draw)
+        })
+    }
+
+    /// Sees all elements of what is taken of a colony that are painted.
+    pub(in crate::render) fn see(
+        &self,
+        scene: &Scene<'_>,
+        colony: &Colony<'_>,
+        see: impl FnMut(&Element),
+    ) {
+        let Some(colonies) = &self.colonies else {
+            return;
+        };
+        let mut visitor = Members {
+            scene,
+            scale: 1.0,
+            painted: colonies.painted,
+            see,
+        };
+        let is_whole = !matches!(self.takes(colony), Taken::Own { .. });
+        let _ = colony.walk(is_whole, &mut visitor);
+    }
+}
+
+/// The similarity that is nearest to a linear map in steps, exactly as long as it says.
+fn turned(map: &DMat2, steps: &[i64; 4], length: f64) -> DMat2 {
+    #[expect(clippy::cast_precision_loss, reason = "steps in a small picture")]
+    let along = DVec2::new(steps[0] as f64, steps[1] as f64);
+    let along = if along == DVec2::ZERO {
+        map.x_axis
+    } else {
+        along
+    };
+    let x_axis = along * (length / along.length());
+    let across = if map.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat2::from_cols(x_axis, x_axis.perp() * across)
+}
+
+/// Sees the elements of a colony that are painted.
+struct Members<'s, F> {
+    scene: &'s Scene<'s>,
+    /// What lengths are multiples of, as they are in the rule's units.
+    scale: f64,
+    painted: Painted,
+    see: F,
+}
+
+impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        if self
+            .scene
+            .sight
+            .is_short(subtree.frame.stretch() / self.scale)
+        {
+            return Enter::Keep;
+        }
+        match self.painted {
+            Painted::Steps(_, last) if subtree.born >= last => Enter::Skip,
+            _ => Enter::Replace,
+        }
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+        let is_painted = match self.painted {
+            Painted::All => true,
+            Painted::Steps(first, last) => (first..=last).contains(&element.born),
+            Painted::Class(class) => {
+                let object = &self.scene.graph.objects()[element.object];
+                self.scene.classes.of_object(object) == Some(class)
+            }
+        };
+        if is_painted {
+            (self.see)(element);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// Counts the elements of a colony, and looks when they are born: those of its first fractal, and others.
+struct Census<'s> {
+    scene: &'s Scene<'s>,
+    is_seeded: bool,
+    counts: [u64; 2],
+    births: [[u32; 2]; 2],
+}
+
+impl<'s> Census<'s> {
+    fn of(scene: &'s Scene<'s>) -> Self {
+        Self {
+            scene,
+            is_seeded: false,
+            counts: [0; 2],
+            births: [[u32::MAX, 0]; 2],
+        }
+    }
+}
+
+/// A colony has too many elements.
+struct TooMany;
+
+impl Visitor for Census<'_> {
+    type Error = TooMany;
+
+    fn begin(&mut self, fractal: Fractal) -> Result<(), TooMany> {
+        self.is_seeded = fractal.number > 0;
+        Ok(())
+    }
+
+    fn enter(&mut self, subtree: &Subtree) -> Enter {
+        if self.scene.sight.is_short(subtree.frame.stretch()) {
+            Enter::Keep
+        } else {
+            Enter::Replace
+        }
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), TooMany> {
+        let part = usize::from(self.is_seeded);
+        self.counts[part] += 1;
+        let [first, last] = self.births[part];
+        self.births[part] = [first.min(element.born), last.max(element.born)];
+        if self.counts.iter().sum::<u64>() > MOST_ELEMENTS {
+            return Err(TooMany);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), TooMany> {
+        Ok(())
+    }
+}

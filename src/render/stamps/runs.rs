@@ -1,0 +1,155 @@
+//! Stamps of runs of elements.
+
+use crate::geometry::{DAffine2, DMat2, Direction};
+use crate::grow::{Element, Run};
+use crate::mix::MixSet;
+use crate::render::png::Sheet;
+use crate::render::scene::Scene;
+use crate::render::surface::{Stamped, Stencil};
+
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
+
+/// Places to a pixel, along either axis, and the most elements of a run: the first of these for which
+/// there are enough runs. For lines half as many places; of outlines that have more than four pieces as
+/// many fewer elements, but no less than few.
+const GRIDS: [(f64, u64); 3] = [(128.0, 128), (128.0, 64), (64.0, 64)];
+
+/// The same where elements are not equally long.
+const UNEVEN_GRIDS: [(f64, u64); 3] = [(128.0, 64), (128.0, 16), (64.0, 16)];
+const FEW_ELEMENTS: u64 = 8;
+
+/// More sides than this are too many.
+const MOST_SIDES: usize = 1 << 8;
+
+/// The runs that are stamped.
+pub(super) struct Runs {
+    /// The most elements of a run, and how many plain ones one of them is worth.
+    pub(super) longest: u64,
+    worth: u64,
+    phases: f64,
+}
+
+impl Runs {
+    /// Those of a scene, if many lie alike; one element is worth a number of plain ones.
+    pub(super) fn of(scene: &Scene<'_>, stencil: &Stencil, worth: u64) -> Option<Self> {
+        let Scene { graph, .. } = scene;
+        // Lines that are not equally long are drawn as soon one by one.
+        let is_filled = stencil.pen.is_none() || stencil.outlines;
+        let grids = match graph.even_lengths() {
+            Some(_) => GRIDS,
+            None if is_filled && graph.is_plain() && graph.is_similar() => UNEVEN_GRIDS,
+            None => return None,
+        };
+        let part = if stencil.pen.is_none() { 1.0 } else { 0.5 };
+        let grids = grids.into_iter();
+        let mut grids =
+            grids.map(|(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
+        let (phases, longest) = grids.find(|(phases, longest)| {
+            let sides = sides(scene, *longest).unwrap_or(u64::MAX);
+            let runs = scene.elements / longest / sides;
+            let places = whole(phases * phases).unsigned_abs();
+            runs >= places.saturating_mul(scene.uses)
+        })?;
+        Some(Self {
+            longest,
+            worth,
+            phases,
+        })
+    }
+}
+
+impl Stamps<'_> {
+    /// What of a run is painted, by a stamp.
+    pub(in crate::render) fn of(
+        &self,
+        scene: &Scene<'_>,
+        run: &Run<'_>,
+        painted: Painted,
+    ) -> Option<Stamped> {
+        let Runs { worth, phases, .. } = *self.runs.as_ref()?;
+        let map = scene.canvas.map(run.map());
+        let reach = self
+            .hidden
+            .reach(scene, run.object(), run.frame().stretch());
+        if run.count() * worth < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
+            return None;
+        }
+        let key = Key {
+            of: Of::Run(run.number()),
+            linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),
+            painted: painted.since(run.born()),
+        };
+        self.put(&key, map.translation, phases, |phase| {
+            #[expect(clippy::cast_precision_loss, reason = "steps in a small picture")]
+            let linear = DMat2::from_cols_array(&key.linear.map(|part| part as f64 / LINEAR));
+            let draw = |map: DAffine2, sheet: &mut Sheet| draw(scene, run, painted, map, sheet);
+            self.drawn(linear, phase, (linear * scene.graph.middle(), reach), draw)
+        })
+    }
+}
+
+/// Draws what of a run is painted on a sheet, where a map into its pixels puts it.
+fn draw(scene: &Scene<'_>, run: &Run<'_>, painted: Painted, map: DAffine2, sheet: &mut Sheet) {
+    let moved = run.moved_to(map);
+    let mut points = Vec::new();
+    let mut draw = |element: Element| outline(scene, &element, &mut points, sheet);
+    match painted {
+        Painted::All => moved.elements().for_each(draw),
+        Painted::Steps(first, last) => {
+            let born = moved.born_in(first..=last);
+            born.for_each(|(_, element)| draw(element));
+        }
+        Painted::Class(class) => {
+            let of = |element: &Element| {
+                let object = &scene.graph.objects()[element.object];
+                scene.classes.of_object(object) == Some(class)
+            };
+            moved.chosen(of).for_each(|(_, element)| draw(element));
+        }
+    }
+}
+
+/// How many objects turned to how many sides there are after the last step; where elements are replaced
+/// down to a length instead, about how many of how many lengths become runs of so many elements. `None` if
+/// they are too many.
+fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
+    /// Turns and lengths are told apart by so many steps.
+    const TURNS: f64 = 1e9;
+    let Scene { graph, growth, .. } = scene;
+    let shortest = scene.sight.shortest().filter(|&shortest| shortest > 0.0);
+    // What is shorter becomes no more than such a run if it fills an area.
+    #[expect(clippy::cast_precision_loss, reason = "a small number")]
+    let long = shortest.map_or(0.0, |shortest| shortest * (longest_run as f64).sqrt());
+    let turned = |map: &DMat2| *map * (1.0 / map.x_axis.length());
+    let start = graph.initiator(0).instances.iter();
+    let start = start.map(|instance| (DMat2::IDENTITY, Direction::Normal, instance));
+    let mut standing = start.collect::<Vec<_>>();
+    let (mut runs, mut sides) = (MixSet::default(), Vec::new());
+    for step in 0..=growth.steps {
+        let mut known = MixSet::default();
+        sides.clear();
+        for (linear, direction, instance) in standing.drain(..) {
+            let linear = linear * instance.frame.map.matrix2;
+            let direction = direction * instance.frame.direction;
+            let length = linear.x_axis.length();
+            let size = shortest.map_or(0.0, |_| libm::log2(length));
+            let turn = turned(&linear).to_cols_array();
+            let [a, b, c, d] = turn.map(|part| whole(part * TURNS));
+            let size = whole(size * TURNS);
+            let key = (instance.object, [a, b, c, d, size], direction.is_reversed());
+            if step == growth.steps || length < long {
+                runs.insert(key);
+            } else if known.insert(key) {
+                sides.push((instance.object, linear, direction));
+            }
+            if sides.len().max(runs.len()) > MOST_SIDES {
+                return None;
+            }
+        }
+        standing.extend(sides.iter().flat_map(|&(object, linear, direction)| {
+            let children = graph.children(object);
+            children.map(move |(_, instance)| (linear, direction, instance))
+        }));
+    }
+    Some(runs.len().max(1) as u64)
+}

@@ -1,0 +1,117 @@
+use std::num::NonZero;
+
+use crate::catalogue::Catalogue;
+use crate::document::Document;
+use crate::grow::Growth;
+use crate::parallel::with_team;
+use crate::render::layout::Layout;
+use crate::render::png::Png;
+use crate::render::scene::Scene;
+use crate::render::{Detail, Drawing, Options, Size};
+use crate::style::{ColorBy, Colour, Style, Width};
+
+fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {
+    with_team(NonZero::new(threads).unwrap(), |team| {
+        let mut png = Png::begin(scene.size(), scene.background(), team).unwrap();
+        scene.draw(&mut png, team).unwrap();
+        png.into_pixels().0.take()
+    })
+}
+
+/// The largest difference of pixels, the mean one, and that of the means.
+fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
+    let differences = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+    let sum = |values: &mut dyn Iterator<Item = u8>| values.map(f64::from).sum::<f64>();
+    let mean = sum(&mut differences.clone()) / a.len() as f64;
+    let [all, others] = [a, b].map(|all| sum(&mut all.iter().copied()));
+    let of_means = (all - others) / a.len() as f64;
+    (differences.max().unwrap(), mean, of_means.abs())
+}
+
+/// Holds a picture put together of stamps, as if there were so many of each that they are worth it,
+/// against one without, and tells how many elements a walk that puts them comes to one by one.
+fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
+    let catalogue = Catalogue::embedded();
+    {
+        let source = catalogue.rule(name).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let model = document.resolve(&[]).unwrap().0;
+        let graph = model.compile(30).unwrap();
+        let mut options = Options {
+            size: Size::Long(128),
+            detail: Some(Detail {
+                pixels: 0.5,
+                decides_steps: true,
+            }),
+            ..Options::of(model.heading())
+        };
+        style(&mut options.style);
+        let growth = Growth::steps(30);
+        let layout = Layout::find(&graph, &growth, &options).unwrap();
+        let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        // As if there were so many that they are worth it.
+        scene.elements = u64::MAX;
+        if graph.seeds {
+            scene.uses = 0;
+        }
+        scene.is_to_detail = false;
+        let one_by_one = drawn(&scene, 1);
+        scene.is_to_detail = true;
+        let stamped = drawn(&scene, 1);
+        // The squares of some stand on the grid.
+        let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
+        assert!(shows, "{name}: nothing is stamped");
+        assert!(stamped == drawn(&scene, 3), "{name} on three threads");
+        let (most, mean, of_means) = difference(&stamped, &one_by_one);
+        let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
+        assert!(is_near, "{name}: {most}, {mean}, {of_means}");
+    }
+}
+
+#[test]
+fn stamps_cover_what_elements_do() {
+    for name in [
+        "carpet",
+        "t-square",
+        "terdragon",
+        "terdragon-rose",
+        "twindragon-ifs",
+        "square-filled",
+        "pentaflake",
+        // All of a step is turned alike; of two lengths.
+        "complex-pair",
+        "snowflake-tiles",
+    ] {
+        is_stamped(name, |_| {});
+    }
+}
+
+/// In two colours, which are covered apart, and in one.
+#[test]
+fn stamps_cover_what_outlined_elements_do() {
+    let [light, dark] = [Colour::of_rgba([200, 90, 40, 255]), Colour::BLACK];
+    for (name, stroke) in [
+        ("carpet", dark),
+        ("pentaflake", dark),
+        ("pentaflake", light),
+    ] {
+        is_stamped(name, |style| {
+            style.fill = Some(light);
+            style.stroke = Some(stroke);
+            style.width = Width::Pixels(0.8);
+            style.color_by = ColorBy::None;
+        });
+    }
+}
+
+#[test]
+fn stamps_cover_what_seeded_fractals_do() {
+    for color_by in [ColorBy::Step, ColorBy::Generator, ColorBy::None] {
+        for stroke in [Some(Colour::of_rgba([90, 47, 78, 255])), None] {
+            is_stamped("mandala", |style| {
+                style.color_by = color_by;
+                style.stroke = stroke;
+            });
+        }
+    }
+}
