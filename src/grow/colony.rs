@@ -130,9 +130,12 @@ fn seed_of(graph: &Graph, [object, number]: [usize; 2]) -> Option<&Seed> {
 
 /// Colonies that are the same but for where they stand.
 #[derive(Clone, Debug)]
-pub(crate) struct ColonyKind<'g> {
-    /// One of them.
-    pub(crate) example: Colony<'g>,
+pub(crate) struct ColonyKind {
+    seed: [usize; 2],
+    /// The place of what has seeded one of them.
+    pub(crate) frame: Frame,
+    born: u32,
+    steps: u32,
     /// How many there are.
     pub(crate) count: u64,
     /// To how many sides they are turned, those alike that look the same.
@@ -141,10 +144,25 @@ pub(crate) struct ColonyKind<'g> {
     symmetries: Vec<DAffine2>,
 }
 
-impl ColonyKind<'_> {
+impl ColonyKind {
+    /// One of them.
+    pub(crate) fn example<'g>(&self, graph: &'g Graph) -> Colony<'g> {
+        let standing = Standing {
+            frame: self.frame,
+            ..Standing::whole(0)
+        };
+        Colony {
+            graph,
+            seed: self.seed,
+            standing,
+            born: self.born,
+            steps: self.steps,
+        }
+    }
+
     /// The instances that the first fractal of each starts with, seen from what has seeded it.
-    pub(crate) fn instances(&self) -> &[Instance] {
-        let seed = seed_of(self.example.graph, self.example.seed);
+    pub(crate) fn instances<'g>(&self, graph: &'g Graph) -> &'g [Instance] {
+        let seed = seed_of(graph, self.seed);
         seed.map_or(&[], |seed| &seed.chain.instances)
     }
 
@@ -156,8 +174,8 @@ impl ColonyKind<'_> {
 
 /// The kinds of colonies of an approximant.
 #[derive(Debug, Default)]
-pub(crate) struct ColonyKinds<'g> {
-    pub(crate) all: Vec<ColonyKind<'g>>,
+pub(crate) struct ColonyKinds {
+    pub(crate) all: Vec<ColonyKind>,
     /// By what tells them apart but for their length: their numbers.
     numbers: BTreeMap<Key, Vec<usize>>,
 }
@@ -168,10 +186,10 @@ type Key = ([usize; 2], u32, Direction);
 /// An element that may seed, by what tells it apart.
 type Fertile = BTreeMap<(usize, Direction, i64, [i64; 4]), (DMat2, u64)>;
 
-impl<'g> ColonyKinds<'g> {
+impl ColonyKinds {
     /// Those of approximant `steps`, where nothing is replaced that is shorter than a length; none where
     /// the graph does not tell, or where there are too many.
-    pub(crate) fn of(graph: &'g Graph, steps: u32, shortest: f64) -> Self {
+    pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Self {
         let tells = graph.seeds
             && graph.is_plain()
             && graph.is_similar()
@@ -222,17 +240,16 @@ impl<'g> ColonyKinds<'g> {
                         map: DAffine2::from_mat2(linear),
                         direction,
                     };
-                    let example = Colony {
-                        graph,
+                    let sown = ColonyKind {
                         seed: [object, number],
-                        standing: Standing {
-                            frame,
-                            ..Standing::whole(0)
-                        },
+                        frame,
                         born: step + 1,
                         steps,
+                        count: 0,
+                        turns: 0,
+                        symmetries: Vec::new(),
                     };
-                    let kind = kinds.kind(example, &seed.chain);
+                    let kind = kinds.kind(sown, &seed.chain);
                     turns.resize_with(kinds.all.len(), BTreeMap::new);
                     let turned = turned(&frame.map, &kinds.all[kind].symmetries);
                     *turns[kind].entry(turn(&turned.matrix2)).or_default() += count;
@@ -247,35 +264,36 @@ impl<'g> ColonyKinds<'g> {
         kinds
     }
 
-    /// The number of the kind of a colony, added if there is none yet.
-    fn kind(&mut self, example: Colony<'g>, chain: &Chain) -> usize {
-        if let Some(number) = self.number(&example) {
+    /// The number of a kind, added if there is none yet.
+    fn kind(&mut self, kind: ColonyKind, chain: &Chain) -> usize {
+        let key = (kind.seed, kind.born, kind.frame.direction);
+        if let Some(number) = self.find(&key, &kind.frame) {
             return number;
         }
         let number = self.all.len();
         self.all.push(ColonyKind {
-            example,
-            count: 0,
-            turns: 0,
             symmetries: symmetries(chain),
+            ..kind
         });
-        self.numbers.entry(key(&example)).or_default().push(number);
+        self.numbers.entry(key).or_default().push(number);
         number
     }
 
     /// The number of the kind of a colony, if it is known.
+    #[inline]
     pub(crate) fn number(&self, colony: &Colony<'_>) -> Option<usize> {
-        let length = colony.frame().stretch();
-        let mut alike = self.numbers.get(&key(colony))?.iter().copied();
+        let frame = colony.frame();
+        self.find(&(colony.seed, colony.born, frame.direction), &frame)
+    }
+
+    fn find(&self, key: &Key, frame: &Frame) -> Option<usize> {
+        let length = frame.stretch();
+        let mut alike = self.numbers.get(key)?.iter().copied();
         alike.find(|&number| {
-            let other = self.all[number].example.frame().stretch();
+            let other = self.all[number].frame.stretch();
             (other - length).abs() <= NEAR * length
         })
     }
-}
-
-fn key(colony: &Colony<'_>) -> Key {
-    (colony.seed, colony.born, colony.frame().direction)
 }
 
 /// The maps that take every instance of a chain to one that is the same, the identity first.

@@ -3,7 +3,7 @@ use std::num::NonZero;
 use std::sync::{Arc, OnceLock};
 
 use crate::graph::{Graph, Object};
-use crate::grow::{self, Division, Growth, WalkError, walk_with};
+use crate::grow::{self, ColonyKinds, Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
@@ -32,6 +32,8 @@ pub(crate) struct Scene<'a> {
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
+    /// The kinds of colonies, once something is stamped.
+    pub(super) colonies: OnceLock<ColonyKinds>,
     /// How often a stamp should be used.
     pub(super) uses: u64,
     /// Whether closed paths are filled as they are stroked.
@@ -86,6 +88,7 @@ impl<'a> Scene<'a> {
             elements: survey.elements,
             ranks: survey.ranks.clone(),
             is_to_detail: survey.is_to_detail,
+            colonies: OnceLock::new(),
             uses: USES,
             fills_strokes: together && style.fill.is_some(),
             coarse: OnceLock::new(),
@@ -254,7 +257,11 @@ mod tests {
     #[test]
     fn areas_are_looked_for_where_there_may_be_any() {
         let catalogue = Catalogue::embedded();
-        for (name, has_areas) in [("mandala", false), ("koch", false), ("koch-island", true)] {
+        for (name, has_areas) in [
+            ("mandala", false),
+            ("koch", false),
+            ("koch-snowflake", true),
+        ] {
             let source = catalogue.rule(name).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
             let model = document.resolve(&[]).unwrap().0;

@@ -3,9 +3,9 @@
 //! Where the maps of a graph turn elements to a few sides only, or all of a step to the same, runs are
 //! equal but for where they stand; so are filled elements of a few lengths, and fractals that have been
 //! seeded, with all that they seed in turn. In pictures to a detail they are put on a grid that is some ten
-//! times as fine as the detail: of 1/128 of a pixel if there are enough of them, else of 1/64, and half as
-//! fine for lines and outlines, whose pens stand on a grid of 1/16. That moves them by no more than 1/128 of
-//! a pixel, lines by 1/64. What a stamp covers is worked out on the grid, so it hangs on nothing but what it
+//! times as fine as the detail: runs of 1/128 of a pixel if there are enough of them, else all of 1/64, and
+//! half as fine for lines and outlines, whose pens stand on a grid of 1/16. That moves them by no more than
+//! 1/128 of a pixel, lines by 1/64. What a stamp covers is worked out on the grid, so it hangs on nothing but what it
 //! is of, whoever draws it first. Areas and their outlines in another colour are covered apart.
 //!
 //! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one
@@ -106,7 +106,7 @@ pub(super) struct Stamps<'a> {
 impl<'a> Stamps<'a> {
     /// Those of a scene, if many of its runs lie alike, or of its fractals, of which something is painted.
     pub(super) fn new(
-        scene: &Scene<'a>,
+        scene: &'a Scene<'a>,
         stencil: Stencil,
         painted: Option<Painted>,
         hidden: Arc<Hidden>,

@@ -20,8 +20,8 @@ enum By {
 }
 
 /// Collects elements: those of colonies one by one, or moved into place from one that is known.
-struct Collecting<'g> {
-    kinds: &'g ColonyKinds<'g>,
+struct Collecting<'k> {
+    kinds: &'k ColonyKinds,
     by: By,
     elements: BTreeMap<(usize, u32, [i64; 4]), u64>,
     /// How many colonies there are of every kind, taken or not.
@@ -133,7 +133,7 @@ fn graph(catalogue: &Catalogue, source: &Arc<Source>) -> Graph {
 
 /// Seeds on both sides of elements, one of them mirrored, and elements that seed again.
 const ONE_SIDED: &str = "
-initiator: {points: [[0, 0], [1, 0]]}
+initiator: {elements: [[0, 0], [1, 0]]}
 generators:
   on:
     parts:
@@ -154,7 +154,7 @@ fn colonies_are_their_elements_one_by_one() {
     let catalogue = Catalogue::embedded();
     let mandala = catalogue.rule("mandala").unwrap();
     let one_sided = Source::new("one-sided", ONE_SIDED);
-    for (name, source, turns) in [("mandala", mandala, 1), ("one-sided", one_sided, 2)] {
+    for (name, source, turns) in [("mandala", mandala, 1), ("one-sided", one_sided, 4)] {
         let graph = graph(&catalogue, &source);
         let growth = Growth::steps(20);
         let kinds = ColonyKinds::of(&graph, growth.steps, SHORTEST);

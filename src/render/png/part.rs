@@ -165,6 +165,10 @@ impl Part {
             planes.drain(|pixel, covered| {
                 let part = covered * u32::from(opacity);
                 let values = &mut data[4 * pixel..][..4];
+                if part == whole {
+                    values.copy_from_slice(&[red, green, blue, 255]);
+                    return;
+                }
                 for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {
                     let mixed = u32::from(ink) * part + u32::from(*value) * (whole - part);
                     #[expect(clippy::cast_possible_truncation, reason = "a mean of bytes")]

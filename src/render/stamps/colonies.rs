@@ -14,18 +14,19 @@ use crate::render::surface::Stamped;
 use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
 
 /// Places to a pixel, along either axis, on which fractals are put; for strokes half as many.
-const PLACES: f64 = 128.0;
+const PLACES: f64 = 64.0;
 
-/// How many times as often a stamp of a fractal with all that it seeds should be used: it takes longer to
-/// draw than the stamps of what it is made of.
+/// How many times as often a stamp of a fractal with all that it seeds should be used: so many times, and
+/// once for so many elements that are seeded. It takes longer to draw than the stamps of what it is made of.
 const USES_OF_WHOLE: u64 = 5;
+const SEEDED_A_USE: u64 = 12;
 
 /// Colonies of more elements are put together of smaller ones.
 const MOST_ELEMENTS: u64 = 1 << 10;
 
 /// The colonies of a pass that are stamped.
 pub(super) struct Colonies<'a> {
-    kinds: ColonyKinds<'a>,
+    kinds: &'a ColonyKinds,
     /// By kind.
     means: Vec<Means>,
     painted: Painted,
@@ -66,13 +67,15 @@ pub(in crate::render) enum Put {
 impl<'a> Colonies<'a> {
     /// The colonies of a scene, of which something is painted, that are worth a stamp.
     pub(super) fn of(
-        scene: &Scene<'a>,
+        scene: &'a Scene<'a>,
         hidden: &Hidden,
         painted: Painted,
         strokes: bool,
     ) -> Option<Self> {
-        let shortest = scene.sight.shortest().unwrap_or(0.0);
-        let kinds = ColonyKinds::of(scene.graph, scene.growth.steps, shortest);
+        let kinds = scene.colonies.get_or_init(|| {
+            let shortest = scene.sight.shortest().unwrap_or(0.0);
+            ColonyKinds::of(scene.graph, scene.growth.steps, shortest)
+        });
         let phases = if strokes { PLACES / 2.0 } else { PLACES };
         let places = whole(phases * phases).unsigned_abs();
         let means = |kind| Means::of(scene, hidden, kind, (painted, places));
@@ -104,11 +107,11 @@ impl Means {
     fn of(
         scene: &Scene<'_>,
         hidden: &Hidden,
-        kind: &ColonyKind<'_>,
+        kind: &ColonyKind,
         (painted, places): (Painted, u64),
     ) -> Self {
         let uses = kind.count / places.saturating_mul(kind.turns).max(1);
-        let instances = kind.instances();
+        let instances = kind.instances(scene.graph);
         if uses < scene.uses || instances.is_empty() {
             return Self::NOTHING;
         }
@@ -122,7 +125,7 @@ impl Means {
         let middle = discs.clone().map(|(middle, _)| middle).sum::<DVec2>() / count;
         let radii = discs.map(|(other, radius)| other.distance(middle) + radius);
         let radius = radii.fold(0.0, f64::max);
-        let length = kind.example.frame().stretch();
+        let length = kind.frame.stretch();
         if 2.0 * hidden.reach_of(scene, radius, length) > LARGEST {
             return Self::NOTHING;
         }
@@ -133,18 +136,20 @@ impl Means {
             radius,
         };
         let mut census = Census::of(scene);
-        let whole = kind.example.walk(true, &mut census).ok();
+        let example = kind.example(scene.graph);
+        let whole = example.walk(true, &mut census).ok();
         let later = painted.meets(&census.births[1]);
         if whole.is_none() {
             census = Census::of(scene);
-            if kind.example.walk(false, &mut census).is_err() {
+            if example.walk(false, &mut census).is_err() {
                 return Self::NOTHING;
             }
         }
         let own = painted.meets(&census.births[0]);
         let shows = if own { Shows::Own } else { Shows::Nothing };
         let [elements, seeded] = census.counts;
-        let is_worth = uses >= USES_OF_WHOLE * scene.uses && elements + seeded >= FEWEST_IN_RUN;
+        let least = scene.uses * USES_OF_WHOLE.max(seeded / SEEDED_A_USE);
+        let is_worth = uses >= least && elements + seeded >= FEWEST_IN_RUN;
         match whole {
             Some(_) if !own && !later => means(Taken::Unseen, shows),
             Some(walked) if !later && elements >= FEWEST_IN_RUN => {
@@ -203,7 +208,7 @@ impl Stamps<'_> {
             linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),
             painted: colonies.painted.since(colony.born()),
         };
-        let length = kind.example.frame().stretch() * scene.canvas.scale();
+        let length = kind.frame.stretch() * scene.canvas.scale();
         self.put(&key, map.translation, colonies.phases, |phase| {
             let linear = turned(&map.matrix2, &key.linear, length);
             let reach = self

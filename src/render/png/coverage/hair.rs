@@ -77,6 +77,11 @@ impl Hairs {
         -libm::expm1f(-taken / UNIT)
     }
 
+    /// Whether there have never been any.
+    pub(super) fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
     /// Has cells if others have.
     pub(super) fn make_room_for(&mut self, others: &Self) {
         if self.cells.is_empty() {

@@ -177,8 +177,11 @@ impl Plane {
             let cells = start + columns.start..start + columns.end;
             let others = &other.cells[cells.clone()];
             for (cell, other) in self.cells[cells.clone()].iter().zip(others) {
-                cover(cell, other.load(Relaxed));
-                other.store(0, Relaxed);
+                let samples = other.load(Relaxed);
+                if samples > 0 {
+                    cover(cell, samples);
+                    other.store(0, Relaxed);
+                }
             }
             self.hairs.take_over(&mut other.hairs, cells);
         }
@@ -190,6 +193,7 @@ impl Plane {
         let [rows, columns] = self.take_touched();
         let [width, height] = self.size.map(index);
         let margin = index(MARGIN);
+        let has_hairs = !self.hairs.is_empty();
         // The margins are uncovered with the rest.
         let seen = margin..margin + width;
         for row in rows {
@@ -198,6 +202,10 @@ impl Plane {
             let cells = start + columns.start..start + columns.end;
             for (column, cell) in columns.clone().zip(&self.cells[cells]) {
                 let samples = cell.load(Relaxed).count_ones();
+                // Most cells of many layers are empty.
+                if samples == 0 && !has_hairs {
+                    continue;
+                }
                 cell.store(0, Relaxed);
                 let hairs = self.hairs.take(start + column);
                 let covered = covered(samples, hairs);
