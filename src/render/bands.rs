@@ -1,11 +1,10 @@
-//! Pictures larger than memory: drawn in bands of some rows, one after another, and encoded as
-//! they come.
+//! Pictures larger than memory: drawn in bands of rows, one after another, and encoded band by band.
 //!
-//! Every band of an approximant is a walk that leaves out what lies outside, where walks can; other
-//! drawings are drawn again for every band, of which only its rows are kept. All bands are drawn
-//! twice, first to see which colours there are: these decide how pixels are written. The bytes do
-//! not depend on the height of bands, so long as no path that is left to tiny-skia is so long that
-//! it is drawn in pieces.
+//! Every band of an approximant takes a walk that skips what lies outside the band, where the graph permits
+//! that; any other drawing is drawn again for every band, and only the rows of the band are kept. A first
+//! pass over the bands collects the colours, which determine the encoding of pixels; it ends as soon as
+//! further pixels cannot change that. A second pass draws and encodes. The bytes do not depend on the height
+//! of bands, unless tiny-skia draws a path that is so long that it is divided.
 
 use std::io::{self, Write};
 use std::num::NonZero;
@@ -20,23 +19,23 @@ use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
 use super::survey::overhang;
 use super::{Canvas, Drawing, Options, RenderError, Scene, Survey};
 
-/// The pixels of a band, and what another one can be drawn with.
+/// Pixels of a band, and buffers for the next one.
 type Band = Result<(Pixmap, Spare), RenderError>;
 
-/// A picture that is drawn in bands.
+/// Picture that is drawn in bands.
 struct Bands<'a> {
     size: [u32; 2],
-    /// The rows of a band.
+    /// Number of rows of a band.
     rows: u32,
-    /// Whether what lies behind everything is opaque.
+    /// Whether the background is opaque.
     on_opaque: bool,
     options: &'a Options,
     cancel: Option<&'a AtomicBool>,
-    /// Counts pixels, for elements are met again in every band.
+    /// Progress, in pixels, since elements are visited again in every band.
     progress: Option<&'a Progress>,
 }
 
-/// Draws and encodes what a survey has seen.
+/// Draws and encodes a surveyed approximant.
 pub(super) fn write_survey(
     survey: &Survey<'_>,
     growth: &Growth<'_>,
@@ -49,7 +48,7 @@ pub(super) fn write_survey(
         Width::Pixels(width) => width * overhang(style),
         Width::Relative(_) => 0.0,
     };
-    // What comes near a pixel tinges it.
+    // Antialiasing colours pixels that a shape covers in part.
     let pad = stroke + 1.0;
     let all = canvas.shown(pad);
     let sight = survey.sight().clone();
@@ -100,7 +99,8 @@ fn drawn(drawing: &impl Drawing, rows: Range<u32>, spare: Spare, threads: NonZer
 }
 
 impl<'a> Bands<'a> {
-    /// Bands of no more pixels each than memory should hold.
+    /// Divides a drawing into bands of at most [`Options::band`] pixels, up to a whole number of raster
+    /// strips.
     fn of(drawing: &impl Drawing, options: &'a Options, cancel: Option<&'a AtomicBool>) -> Self {
         let size @ [width, height] = drawing.size();
         let rows = (options.band / u64::from(width)).clamp(1, height.into());
@@ -116,7 +116,7 @@ impl<'a> Bands<'a> {
         }
     }
 
-    /// Draws and encodes them.
+    /// Draws and encodes the bands.
     fn write(
         &self,
         out: &mut impl Write,
@@ -124,7 +124,7 @@ impl<'a> Bands<'a> {
     ) -> Result<(), RenderError> {
         let mut spare = Spare::default();
         let mut give = |rows: Range<u32>, give: &mut dyn FnMut(&Pixmap) -> io::Result<()>| {
-            // A walk over little would not look.
+            // A walk over few elements does not check for cancellation.
             if self.cancel.is_some_and(|it| it.load(Relaxed)) {
                 return Err(RenderError::Walk(WalkError::Cancelled));
             }
@@ -156,7 +156,7 @@ impl<'a> Bands<'a> {
         }
     }
 
-    /// The rows of every band.
+    /// Iterates over the rows of the bands.
     fn each(&self) -> impl Iterator<Item = Range<u32>> {
         let [_, height] = self.size;
         let tops = (0..height).step_by(self.rows as usize);
@@ -171,7 +171,7 @@ impl<'a> Bands<'a> {
     }
 }
 
-/// Keeps why it cannot be written to: an encoder would not tell.
+/// Writer that keeps the error of a failed write, of which the encoder sees the kind only.
 struct Told<W> {
     out: W,
     error: Option<io::Error>,

@@ -1,4 +1,4 @@
-//! Outlines of base elements as straight lines, no finer than a surface shows them.
+//! Level of detail of outlines: base elements simplified to straight lines, as fine as a surface can show.
 
 use std::sync::OnceLock;
 
@@ -8,27 +8,26 @@ use crate::rule::{BaseElement, Piece};
 
 use super::png::{bounding_within, flattened_within};
 
-/// Outlines of straight sides are made coarser if they have more than this.
+/// Maximum number of straight sides of an outline that is not simplified.
 const FEW_SIDES: usize = 8;
 
-/// Tolerances are powers of 1/2 from 1 down, so many of them, in units.
+/// Number of tolerances: powers of 1/2 from 1 down, in units of the graph.
 const LEVELS: usize = 16;
 
-/// Closed curves are drawn as polygons that are thinned out with a tolerance, or with one that is halved
-/// so often at most.
+/// Maximum number of tolerances, each half of the one before, with which a closed curve is simplified.
 const MOST_TRIES: u32 = 8;
 
-/// The corners of outlines, by what may be left out of them.
+/// Simplified outlines of base elements, by tolerance.
 pub(super) struct Coarse {
-    /// How far, in pixels, an outline may lie beside where it is.
+    /// Largest deviation of an outline that is invisible, in pixels.
     grain: f64,
-    /// By base element and tolerance, in units of the graph.
+    /// Corners by base element and tolerance; `None` for base elements that are not simplified.
     outlines: Vec<Option<[OnceLock<Vec<DVec2>>; LEVELS]>>,
 }
 
 impl Coarse {
-    /// Those of a graph, on a surface that shows nothing finer than a grain, in pixels; `None` if all
-    /// are plain.
+    /// Creates the simplified outlines of a graph, for a surface that shows no detail finer than `grain`
+    /// pixels; `None` if no base element needs them.
     pub(super) fn of(graph: &Graph, grain: f64) -> Option<Self> {
         let levels =
             |base_element| is_fine(base_element).then(|| std::array::from_fn(|_| OnceLock::new()));
@@ -37,9 +36,10 @@ impl Coarse {
         any.then_some(Self { grain, outlines })
     }
 
-    /// The corners of a base element, in its unit frame, where its frame stretches units to so many
-    /// pixels at most: of a closed one with its inside to the left, of an open one from end to end.
-    /// `None` where it is to be drawn as it is.
+    /// Returns the corners of a base element, in its unit frame, for frames that stretch a unit to at most
+    /// `pixels` pixels. The inside of a closed outline lies to the left; the corners of an open one run from
+    /// end to end. `None` if the outline is to be drawn as it is: it is simple, or the finest tolerance is
+    /// too coarse.
     #[inline]
     pub(super) fn corners(
         &self,
@@ -59,7 +59,7 @@ impl Coarse {
     }
 }
 
-/// How often 1 is doubled until it is no less than a number that is not negative.
+/// Returns the smallest number n with 2ⁿ ≥ `number`, where `number` is not negative.
 #[inline]
 fn doublings(number: f64) -> usize {
     let (part, exponent) = libm::frexp(number.max(1.0));
@@ -67,14 +67,14 @@ fn doublings(number: f64) -> usize {
     usize::try_from(doublings).unwrap_or(0)
 }
 
-/// Whether there may be something to be left out.
+/// Returns whether an outline may be simplified.
 fn is_fine(base_element: &BaseElement) -> bool {
     let pieces = base_element.pieces();
     let has_curves = pieces.iter().any(|piece| matches!(piece, Piece::Cubic(..)));
     has_curves || pieces.len() > FEW_SIDES
 }
 
-/// The corners of lines that lie within a tolerance of an outline, or within two of curves that bound
+/// Returns the corners of lines within a tolerance of an outline, or within twice that of curves that bound
 /// an area.
 fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
     let has_curves = |piece: &Piece| matches!(piece, Piece::Cubic(..));
@@ -86,7 +86,7 @@ fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
             let finer = |halvings| 1.25 * tolerance / f64::from(1 << halvings);
             let mut thin = (0..MOST_TRIES).map(|halvings| thinned(&fine, finer(halvings)));
             let swollen = thin.find_map(|thin| swollen(thin, area, tolerance));
-            // Of few long curves fewer chords may do.
+            // A few long curves may need fewer chords.
             let corners = flat(base_element, 2.0 * tolerance);
             swollen
                 .filter(|thin| thin.len() < corners.len())
@@ -98,7 +98,7 @@ fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
     turned(base_element, corners)
 }
 
-/// The corners of lines along an outline, from its start to its end, no farther than a tolerance from its
+/// Returns the corners of lines along an outline, from its start to its end, within a tolerance of its
 /// curves.
 fn flat(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
     let mut at = base_element.start();
@@ -109,7 +109,7 @@ fn flat(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
             Piece::Cubic(a, b, end) => {
                 let curve = [at, a, b, end].map(|point| point.to_array());
                 if base_element.is_closed() {
-                    // As much on either side, for the sides bound as much.
+                    // Chords deviate equally to both sides, so that they bound the same area.
                     corners.extend(bounding_within(curve, tolerance).map(DVec2::from));
                 } else {
                     corners.extend(flattened_within(curve, tolerance).map(DVec2::from));
@@ -121,8 +121,8 @@ fn flat(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
     corners
 }
 
-/// The corners of an outline with the inside to the left, of a closed one without the last, which is the
-/// first.
+/// Returns the corners of an outline with the inside to the left; of a closed one without the last corner,
+/// which equals the first.
 fn turned(base_element: &BaseElement, mut corners: Vec<DVec2>) -> Vec<DVec2> {
     if base_element.is_closed() {
         corners.pop();
@@ -133,8 +133,8 @@ fn turned(base_element: &BaseElement, mut corners: Vec<DVec2>) -> Vec<DVec2> {
     corners
 }
 
-/// A polygon as much larger as it takes to have an area, if none of its corners moves by more than a
-/// tolerance. There may be millions of them, so that what is cut off each would be missed.
+/// Scales a polygon about its centre to a given area; `None` if a corner would move by more than a tolerance.
+/// A picture may have millions of polygons, which would visibly lose what the chords cut off.
 fn swollen(mut corners: Vec<DVec2>, area: f64, tolerance: f64) -> Option<Vec<DVec2>> {
     let sides = corners.iter().zip(&corners[1..]);
     let own = sides.map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0;
@@ -151,8 +151,8 @@ fn swollen(mut corners: Vec<DVec2>, area: f64, tolerance: f64) -> Option<Vec<DVe
     })
 }
 
-/// The corners of a line, from end to end, without those that may be left out: no corner is farther than
-/// a tolerance from the side that comes to stand for it (Ramer 1972; Douglas & Peucker 1973).
+/// Returns the corners of a line, from end to end, without redundant ones: no corner is farther than a
+/// tolerance from the side that replaces it (Ramer 1972; Douglas & Peucker 1973).
 fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let Some(last) = corners.len().checked_sub(1) else {
         return Vec::new();
@@ -179,7 +179,7 @@ mod tests {
     use crate::geometry::{DVec2, distance_to_segment};
     use crate::rule::{BaseElement, Piece};
 
-    /// The area that corners encircle.
+    /// Returns the area of a polygon.
     fn area(corners: &[DVec2]) -> f64 {
         let nexts = corners.iter().cycle().skip(1);
         corners
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn circles_become_polygons_of_their_area() {
-        // The usual quarters of a circle, which are off by less than 3e-4.
+        // The usual approximation of a circle by four curves, with an error below 3e-4.
         let k = 0.552_284_749_8;
         let quarters = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(DVec2::from);
         let piece = |number: usize| {

@@ -1,10 +1,9 @@
-//! Tufts: short thin lines that stand close together in a block, drawn as one.
+//! Tufts: short thin lines close together in a segment batch, drawn as one shape.
 //!
-//! Of lines that are shorter than a pixel a picture shows no more than how much they cover and
-//! where. A tuft covers as much as its lines do, and is a box with their centre and their variance
-//! across and down. Combed pictures are within 2 of 255 shades of those where every line is drawn.
-//! Lines of one fixed width are not combed: many of them may lie on each other, and make so much of
-//! what a tuft is off.
+//! Of lines shorter than a pixel, a picture shows only the area that they cover, and its position. A tuft
+//! covers the same area as its lines: it is a box with their centroid and with their variances along x and y.
+//! Pictures with tufts are within 2 of 255 shades of those in which every line is drawn. Lines of a fixed
+//! width do not form tufts: many of them may coincide, and a tuft would count the area of each.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,29 +15,30 @@ use crate::grow::Stick;
 use super::sketch::{class_width, width_class};
 use super::surface::{FINE, Pen, Tuft};
 
-/// Lines that are wider than this, in pixels, or longer, are drawn one by one.
+/// Maximum width of the lines of tufts, in pixels; wider lines are drawn one by one.
 const THIN: f64 = 0.05;
+/// Maximum length of such lines, in pixels.
 const LONG: f64 = 1.0;
 
-/// Lines are cut into pieces that are no longer than this, in pixels, and neither is the diagonal of
-/// what a tuft holds.
+/// Maximum length of the pieces into which lines are cut, and maximum diagonal of the lines of a tuft, in
+/// pixels.
 const NEAR: f64 = 0.25;
 
-/// Blocks are combed for scales that are this part of an octave apart.
+/// Number of scales per octave for which tufts are computed.
 const SCALES_AN_OCTAVE: f64 = 64.0;
 
-/// Combed blocks are kept up to so many bundles together.
+/// Maximum number of bundles that are kept, over all batches and scales.
 const MOST_KEPT: usize = 1 << 17;
 
-/// Combs the blocks of one walk.
+/// Combines the lines of the segment batches of one walk into tufts.
 pub(super) struct Comb {
-    /// The logarithm to base 2 of the width of a line one pixel long, in hundredths of a pixel.
+    /// Logarithm to base 2 of the stroke width of a line of one pixel, in hundredths of a pixel.
     octave: f64,
-    /// What caps add to a line, in widths.
+    /// Length that the caps add to a line, in widths.
     ends: f64,
-    /// Lines are thinner than this, in pixels.
+    /// Width below which lines form tufts, in pixels.
     below: f64,
-    /// By where a block's lines are and by scale. A walk makes each block once.
+    /// Results, by the address of a batch's lines and by scale. A walk creates every batch once.
     kept: Mutex<Kept>,
 }
 
@@ -48,26 +48,26 @@ struct Kept {
     bundles: usize,
 }
 
-/// The lines of a block at a scale.
+/// Lines of a segment batch at a scale.
 #[derive(Default)]
 pub(super) struct Combed {
     bundles: Vec<Bundle>,
-    /// The lines that are drawn one by one, without those between.
+    /// Ranges of lines that are drawn one by one; the others are in bundles.
     pub(super) apart: Vec<Range<usize>>,
 }
 
-/// Lines of a block that make a tuft.
+/// Lines of a segment batch that form a tuft.
 struct Bundle {
     centre: DVec2,
-    /// Variances along x and y, and their covariance.
+    /// Variances along x and y, and covariance.
     spread: [f32; 3],
-    /// The area and the mean width at the scale of the block, in pixels.
+    /// Area and mean width at the scale of the batch, in pixels.
     area: f32,
     width: f32,
 }
 
 impl Comb {
-    /// Of strokes whose width is relative, thinner than `below` pixels.
+    /// Creates a comb for strokes of relative width that are thinner than `below` pixels.
     pub(super) fn new(width: f64, pen: Pen, below: f64) -> Self {
         Self {
             octave: libm::log2(width * FINE),
@@ -77,8 +77,8 @@ impl Comb {
         }
     }
 
-    /// Combs a block that stands on the picture with so many pixels to the unit. Also tells how much
-    /// longer its lines are than at the scale that they have been combed for.
+    /// Combines the lines of a segment batch that is drawn at `scale` pixels per unit. Returns the result and
+    /// the ratio of that scale to the one for which it was computed.
     pub(super) fn comb(&self, sticks: &[Stick], scale: f64) -> (Arc<Combed>, f64) {
         let octave = libm::log2(scale) * SCALES_AN_OCTAVE;
         #[expect(
@@ -141,12 +141,13 @@ impl Comb {
 }
 
 impl Combed {
-    /// Whether all lines are drawn one by one.
+    /// Returns whether all lines are drawn one by one.
     pub(super) fn is_bald(&self) -> bool {
         self.bundles.is_empty()
     }
 
-    /// The tufts of a block on the picture, with lines that are so much longer.
+    /// Iterates over the tufts of a batch that `map` places on the picture, with lines `longer` times as
+    /// long.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -155,7 +156,7 @@ impl Combed {
     pub(super) fn tufts(&self, map: DAffine2, longer: f64) -> impl Iterator<Item = Tuft> {
         let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis].map(|axis| axis * FINE);
         let [along, across, both] = [x * x, y * y, x * y * 2.0].map(|square| {
-            // Twelve times the variance of a line that is spread out evenly is its square.
+            // The square of a line's length is twelve times its variance.
             (square * 12.0).to_array().map(|square| square as f32)
         });
         self.bundles.iter().map(move |bundle| {
@@ -176,11 +177,12 @@ impl Combed {
     }
 }
 
-/// A bundle that is being made.
+/// Bundle under construction.
 #[derive(Default)]
 struct Open {
     bounds: Option<Bounds>,
-    /// Sums of areas, and of those times widths, places and products of places from `origin`.
+    /// Sums of areas, and of areas times widths, times positions relative to `origin`, and times products of
+    /// the coordinates of these.
     area: f64,
     width: f64,
     origin: DVec2,
@@ -189,7 +191,7 @@ struct Open {
 }
 
 impl Open {
-    /// Whether a line lies near enough to those that it has.
+    /// Returns whether a line lies close enough to the lines of the bundle.
     fn has_room_for(&self, ends: [DVec2; 2], near: f64) -> bool {
         self.bounds.as_ref().is_none_or(|bounds| {
             let mut all = *bounds;
@@ -216,7 +218,7 @@ impl Open {
         self.squares[2] += square(middle.x, middle.y, way.x, way.y);
     }
 
-    /// What there is, if it covers anything.
+    /// Completes the bundle; `None` if it covers no area.
     fn take(&mut self) -> Option<Bundle> {
         let done = std::mem::take(self);
         let area = done.area;

@@ -1,3 +1,5 @@
+//! Index of the pixels that a layer covers completely, which threads query for occlusion.
+
 use std::ops::Range;
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use std::sync::atomic::{AtomicU64, fence};
@@ -7,41 +9,44 @@ use crate::geometry::DVec2;
 use crate::parallel::is_too_early;
 use crate::whole::whole;
 
-/// No layer: pixels of none are asked for.
+/// Number of no layer.
 const NONE: u64 = 0;
 
-/// What no layer of any picture has been yet.
+/// Number of the next layer, unique among all pictures.
 static NEXT: AtomicU64 = AtomicU64::new(NONE + 1);
 
-/// Boxes with longer sides, in pixels, are not looked at.
+/// Maximum side of the boxes that are examined, in pixels.
 const LONGEST: f64 = 64.0;
 
-/// Prints of pens lie as much beside their lines, in pixels, and to spare.
+/// Upper bound of the displacement of a round pen's mask from its line, in pixels.
 const PAD: f64 = 0.25;
 
-/// Which pixels one layer covers all over, while it is being drawn: what else it draws there does not
-/// show.
+/// Pixels that one layer covers completely while it is being drawn. Anything else that the layer draws there
+/// is invisible.
 ///
-/// A layer is drawn with one opaque colour. While some threads draw, others ask: what is drawn late
-/// is not known yet, but what is known stays so as long as the layer does. That is told by its
-/// number, before and after the pixels are looked at (a sequence lock; Boehm, "Can seqlocks get
-/// along with programming language memory models?", 2012).
+/// A layer is drawn with one opaque colour. Some threads draw while others query: recent coverage may not be
+/// known yet, but known coverage stays valid as long as the layer does. The number of the layer, which is
+/// read before and after the pixels, ensures that (a sequence lock; Boehm, "Can seqlocks get along with
+/// programming language memory models?", 2012).
 #[derive(Debug)]
 pub(crate) struct Filled {
-    /// Width and height of the rows of the picture that are drawn, and the first of them.
+    /// Width and height of the drawn rows of the picture, in pixels.
     size: [usize; 2],
+    /// First drawn row.
     top: f64,
-    /// The pixels of margin on every side, and the cells of a row.
+    /// Margin on every side, in pixels.
     margin: usize,
+    /// Number of cells per row.
     stride: usize,
     layer: AtomicU64,
-    /// The cells of planes, once there are any; a pixel that is covered all over has all bits set in
-    /// some.
+    /// Cells of the coverage buffers that have been made. The union of the buffers' bits is all ones for
+    /// pixels that are covered completely.
     planes: Box<[OnceLock<Arc<[AtomicU64]>>]>,
 }
 
 impl Filled {
-    /// Nothing, of so many planes of some rows of a picture, with a margin on every side.
+    /// Creates an empty index for `planes` coverage buffers of some rows of a picture, with a margin on every
+    /// side.
     pub(crate) fn new(width: u32, rows: Range<u32>, margin: i64, planes: usize) -> Self {
         let size = [width, rows.end - rows.start].map(|side| side as usize);
         let margin = usize::try_from(margin).unwrap_or(0);
@@ -55,35 +60,36 @@ impl Filled {
         }
     }
 
-    /// The cells of a plane, by rows.
+    /// Adds the cells of a coverage buffer, row by row.
     pub(crate) fn add(&self, plane: usize, cells: Arc<[AtomicU64]>) {
         let _ = self.planes[plane].set(cells);
     }
 
-    /// The number of the first of so many new layers.
+    /// Reserves `count` new layers and returns the number of the first.
     pub(crate) fn layers(count: u64) -> u64 {
         NEXT.fetch_add(count, Relaxed)
     }
 
-    /// What is drawn from now on, and what the planes hold, is of a layer.
+    /// Declares that all coverage, present and future, belongs to a layer.
     #[inline]
     pub(crate) fn begin(&self, layer: u64) {
         self.layer.store(layer, Release);
     }
 
-    /// What the planes hold is about to be taken from them.
+    /// Declares that the coverage buffers are about to be cleared.
     pub(crate) fn end(&self) {
         self.layer.store(NONE, Relaxed);
         fence(Release);
     }
 
-    /// To be called by each thread before it draws.
+    /// Orders a thread's drawing after the declarations; every thread calls it before it draws.
     pub(crate) fn draw() {
         fence(Release);
     }
 
-    /// Whether a layer covers all pixels that a box meets which reaches so far to both sides of its
-    /// middle, in so far as they lie in these rows of the picture.
+    /// Returns whether a layer covers all pixels that meet a box, as far as they lie in these rows of the
+    /// picture. The box extends by `reach` to both sides of its centre; larger boxes than are examined are
+    /// not full.
     pub(crate) fn is_full(&self, layer: u64, middle: DVec2, reach: [f64; 2]) -> bool {
         let reach = reach.map(|reach| reach + PAD);
         let is_small = reach.iter().all(|reach| 2.0 * reach <= LONGEST);
@@ -121,8 +127,8 @@ mod tests {
     use super::Filled;
     use crate::geometry::DVec2;
 
-    /// A picture of 8 by 8 pixels whose pixels from 2 to 5 are covered, half of each on either of
-    /// two planes.
+    /// Returns an index of 8 by 8 pixels and two coverage buffers. Pixels 2 to 5 of both axes are covered,
+    /// half of each on either buffer.
     fn filled() -> (Filled, Vec<Arc<[AtomicU64]>>) {
         let filled = Filled::new(8, 0..8, 1, 3);
         let half = |mask: u64| -> Arc<[AtomicU64]> {

@@ -1,4 +1,4 @@
-//! What of an approximant can be seen: how small its elements get, and what lies in the picture.
+//! Culling: the visible part of an approximant, by the size of elements and by the window.
 
 use std::sync::Arc;
 
@@ -14,42 +14,41 @@ use super::survey::relative_overhang;
 #[cfg(test)]
 mod tests;
 
-/// After more steps than this it is not told how long elements are.
+/// Maximum number of steps for which lengths are tabulated.
 const MOST_POWERS: usize = 1 << 10;
 
-/// Elements that are shorter than others by no more than rounding makes them are as long, as a
-/// multiple.
+/// Ratio above which lengths count as equal, since they differ by rounding only.
 pub(super) const NEARLY: f64 = 1.0 - 1e-9;
 
-/// Where walks for a picture need not go.
+/// Culling of the walks for a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
-    /// Elements whose frames are shorter than this are not replaced, in the rule's units.
+    /// Length of frames below which elements are not replaced, in multiples of [`Graph::unit`].
     shortest: f64,
     window: Option<Window>,
-    /// Whether an object is replaced however small it is, by object; empty if none is.
+    /// By object, whether it is replaced regardless of its size; empty if no object is.
     is_whole: Arc<[bool]>,
-    /// The most that what becomes of an element is long after a number of steps, as a multiple of
-    /// its length.
+    /// By number of steps, upper bound of the lengths of an element's descendants, as a multiple of its
+    /// length; empty if no descendant becomes too short.
     longest: Arc<[f64]>,
 }
 
-/// What part of the plane is seen.
+/// Visible part of the plane.
 #[derive(Clone, Debug)]
 struct Window {
     bounds: Bounds,
-    /// How far beyond what is to be seen they lie.
+    /// Padding of the bounds around the part that is shown.
     pad: f64,
-    /// How far what becomes of an object reaches from the middle of its frame, by object.
+    /// By object, radius of its subtree about the centre of its frame.
     reaches: Arc<[f64]>,
-    /// That middle, in every frame.
+    /// Centre of every unit frame.
     middle: DVec2,
-    /// What is done with an element whose descendants all lie outside.
+    /// Treatment of elements whose descendants all lie outside.
     outside: Enter,
 }
 
 impl Sight {
-    /// Everything is seen.
+    /// Returns a sight without culling.
     pub(super) fn unbounded() -> Self {
         Self {
             shortest: 0.0,
@@ -59,8 +58,8 @@ impl Sight {
         }
     }
 
-    /// Elements shorter than this are not replaced, but where they lead to seeds that are placed as
-    /// the initiator: those are as large as ever.
+    /// Returns a sight that does not replace elements shorter than `shortest`, in the rule's units, unless
+    /// they lead to seeds that are placed as the initiator, whose size does not depend on theirs.
     pub(super) fn to_length(graph: &Graph, shortest: f64) -> Self {
         Self {
             shortest: NEARLY * shortest / graph.unit(),
@@ -74,9 +73,9 @@ impl Sight {
         }
     }
 
-    /// No more than a part of the plane is seen; all of it where the graph does not tell how far
-    /// its objects reach, or where what lies outside tells in what lies inside. Ranks do not if they
-    /// `are_counted` whatever is visited.
+    /// Restricts the sight to a part of the plane. Returns it unchanged if the graph does not bound its
+    /// subtrees, or if elements outside affect those inside. Ranks do not if they `are_counted` regardless of
+    /// the elements that are visited.
     pub(super) fn within(
         self,
         bounds: &Bounds,
@@ -106,12 +105,12 @@ impl Sight {
         }
     }
 
-    /// How far the lines may lead from elements that link them.
+    /// Returns an upper bound of the length of lines that link elements.
     pub(super) fn links(&self, graph: &Graph, growth: &Growth<'_>) -> f64 {
         links(graph, graph.longest_after(growth.steps).max(self.shortest))
     }
 
-    /// The same of another part of the plane, where a part is seen.
+    /// Returns the sight of another part of the plane, if it is restricted to one.
     pub(super) fn moved_to(&self, bounds: &Bounds) -> Self {
         let mut moved = self.clone();
         if let Some(window) = &mut moved.window {
@@ -120,44 +119,44 @@ impl Sight {
         moved
     }
 
-    /// Whether walks may leave out what lies outside a window.
+    /// Returns whether walks may leave out elements outside a window.
     pub(super) fn is_bounded(&self) -> bool {
         self.window.is_some()
     }
 
-    /// Whether walks may leave out anything.
+    /// Returns whether walks may leave out any elements.
     pub(super) fn cuts(&self) -> bool {
         self.shortest > 0.0 || self.window.is_some()
     }
 
-    /// The length below which walks replace nothing, if they may leave out anything.
+    /// Returns the length below which walks replace no elements, if they may leave out any.
     pub(super) fn shortest(&self) -> Option<f64> {
         self.cuts().then_some(self.shortest)
     }
 
-    /// Whether an element of a length is too short to be replaced, if it leads to no seeds that are placed
-    /// as the initiator.
+    /// Returns whether an element is too short to be replaced, if it leads to no seeds that are placed as the
+    /// initiator.
     #[inline]
     pub(super) fn is_short(&self, length: f64) -> bool {
         length < self.shortest
     }
 
-    /// Whether anything that becomes of an element of a length in a number of steps may be so long
-    /// that it is replaced.
+    /// Returns whether a descendant of an element of a given length may be long enough to be replaced after
+    /// `steps` steps.
     #[inline]
     pub(super) fn lasts(&self, length: f64, steps: u32) -> bool {
         let longest = self.longest.get(steps as usize).or(self.longest.last());
         longest.is_none_or(|longest| length * longest >= self.shortest)
     }
 
-    /// After how many steps nothing that becomes of an element of a length is replaced any more, at the
-    /// latest.
+    /// Returns a number of steps after which no descendant of an element of a given length is replaced any
+    /// more, if one is known.
     pub(super) fn steps_of(&self, length: f64) -> Option<u32> {
         let steps = 0..u32::try_from(self.longest.len()).ok()?;
         steps.into_iter().find(|&steps| !self.lasts(length, steps))
     }
 
-    /// What a walk does with an element that can be replaced.
+    /// Returns what a walk does with a replaceable element.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {
         if !self.cuts() {
@@ -182,9 +181,9 @@ fn padded(bounds: &Bounds, pad: f64) -> Bounds {
 }
 
 impl Window {
-    /// Whether all that becomes of an element lies outside.
+    /// Returns whether the subtree of an element lies outside.
     fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
-        // Rounding must not hide what just touches the edge.
+        // Slack for rounding, so that subtrees which just touch the edge stay visible.
         const SLACK: f64 = 1.0 + 1e-9;
         let middle = subtree.frame.map.transform_point2(self.middle);
         let nearest = middle.clamp(self.bounds.min(), self.bounds.max());
@@ -193,10 +192,10 @@ impl Window {
     }
 }
 
-/// The most that what becomes of an element is long after each number of steps, as a multiple of its
-/// length, where a length decides what is replaced.
+/// Returns, by number of steps, an upper bound of the lengths of an element's descendants, as a multiple of
+/// its length; empty if length does not decide which elements are replaced.
 fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
-    // Rounding must not hide what is just as long.
+    // Slack for rounding, so that descendants of the limiting length are kept.
     const SLACK: f64 = 1.0 + 1e-9;
     let ratio = graph.longest_child() * SLACK;
     if shortest <= 0.0 || ratio >= 1.0 {
@@ -206,9 +205,9 @@ fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
     powers.take(MOST_POWERS).collect()
 }
 
-/// What can be done with an element that is not seen; `None` if it is to be replaced nevertheless.
+/// Returns the treatment of elements outside the window; `None` if they are to be replaced nevertheless.
 fn outside(graph: &Graph, style: &Style, are_counted: bool) -> Option<Enter> {
-    // Elements and fractals that are not visited could not be numbered.
+    // Ranks and numbers of fractals depend on the elements that are visited.
     let are_numbered = match style.color_by {
         ColorBy::Index => !are_counted,
         ColorBy::Fractal => true,
@@ -221,19 +220,20 @@ fn outside(graph: &Graph, style: &Style, are_counted: bool) -> Option<Enter> {
     if !graph.objects().iter().any(is_open) || !starts_rings(graph) {
         return Some(Enter::Skip);
     }
-    // Where a closed path is broken, its two ends may be in sight: caps must look like the corner.
+    // Where a closed path is broken, its two ends may be visible: caps must look like the corner.
     let seam_shows = style.cap != Cap::Round || style.join != Join::Round;
     if style.fill.is_none() && !seam_shows {
         return Some(Enter::Skip);
     }
-    // An outline may take any way outside that leads from one end to the other: what lies inside
-    // stays encircled as often. It stays whole if the elements of other approximants on that way
-    // are of the same class.
+    // Outside the window an outline may take any path from one end to the other: the winding numbers inside
+    // are unchanged. It stays in one piece if the elements of other approximants on that path are of the same
+    // class.
     let stays_whole = Classes::before_survey(style.color_by, graph, 0).keep_fractals_whole();
     (graph.keeps_lines() && (stays_whole || !seam_shows)).then_some(Enter::Keep)
 }
 
-/// The radius, about the middle of its unit frame, of a disc that holds an element with its stroke.
+/// Returns the radius, about the centre of its unit frame, of a disc that contains an element with its
+/// stroke.
 pub(super) fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
     let stroke = match style.width {
         Width::Relative(width) => {
@@ -244,7 +244,7 @@ pub(super) fn own_reach(graph: &Graph, object: &Object, style: &Style) -> f64 {
     graph.outline_radius(object) + stroke
 }
 
-/// Whether a fractal may be a closed chain.
+/// Returns whether a fractal may be a closed chain.
 pub(super) fn starts_rings(graph: &Graph) -> bool {
     graph.starts().any(Chain::is_ring)
         || graph
@@ -266,9 +266,9 @@ pub(super) fn starts_rings(graph: &Graph) -> bool {
             })
 }
 
-/// How far the lines may lead that link base elements which do not run from end to end of their
-/// frames: from an element that is seen to one that is not. `longest` is the length of the longest
-/// element that could still be replaced.
+/// Returns an upper bound of the length of the lines that link base elements which do not run from end to end
+/// of their frames: from a visible element to one outside. `longest` is the length of the longest element
+/// that could still be replaced.
 fn links(graph: &Graph, longest: f64) -> f64 {
     let mut farthest = 0.0;
     for object in graph.objects() {
@@ -279,7 +279,7 @@ fn links(graph: &Graph, longest: f64) -> f64 {
         let (start, _) = base_element.outline(false);
         let (end, _) = base_element.outline(true);
         let link = f64::max(start.length(), end.distance(DVec2::X));
-        // An element that is kept may be as long as any.
+        // Elements that are kept may have any length.
         let length = match object.replacement {
             _ if link == 0.0 => continue,
             Replacement::Kept => f64::INFINITY,

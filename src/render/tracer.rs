@@ -1,17 +1,19 @@
+//! Tracing of paths onto a surface, without redundant vertices.
+
 use std::io;
 use std::sync::Arc;
 
 use crate::render::filled::Filled;
 use crate::render::surface::{Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
 
-/// Traces paths onto a surface: what adds nothing is left out, and what would vanish becomes a dot.
+/// Traces paths onto a surface. Redundant vertices are left out; a subpath without length becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {
     surface: &'s mut S,
     pen: Position,
     start: Position,
-    /// A vertex that is not drawn yet: the last one of a closed path is left out.
+    /// Vertex that is not drawn yet: the last vertex of a closed path is left out.
     held: Option<Position>,
-    /// Whether the subpath has a vertex beside its start.
+    /// Whether the subpath has a vertex other than its start.
     has_length: bool,
     open: bool,
 }
@@ -49,7 +51,7 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         }
     }
 
-    /// Straight lines to vertices, one after another; those that add nothing are taken out.
+    /// Draws straight lines to vertices, one after another, and removes redundant ones.
     pub(crate) fn lines_to(&mut self, vertices: &mut Vec<Position>) {
         self.draw_held();
         vertices.dedup();
@@ -73,7 +75,7 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.has_length = true;
     }
 
-    /// Polygons of a number of vertices, one after another.
+    /// Draws polygons of `sides` vertices each.
     pub(crate) fn polygons(&mut self, vertices: &[Position], sides: usize) -> io::Result<()> {
         self.finish();
         for polygon in vertices.chunks_exact(sides) {
@@ -90,8 +92,8 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.hand_on()
     }
 
-    /// Closes the subpath; `returned` tells that its last vertex is its first, which is then not
-    /// drawn twice.
+    /// Closes the subpath. `returned` states that its last vertex equals its first, which is then not drawn
+    /// twice.
     pub(crate) fn close(&mut self, returned: bool) {
         if returned || self.held == Some(self.start) {
             self.held = None;
@@ -105,7 +107,7 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.open = false;
     }
 
-    /// Ends the subpath where the pen is.
+    /// Ends the subpath at its last vertex.
     fn finish(&mut self) {
         if !self.open {
             return;
@@ -119,7 +121,7 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
 
     fn draw_held(&mut self) {
         let Some(to) = self.held.take() else { return };
-        // A vertex that rounds to the one before adds nothing.
+        // A vertex that rounds to the one before is redundant.
         if to == self.pen {
             return;
         }
@@ -128,47 +130,47 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.has_length = true;
     }
 
-    /// As [`Surface::grain`].
+    /// Returns [`Surface::grain`].
     pub(crate) fn grain(&self) -> Option<f64> {
         self.surface.grain()
     }
 
-    /// As [`Surface::broadens`].
+    /// Returns [`Surface::broadens`].
     pub(crate) fn broadens(&self, paint: &Paint) -> bool {
         self.surface.broadens(paint)
     }
 
-    /// As [`Surface::tufts_below`].
+    /// Returns [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)
     }
 
-    /// As [`Surface::filled`].
+    /// Returns [`Surface::filled`].
     pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
         self.surface.filled(paint)
     }
 
-    /// As [`Surface::layer`].
+    /// Calls [`Surface::layer`].
     pub(crate) fn layer(&mut self, layer: u64) {
         self.surface.layer(layer);
     }
 
-    /// Tufts, wherever the pen is.
+    /// Draws tufts, regardless of the position of the pen.
     pub(crate) fn tufts(&mut self, tufts: &[Tuft]) {
         self.surface.tufts(tufts);
     }
 
-    /// As [`Surface::stencil`].
+    /// Returns [`Surface::stencil`].
     pub(crate) fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
         self.surface.stencil(paint)
     }
 
-    /// Stamps, wherever the pen is.
+    /// Draws stamps, regardless of the position of the pen.
     pub(crate) fn stamps(&mut self, stamps: &[Stamped]) {
         self.surface.stamps(stamps);
     }
 
-    /// Hands on what has been drawn of the path, if that is much.
+    /// Hands on the drawn portion of the path, if it is large.
     pub(crate) fn hand_on(&mut self) -> io::Result<()> {
         self.surface.hand_on()
     }

@@ -1,3 +1,5 @@
+//! Tests of bands: a picture in bands equals the picture in one piece.
+
 use std::num::NonZero;
 
 use crate::catalogue::Catalogue;
@@ -10,10 +12,10 @@ use crate::render::surface::{Paint, Pen, Stroke, Surface, position};
 use crate::render::{Drawing, Format, Options, RenderError, Scene, Size, write_drawing};
 use crate::style::{Cap, Colour, Join, Width};
 
-/// Scenes in parts, some of them in other parts, under and over shapes of their own.
+/// Drawing of scenes in parts, some of them nested, below and above shapes of its own.
 struct Parts<'a> {
     scene: Scene<'a>,
-    /// Whether there is anything but thin lines of round pens.
+    /// Whether anything other than thin lines with round pens is drawn.
     has_shapes: bool,
 }
 

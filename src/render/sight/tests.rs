@@ -1,4 +1,4 @@
-//! What is drawn in a window is what all of it would draw there.
+//! Tests of culling: a window shows the same as the whole approximant does there.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -20,10 +20,11 @@ use crate::render::{Detail, Drawing, Options, Paint, Position, Scene, Size, Surf
 use crate::rule::Rule;
 use crate::style::{Colour, View};
 
-/// The side of the pictures, in pixels.
+/// Side of the pictures, in pixels.
 const SIDE: u32 = 100;
 
-/// Paths as polygons with the control points of curves, each with its paint, and whether closed.
+/// Recorded paths: polygons that include the control points of curves, each with its paint and whether it is
+/// closed.
 #[derive(Default)]
 struct Recorder {
     paint: Paint,
@@ -79,7 +80,7 @@ impl Surface for Recorder {
     fn label(&mut self, _: &str) {}
 }
 
-/// How often a path goes around a place, in a fiftieth of what positions are whole numbers of, so
+/// Returns the winding number of a path about a point. The point is in fiftieths of the unit of positions, so
 /// that no vertex is at its height.
 fn turns(path: &[Position], [x, y]: [i64; 2]) -> i64 {
     let ends = path.iter().zip(path.iter().cycle().skip(1));
@@ -96,7 +97,7 @@ fn turns(path: &[Position], [x, y]: [i64; 2]) -> i64 {
     crossings.sum()
 }
 
-/// Whether a line meets a square.
+/// Returns whether a line meets a square.
 fn meets([from, to]: [Position; 2], edge: i64) -> bool {
     let beside = |axis: usize| {
         let places = [from[axis], to[axis]];
@@ -111,8 +112,8 @@ fn meets([from, to]: [Position; 2], edge: i64) -> bool {
     !beside(0) && !beside(1) && !passes
 }
 
-/// What shows on a picture: pieces with their paint, the corners at their ends if these show, and
-/// how often what is filled goes around some places.
+/// Returns the visible features of a picture: lines with their paint, the corners at their ends if these are
+/// visible, and the winding numbers of filled paths about some points.
 fn shown(recorder: &Recorder, with_corners: bool) -> BTreeMap<String, i64> {
     let edge = i64::from(SIDE) * 100;
     let mut shown = BTreeMap::new();
@@ -143,8 +144,7 @@ fn shown(recorder: &Recorder, with_corners: bool) -> BTreeMap<String, i64> {
     shown
 }
 
-/// Draws a window with and without looking at what lies outside, and tells how many elements were
-/// visited.
+/// Compares the drawings of a window with and without culling. Returns the numbers of elements visited.
 fn compare(
     rule: &Arc<Rule>,
     steps: u32,
@@ -176,7 +176,7 @@ fn compare(
         .map_or(0.0, |detail| detail.pixels / canvas.scale());
     let everything = Sight::to_length(&graph, shortest);
     let mut all = Survey::new(&graph, style, layout.growth.steps).of_what_is_in(everything);
-    // All elements are counted as they come.
+    // The walk visits and counts all elements.
     walk(&graph, &growth, &mut all).unwrap();
     let draw = |scene: &Scene<'_>, threads: usize| {
         let mut recorder = Recorder::default();
@@ -233,7 +233,8 @@ proptest! {
 #[test]
 fn windows_of_the_library_show_their_part() {
     let catalogue = Catalogue::embedded();
-    // Lines, links, areas, polygons, curves, seeds, draws; with what part of all is to be visited.
+    // Lines, links, areas, polygons, curves, seeds, draws; with the greatest part of the elements to be
+    // visited.
     for (name, steps, part) in [
         ("koch", 5, 0.2),
         ("dragon", 9, 0.3),
@@ -275,7 +276,7 @@ fn windows_of_the_library_show_their_part() {
         for number in 0..16 {
             let corner = [f64::from(number % 4), f64::from(number / 4)].map(|n| n / 3.0 - 0.15);
             let window = [corner[0], corner[1], 0.07, 0.06];
-            // Where ranks depend on draws, all elements are visited.
+            // If ranks depend on draws, all elements are visited.
             let styles = [&plain, &filled, &numbered].into_iter();
             for style in styles.take(if draws { 2 } else { 3 }) {
                 let counts = compare(&rule, steps, window, style, None);
@@ -288,7 +289,7 @@ fn windows_of_the_library_show_their_part() {
     }
 }
 
-/// Elements of unlike lengths, too, and fractals that are closed or seeded.
+/// Includes elements of unequal lengths, and fractals that are closed or seeded.
 #[test]
 fn ranks_count_what_is_not_visited() {
     let catalogue = Catalogue::embedded();
@@ -327,8 +328,8 @@ fn ranks_count_what_is_not_visited() {
     }
 }
 
-/// A 64th of Hilbert's curve is what comes of an element of the third step, so that colours tell which
-/// of these is near, however many steps follow: 4^36 elements are more than 64 bits can count.
+/// Each of the 64 elements of the third step becomes a 64th of Hilbert's curve, so that its colour identifies
+/// it, whatever the number of steps: 4^36 elements exceed 64 bits.
 #[test]
 fn ranks_may_be_larger_than_any_walk_counts() {
     let catalogue = Catalogue::embedded();
@@ -383,7 +384,7 @@ fn ranks_may_be_larger_than_any_walk_counts() {
     }
 }
 
-/// The middles of elements.
+/// Centres of elements.
 #[derive(Default)]
 struct Cells(Vec<DVec2>);
 
@@ -405,7 +406,7 @@ impl Visitor for Cells {
     }
 }
 
-/// What is born after what a pass paints is left out of its walk.
+/// Elements born after the steps that a pass paints are left out of its walk.
 #[test]
 fn colours_by_step_leave_out_nothing() {
     let catalogue = Catalogue::embedded();
