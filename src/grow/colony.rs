@@ -1,8 +1,8 @@
-//! Colonies: fractals that have been seeded, each with all that it seeds in turn, as one.
+//! Colonies: seeded fractals, each together with all its descendant fractals.
 //!
-//! Where all maps are fixed, what a seeded fractal becomes depends on the seed, on the step of its birth and,
-//! where nothing is replaced that is shorter than a length, on how long the element was that seeded it. A
-//! visitor that knows all colonies of a kind by one of them takes them without a walk.
+//! If all maps are fixed, a seeded fractal is determined by its seed, by the step of its birth and, where
+//! elements below a minimum length are not replaced, by the length of the element that seeded it. A visitor
+//! that draws all colonies of a kind from one of them takes them without a walk.
 
 use std::collections::BTreeMap;
 
@@ -13,44 +13,44 @@ use super::start::{Standing, Start, StartChain};
 use super::walk::walk_over;
 use super::{Visitor, WalkError, Walked};
 
-/// More kinds of elements than this, that seeds may come of, are not told apart.
+/// Maximum number of kinds of fertile elements, over all steps.
 const MOST_KINDS: usize = 1 << 14;
 
-/// Lengths that differ by no more than this part of them are one.
+/// Relative tolerance within which lengths are equal, and tolerance of the entries of maps.
 const NEAR: f64 = 1e-10;
 
-/// Turns are told apart by so many steps.
+/// Steps of quantisation of the entries of normalised linear maps.
 const TURNS: f64 = 1e6;
 
-/// A fractal that has been seeded, with all that it seeds in turn.
+/// Seeded fractal with all its descendant fractals.
 #[derive(Clone, Copy, Debug)]
 pub struct Colony<'g> {
     graph: &'g Graph,
-    /// The object that has seeded it, and the number of the seed.
+    /// Index of the object that seeded it, and of the seed in its production.
     seed: [usize; 2],
     standing: Standing,
     born: u32,
     steps: u32,
 }
 
-/// How much of a colony a visitor takes without a walk.
+/// Part of a colony that a visitor takes without a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// Nothing.
     Nothing,
-    /// The elements of its first fractal, but not what that seeds.
+    /// The elements of its first fractal, without the descendant fractals.
     Own {
-        /// How many they are.
+        /// Number of these elements.
         elements: u64,
     },
-    /// All of it.
+    /// The whole colony.
     Whole(Walked),
-    /// All of it, and no more is asked: nothing of it is to be seen.
+    /// The whole colony, of which nothing is visible: [`Visitor::colony`] is not called.
     Unseen,
 }
 
 impl Taken {
-    /// The elements and fractals that are taken.
+    /// Returns the numbers of elements and fractals taken.
     pub(super) fn walked(self) -> Walked {
         match self {
             Self::Nothing | Self::Unseen => Walked::default(),
@@ -64,7 +64,7 @@ impl Taken {
 }
 
 impl<'g> Colony<'g> {
-    /// The colony of a fractal that grows to a number of steps, if it has been seeded by fixed elements.
+    /// Creates the colony of a fractal in approximant `steps`; `None` unless a fixed production seeds it.
     pub(super) fn of(graph: &'g Graph, start: &Start<'g>, steps: u32) -> Option<Self> {
         let StartChain::Fixed { seed, .. } = start.chain else {
             return None;
@@ -78,28 +78,28 @@ impl<'g> Colony<'g> {
         })
     }
 
-    /// The place of the element that has seeded it.
+    /// Returns the frame of the element that seeded it.
     pub(crate) fn frame(&self) -> Frame {
         self.standing.frame
     }
 
-    /// The step in which its first fractal was born.
+    /// Returns the step in which its first fractal is born.
     pub(crate) fn born(&self) -> u32 {
         self.born
     }
 
-    /// The same colony in another place.
+    /// Returns the colony with the map of its frame replaced.
     pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
         let mut moved = *self;
         moved.standing.frame.map = map;
         moved
     }
 
-    /// Walks over the elements of its first fractal, or over all of it.
+    /// Visits the elements of the first fractal, or of the whole colony.
     ///
     /// # Errors
     ///
-    /// As [`walk`](super::walk()).
+    /// Returns the errors of [`walk`](super::walk()).
     pub(crate) fn walk<V: Visitor>(
         &self,
         is_whole: bool,
@@ -128,24 +128,24 @@ fn seed_of(graph: &Graph, [object, number]: [usize; 2]) -> Option<&Seed> {
     }
 }
 
-/// Colonies that are the same but for where they stand.
+/// Class of colonies that are congruent.
 #[derive(Clone, Debug)]
 pub(crate) struct ColonyKind {
     seed: [usize; 2],
-    /// The place of what has seeded one of them.
+    /// Frame of the element that seeded the first one found.
     pub(crate) frame: Frame,
     born: u32,
     steps: u32,
-    /// How many there are.
+    /// Number of colonies of the kind.
     pub(crate) count: u64,
-    /// To how many sides they are turned, those alike that look the same.
+    /// Number of their orientations, modulo the symmetries of the first fractal.
     pub(crate) turns: u64,
-    /// The maps of the unit frame, the identity among them, that leave the first fractal as it is.
+    /// Maps of the unit frame, including the identity, that preserve the first fractal.
     symmetries: Vec<DAffine2>,
 }
 
 impl ColonyKind {
-    /// One of them.
+    /// Returns one of the colonies.
     pub(crate) fn example<'g>(&self, graph: &'g Graph) -> Colony<'g> {
         let standing = Standing {
             frame: self.frame,
@@ -160,35 +160,35 @@ impl ColonyKind {
         }
     }
 
-    /// The instances that the first fractal of each starts with, seen from what has seeded it.
+    /// Returns the instances that the first fractal starts with, in the unit frame of the seeding element.
     pub(crate) fn instances<'g>(&self, graph: &'g Graph) -> &'g [Instance] {
         let seed = seed_of(graph, self.seed);
         seed.map_or(&[], |seed| &seed.chain.instances)
     }
 
-    /// The map out of those that put the same in the same place that all choose which look the same.
+    /// Returns the canonical one of the maps that differ from `map` by a symmetry.
     pub(crate) fn turned(&self, map: &DAffine2) -> DAffine2 {
         turned(map, &self.symmetries)
     }
 }
 
-/// The kinds of colonies of an approximant.
+/// Kinds of the colonies of an approximant.
 #[derive(Debug, Default)]
 pub(crate) struct ColonyKinds {
     pub(crate) all: Vec<ColonyKind>,
-    /// By what tells them apart but for their length: their numbers.
+    /// Indices of the kinds by key.
     numbers: BTreeMap<Key, Vec<usize>>,
 }
 
-/// What colonies have in common that may differ in their length.
+/// Seed, step of birth and direction: kinds with equal keys differ in length.
 type Key = ([usize; 2], u32, Direction);
 
-/// An element that may seed, by what tells it apart.
+/// Linear maps and numbers of fertile elements, by object, direction, length and orientation.
 type Fertile = BTreeMap<(usize, Direction, i64, [i64; 4]), (DMat2, u64)>;
 
 impl ColonyKinds {
-    /// Those of approximant `steps`, where nothing is replaced that is shorter than a length; none where
-    /// the graph does not tell, or where there are too many.
+    /// Computes the kinds for approximant `steps`, in which elements shorter than `shortest` are not
+    /// replaced. The result is empty if productions are not fixed, or if there are too many kinds.
     pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Self {
         let tells = graph.seeds
             && graph.is_plain()
@@ -264,7 +264,7 @@ impl ColonyKinds {
         kinds
     }
 
-    /// The number of a kind, added if there is none yet.
+    /// Returns the index of a kind, which is added if it is new.
     fn kind(&mut self, kind: ColonyKind, chain: &Chain) -> usize {
         let key = (kind.seed, kind.born, kind.frame.direction);
         if let Some(number) = self.find(&key, &kind.frame) {
@@ -279,7 +279,7 @@ impl ColonyKinds {
         number
     }
 
-    /// The number of the kind of a colony, if it is known.
+    /// Returns the index of the kind of a colony; `None` if the kind is unknown.
     #[inline]
     pub(crate) fn number(&self, colony: &Colony<'_>) -> Option<usize> {
         let frame = colony.frame();
@@ -296,9 +296,9 @@ impl ColonyKinds {
     }
 }
 
-/// The maps that take every instance of a chain to one that is the same, the identity first.
+/// Computes the maps that permute the instances of a chain, starting with the identity.
 fn symmetries(chain: &Chain) -> Vec<DAffine2> {
-    /// Chains of more instances are not looked at.
+    /// Maximum number of instances of a chain that is examined.
     const MOST: usize = 64;
     let all = &chain.instances;
     let is_looked_at = all.len() <= MOST && all.iter().all(|instance| !instance.joined);
@@ -327,9 +327,9 @@ fn symmetries(chain: &Chain) -> Vec<DAffine2> {
     found
 }
 
-/// The map with a symmetry before it whose first axis points most to the right.
+/// Returns the product of the map and the symmetry whose first axis has the largest x coordinate.
 fn turned(map: &DAffine2, symmetries: &[DAffine2]) -> DAffine2 {
-    // Turned by as much are those that differ by rounding.
+    // Differences below this are rounding errors.
     let slack = map.matrix2.x_axis.length() / TURNS;
     let all = symmetries.iter().map(|symmetry| {
         let axis = map.matrix2 * symmetry.matrix2.x_axis;
@@ -343,7 +343,7 @@ fn turned(map: &DAffine2, symmetries: &[DAffine2]) -> DAffine2 {
     found.map_or(*map, |(_, symmetry)| *map * *symmetry)
 }
 
-/// A linear map, but for how long it makes things.
+/// Returns the quantised entries of a linear map, normalised to stretch 1.
 fn turn(linear: &DMat2) -> [i64; 4] {
     let unit = *linear * stretch(linear).recip();
     unit.to_cols_array().map(|part| round(part * TURNS))

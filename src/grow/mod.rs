@@ -189,13 +189,13 @@ pub trait Visitor {
         0..=u32::MAX
     }
 
-    /// Tells how much of a colony the visitor takes without a walk, by [`Visitor::colony`]. Elements are then
-    /// not asked for one by one, and no fractal begins or ends. Not asked where seeds are not fixed.
+    /// Returns the part of a colony that the visitor takes as a whole, in [`Visitor::colony`]. For this part
+    /// the methods for elements and fractals are not called. Only called for seeds of fixed productions.
     fn takes(&self, _: &Colony<'_>) -> Taken {
         Taken::Nothing
     }
 
-    /// Takes as much of a colony as it was said to, between two fractals.
+    /// Visits the part of a colony that [`Visitor::takes`] has returned, between two fractals.
     ///
     /// # Errors
     ///

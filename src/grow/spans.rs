@@ -184,7 +184,7 @@ enum Item<'w> {
     Begin(Fractal, u32),
     Element(Found),
     Subtree(FoundSubtree),
-    /// As much as is taken of a colony.
+    /// Part of a colony that the visitor takes.
     Colony(Colony<'w>, Taken),
     /// End of the fractal; the flag holds only if the preceding element ends where its subtree does.
     End(bool),

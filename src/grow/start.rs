@@ -90,7 +90,7 @@ pub(super) struct Start<'g> {
 pub(super) enum StartChain<'g> {
     /// Initiator, or a fractal seeded before: its instances are roots.
     Initiator(&'g Chain),
-    /// What an object has seeded, by both numbers.
+    /// Seed of a fixed production, with the indices of the object and of the seed.
     Fixed {
         chain: &'g Chain,
         seed: [usize; 2],

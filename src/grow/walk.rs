@@ -55,7 +55,7 @@ struct Parent<'g> {
     /// The approximant whose elements are being replaced, and the walk over it.
     step: u32,
     descent: Descent<'g>,
-    /// Whether that approximant has an element whose place others take that may seed.
+    /// Whether that approximant has an element that is replaced by others that may seed.
     is_fertile: bool,
     /// Seeds that are still to be walked, the next one last.
     queue: Vec<Start<'g>>,
@@ -116,9 +116,9 @@ pub(super) trait Sink<'g> {
     fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
     /// The fractal ends.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
-    /// As [`Visitor::takes`].
+    /// Returns [`Visitor::takes`].
     fn takes(&self, colony: &Colony<'_>) -> Taken;
-    /// A colony in the place of what is taken of it.
+    /// Receives a colony of which a part is taken.
     fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error>;
     /// So many elements have been visited on the way.
     fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
@@ -166,7 +166,7 @@ pub(super) fn send<'g, S: Sink<'g>>(
     walk.run(Start::initiator(graph, growth.steps, growth.seed))
 }
 
-/// Walks over a fractal that has been seeded, with all that it seeds in turn if that is asked for.
+/// Visits a seeded fractal, with all its descendant fractals if `is_whole`.
 pub(super) fn walk_over<V: Visitor>(
     graph: &Graph,
     steps: u32,
@@ -191,9 +191,9 @@ pub(super) fn walk_over<V: Visitor>(
 struct Walk<'g, 'v, S> {
     graph: &'g Graph,
     steps: u32,
-    /// Whether seeds may come of an object, if there are any,
+    /// Whether an object may lead to seeds, by object; empty if there are none.
     leads_to_seeds: Vec<bool>,
-    /// and whether they may after its own.
+    /// Whether the elements that replace an object may lead to seeds, likewise.
     goes_on: Vec<bool>,
     stop: Stop<'v>,
     census: Option<&'g Census>,
@@ -298,7 +298,7 @@ impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
         }
     }
 
-    /// Gives the sink what it takes of a colony, and tells what.
+    /// Passes a colony to the sink and returns the part that the sink takes.
     fn taken(&mut self, start: &Start<'g>) -> Result<Taken, S::Error> {
         let Some(colony) = Colony::of(self.graph, start, self.steps) else {
             return Ok(Taken::Nothing);

@@ -53,8 +53,8 @@ impl Aim {
         })
     }
 
-    /// What of any elements is painted in a pass, if their births or objects tell it and nothing needs to be
-    /// known of the others.
+    /// Returns the selection of elements that a pass paints, if it depends on births or objects only and no
+    /// line leads to elements that are not painted.
     pub(super) fn painted(&self, scene: &Scene<'_>, pass: Pass) -> Option<Painted> {
         let Pass::Class(class) = pass else {
             return None;

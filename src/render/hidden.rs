@@ -108,13 +108,13 @@ impl Hidden {
         self.reach_of(scene, self.reaches[object], length)
     }
 
-    /// The same of what has a radius as a multiple of its length.
+    /// Returns the reach in pixels of a set whose radius is given as a multiple of its length.
     #[inline]
     pub(super) fn reach_of(&self, scene: &Scene<'_>, radius: f64, length: f64) -> f64 {
         radius * scene.canvas.scale() * length + self.overhang
     }
 
-    /// How far from the middle of its frame what becomes of an object reaches without its strokes, as a
+    /// Returns the radius about the middle of its frame of the descendants of an object, without strokes, as a
     /// multiple of its length.
     pub(super) fn radius(&self, object: usize) -> f64 {
         self.reaches[object]

@@ -231,7 +231,7 @@ impl<'t, 'w> Png<'t, 'w> {
     }
 }
 
-/// The colours that the planes are drawn in, one or both, by those of areas and strokes.
+/// Returns the colours of the two planes for colours of areas and strokes.
 fn inks(fill: Option<Colour>, stroke: Option<Colour>) -> [Option<Colour>; 2] {
     match (fill, stroke) {
         (Some(fill), Some(stroke)) if fill != stroke => [Some(fill), Some(stroke)],

@@ -32,9 +32,9 @@ pub(crate) struct Scene<'a> {
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
-    /// The kinds of colonies, once something is stamped.
+    /// Kinds of colonies, computed when stamps are first made.
     pub(super) colonies: OnceLock<ColonyKinds>,
-    /// How often a stamp should be used.
+    /// Minimum number of uses of a stamp.
     pub(super) uses: u64,
     /// Whether closed paths are filled as they are stroked.
     pub(super) fills_strokes: bool,
@@ -95,7 +95,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Whether all strokes are as wide.
+    /// Returns whether all strokes have the same width.
     pub(super) fn has_one_width(&self) -> bool {
         matches!(self.style.width, Width::Pixels(_)) && self.graph.widest().is_none()
     }
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// Areas are those of fractals, of whose open elements each joins the one before.
+    /// The only areas are those inside closed chains of open elements.
     #[test]
     fn areas_are_looked_for_where_there_may_be_any() {
         let catalogue = Catalogue::embedded();

@@ -1,12 +1,13 @@
-//! Stamps: what runs of small elements cover, or small fractals, drawn once for all that lie alike.
+//! Stamps: the coverage of runs of small elements, and of small seeded fractals, drawn once for all that are
+//! congruent.
 //!
-//! Where the maps of a graph turn elements to a few sides only, or all of a step to the same, runs are
-//! equal but for where they stand; so are filled elements of a few lengths, and fractals that have been
-//! seeded, with all that they seed in turn. In pictures to a detail they are put on a grid that is some ten
-//! times as fine as the detail: runs of 1/128 of a pixel if there are enough of them, else all of 1/64, and
-//! half as fine for lines and outlines, whose pens stand on a grid of 1/16. That moves them by no more than
-//! 1/128 of a pixel, lines by 1/64. What a stamp covers is worked out on the grid, so it hangs on nothing but what it
-//! is of, whoever draws it first. Areas and their outlines in another colour are covered apart.
+//! If the maps of a graph have few orientations, or all of a step have the same, runs differ by translations
+//! only; likewise filled elements of a few lengths, and colonies of seeded fractals. In pictures to a detail
+//! they are put on a grid some ten times as fine as the detail: of 1/128 of a pixel for runs if there are
+//! enough of them, otherwise of 1/64, and half as fine for lines and outlines, whose pens are on a grid of
+//! 1/16. This moves them by at most 1/128 of a pixel, lines by 1/64. The coverage is computed on the grid, so
+//! that it does not depend on the thread that draws it first. Areas and outlines are covered separately, since
+//! their colours may differ.
 //!
 //! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one
 //! by no more than 40/255, which are ten of the samples that tell its coverage.
@@ -50,7 +51,7 @@ const MOST_MEMORY: usize = 1 << 26;
 /// Tables that are locked apart.
 const TABLES: u64 = 64;
 
-/// What runs, or colonies, have in common that cover the same but for where they stand.
+/// Properties that determine the coverage of a run or colony up to its position.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     of: Of,
@@ -58,16 +59,16 @@ struct Key {
     painted: Painted,
 }
 
-/// What a stamp is of.
+/// Subject of a stamp.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Of {
-    /// A run, by its number.
+    /// Run, by the number of its block.
     Run(u64),
-    /// A colony, by the number of its kind.
+    /// Colony, by the index of its kind.
     Colony(usize),
 }
 
-/// The stamps of what is alike, by place in a pixel; none where nothing could be drawn.
+/// Stamps with equal keys, by place in a pixel; `None` where it could not be drawn.
 type Places = [OnceLock<Option<Arc<Stamp>>>];
 
 /// What of a run is painted.
@@ -81,7 +82,7 @@ pub(super) enum Painted {
 }
 
 impl Painted {
-    /// The same with steps from one on, so that those of other steps are the same.
+    /// Returns the selection with steps counted from `born`.
     fn since(self, born: u32) -> Self {
         match self {
             Self::Steps(first, last) => {
@@ -104,7 +105,7 @@ pub(super) struct Stamps<'a> {
 }
 
 impl<'a> Stamps<'a> {
-    /// Those of a scene, if many of its runs lie alike, or of its fractals, of which something is painted.
+    /// Creates the stamps of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
         stencil: Stencil,
@@ -135,12 +136,12 @@ impl<'a> Stamps<'a> {
         })
     }
 
-    /// The most elements of a run, if any are stamped.
+    /// Returns the maximum number of elements of a run, if runs are stamped.
     pub(super) fn longest_run(&self) -> Option<u64> {
         self.runs.as_ref().map(|runs| runs.longest)
     }
 
-    /// What paths are made of in which colonies are put.
+    /// Returns the kind of the path in which colonies are put.
     pub(super) fn kind(&self) -> Kind {
         if self.stencil.pen.is_some() && !self.stencil.outlines {
             Kind::Line
@@ -151,8 +152,8 @@ impl<'a> Stamps<'a> {
 }
 
 impl Stamps<'_> {
-    /// The stamp of what stands at a point, on a grid of so many places to a pixel: known, or drawn for its
-    /// place in a pixel.
+    /// Returns the stamp for a position, rounded to a grid of `phases` places a pixel; it is drawn if there is
+    /// none yet for its place in a pixel.
     fn put(
         &self,
         key: &Key,
@@ -185,7 +186,7 @@ impl Stamps<'_> {
         Some(Stamped { stamp, pixel })
     }
 
-    /// The stamps of a key by so many places, if there is memory for them.
+    /// Returns the stamps of a key by place, if there is memory for them.
     fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
         let number = match key.of {
             Of::Run(number) => number,
@@ -210,7 +211,7 @@ impl Stamps<'_> {
         self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
     }
 
-    /// Draws a stamp of what has a linear map, for a place in a pixel: within a disc about that.
+    /// Draws a stamp with a linear map at a place in a pixel, inside a disc relative to that place.
     fn drawn(
         &self,
         linear: DMat2,

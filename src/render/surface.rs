@@ -98,12 +98,12 @@ pub(crate) struct Stamped {
     pub(crate) pixel: [i64; 2],
 }
 
-/// The means that stamps are drawn with: shapes are filled, and lines drawn with a pen if there is one.
+/// Way to draw stamps: shapes are filled, and lines are drawn with the pen.
 #[derive(Clone)]
 pub(crate) struct Stencil {
-    /// The pen of lines and outlines.
+    /// Pen of lines and outlines.
     pub(crate) pen: Option<Arc<RoundPen>>,
-    /// Whether it outlines shapes as well.
+    /// Whether shapes are outlined.
     pub(crate) outlines: bool,
 }
 

@@ -11,7 +11,7 @@ use crate::grow::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, Walked
 
 const SHORTEST: f64 = 0.02;
 
-/// How a visitor gets what belongs to colonies.
+/// Part of colonies that a visitor takes.
 #[derive(Clone, Copy, PartialEq)]
 enum By {
     Elements,
@@ -19,12 +19,12 @@ enum By {
     Colonies,
 }
 
-/// Collects elements: those of colonies one by one, or moved into place from one that is known.
+/// Collects elements, including those of colonies that it takes.
 struct Collecting<'k> {
     kinds: &'k ColonyKinds,
     by: By,
     elements: BTreeMap<(usize, u32, [i64; 4]), u64>,
-    /// How many colonies there are of every kind, taken or not.
+    /// Number of colonies taken, by kind.
     met: BTreeMap<usize, u64>,
     taken: u64,
 }
@@ -131,7 +131,7 @@ fn graph(catalogue: &Catalogue, source: &Arc<Source>) -> Graph {
     document.resolve(&[]).unwrap().0.compile(20).unwrap()
 }
 
-/// Seeds on both sides of elements, one of them mirrored, and elements that seed again.
+/// Rule with seeds on both sides of an element, one of them mirrored.
 const ONE_SIDED: &str = "
 initiator: {elements: [[0, 0], [1, 0]]}
 generators:

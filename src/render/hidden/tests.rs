@@ -106,7 +106,7 @@ fn threads_do_not_show_where_curves_retrace_themselves() {
     }
 }
 
-/// Areas in one colour or two, whose strokes lie on top and hide what comes later.
+/// The cases are areas with outlines in the same and in another colour.
 #[test]
 fn threads_do_not_show_where_areas_are_outlined() {
     let cases = [

@@ -136,7 +136,7 @@ impl Part {
         }
     }
 
-    /// Which pixels are covered all over, of paths or of the strokes on top of them.
+    /// Returns the pixels that are fully covered by paths (layer 0), or by the strokes on top of them (1).
     pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<Filled> {
         Arc::clone(self.made_planes(layer, threads).filled())
     }

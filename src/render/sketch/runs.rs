@@ -97,7 +97,7 @@ impl Sketcher<'_> {
         true
     }
 
-    /// What of a colony is painted: by a stamp, or else one by one.
+    /// Draws the part of a colony that is painted, by a stamp or element by element.
     pub(super) fn stamp_colony(&mut self, colony: &Colony<'_>) {
         let Some(stamps) = self.means.stamps.as_ref() else {
             return;
@@ -116,7 +116,7 @@ impl Sketcher<'_> {
         self.pass_by(Mark::Break);
     }
 
-    /// One more stamp of what looks alike.
+    /// Adds one stamp to the last mark, or begins a mark.
     fn mark_stamps(&mut self, kind: Kind) {
         let look = Look {
             kind,
@@ -128,7 +128,7 @@ impl Sketcher<'_> {
         }
     }
 
-    /// What of a run is painted, by a stamp; whether there is one.
+    /// Draws the part of a run that is painted by a stamp; returns whether there is a stamp.
     pub(super) fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
         let stamps = self.means.stamps.as_ref();
         let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {

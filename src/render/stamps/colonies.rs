@@ -1,4 +1,4 @@
-//! Stamps of colonies: fractals that have been seeded, alone or with all that they seed in turn.
+//! Stamps of colonies: seeded fractals, alone or with all their descendant fractals.
 
 use std::convert::Infallible;
 
@@ -13,59 +13,59 @@ use crate::render::surface::Stamped;
 
 use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
 
-/// Places to a pixel, along either axis, on which fractals are put; for strokes half as many.
+/// Places a pixel along each axis of the grid on which colonies are put; with strokes half as many.
 const PLACES: f64 = 64.0;
 
-/// How many times as often a stamp of a fractal with all that it seeds should be used: so many times, and
-/// once for so many elements that are seeded. It takes longer to draw than the stamps of what it is made of.
+/// Minimum number of uses of a stamp of a whole colony, relative to that of other stamps. It is one for every
+/// `SEEDED_A_USE` elements of descendant fractals if that is more: these cost less as stamps of their own.
 const USES_OF_WHOLE: u64 = 5;
 const SEEDED_A_USE: u64 = 12;
 
-/// Colonies of more elements are put together of smaller ones.
+/// Maximum number of elements of a stamp of a whole colony.
 const MOST_ELEMENTS: u64 = 1 << 10;
 
-/// The colonies of a pass that are stamped.
+/// Colonies that are stamped in a pass.
 pub(super) struct Colonies<'a> {
     kinds: &'a ColonyKinds,
-    /// By kind.
+    /// Means by kind.
     means: Vec<Means>,
     painted: Painted,
     phases: f64,
 }
 
-/// What is known of the colonies of a kind.
+/// Decision about the colonies of a kind.
 struct Means {
-    /// How much is taken of each.
+    /// Part of each that is taken.
     taken: Taken,
-    /// What of it is painted.
+    /// Part of it that is painted.
     shows: Shows,
-    /// A disc that holds it, without strokes, as seen from what has seeded it: the middle, and the radius
-    /// as a multiple of its length.
+    /// Centre of a disc that contains it without strokes, in the unit frame of the seeding element.
     middle: DVec2,
+    /// Radius of that disc, as a multiple of the length of the seeding element.
     radius: f64,
 }
 
-/// What is painted of a colony, of which some is taken.
+/// Part of a colony that is painted.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shows {
     Nothing,
     /// Elements of the first fractal.
     Own,
-    /// Elements of any.
+    /// Elements of any fractal.
     Any,
 }
 
-/// A colony in place of elements.
+/// Way to draw a colony.
 pub(in crate::render) enum Put {
-    /// Nothing of it is painted.
+    /// No element of it is painted.
     Nothing,
     Stamp(Stamped),
-    /// It cannot be drawn once for all.
+    /// Element by element.
     Elements,
 }
 
 impl<'a> Colonies<'a> {
-    /// The colonies of a scene, of which something is painted, that are worth a stamp.
+    /// Creates the colonies of a scene, if any are numerous enough for stamps.
     pub(super) fn of(
         scene: &'a Scene<'a>,
         hidden: &Hidden,
@@ -103,7 +103,7 @@ impl Means {
         radius: 0.0,
     };
 
-    /// The means to paint something of the colonies of a kind, by stamps on so many places of a pixel.
+    /// Decides about the colonies of a kind, for stamps at a number of places in a pixel.
     fn of(
         scene: &Scene<'_>,
         hidden: &Hidden,
@@ -163,7 +163,7 @@ impl Means {
 }
 
 impl Painted {
-    /// Whether something that is born in some steps, from the first to the last, may be painted.
+    /// Returns whether elements born in some steps, from the first to the last, may be painted.
     fn meets(self, births: &[u32; 2]) -> bool {
         match self {
             Self::Steps(first, last) => first <= births[1] && last >= births[0],
@@ -173,13 +173,13 @@ impl Painted {
 }
 
 impl Stamps<'_> {
-    /// How much of a colony is put as a stamp.
+    /// Returns the part of a colony that is put as a stamp.
     pub(in crate::render) fn takes(&self, colony: &Colony<'_>) -> Taken {
         let means = self.colonies.as_ref().and_then(|all| all.means(colony));
         means.map_or(Taken::Nothing, |(_, means)| means.taken)
     }
 
-    /// What is taken of a colony, as a stamp if that can be drawn once for all.
+    /// Returns the way to draw the part of a colony that is taken.
     pub(in crate::render) fn of_colony(&self, scene: &Scene<'_>, colony: &Colony<'_>) -> Put {
         let Some(colonies) = &self.colonies else {
             return Put::Elements;
@@ -222,7 +222,7 @@ impl Stamps<'_> {
                     painted: colonies.painted,
                     see: |element: &Element| outline(scene, element, &mut points, sheet),
                 };
-                // Those of one were not too many.
+                // The walk cannot fail: its length has been limited before.
                 let moved = colony.moved_to(map);
                 let _ = moved.walk(means.shows == Shows::Any, &mut visitor);
             };
@@ -230,7 +230,7 @@ impl Stamps<'_> {
         })
     }
 
-    /// Sees all elements of what is taken of a colony that are painted.
+    /// Passes the painted elements of the part of a colony that is taken to a function.
     pub(in crate::render) fn see(
         &self,
         scene: &Scene<'_>,
@@ -251,7 +251,7 @@ impl Stamps<'_> {
     }
 }
 
-/// The similarity that is nearest to a linear map in steps, exactly as long as it says.
+/// Computes the similarity with a given length whose first axis has the direction of a quantised map.
 fn turned(map: &DMat2, steps: &[i64; 4], length: f64) -> DMat2 {
     #[expect(clippy::cast_precision_loss, reason = "steps in a small picture")]
     let along = DVec2::new(steps[0] as f64, steps[1] as f64);
@@ -265,10 +265,10 @@ fn turned(map: &DMat2, steps: &[i64; 4], length: f64) -> DMat2 {
     DMat2::from_cols(x_axis, x_axis.perp() * across)
 }
 
-/// Sees the elements of a colony that are painted.
+/// Visitor of the painted elements of a colony.
 struct Members<'s, F> {
     scene: &'s Scene<'s>,
-    /// What lengths are multiples of, as they are in the rule's units.
+    /// Units of the walk a unit of the rule.
     scale: f64,
     painted: Painted,
     see: F,
@@ -315,7 +315,7 @@ impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
     }
 }
 
-/// Counts the elements of a colony, and looks when they are born: those of its first fractal, and others.
+/// Counts the elements of a colony and records their births, for its first fractal and for the others.
 struct Census<'s> {
     scene: &'s Scene<'s>,
     is_seeded: bool,
@@ -334,7 +334,7 @@ impl<'s> Census<'s> {
     }
 }
 
-/// A colony has too many elements.
+/// Error that a colony has too many elements.
 struct TooMany;
 
 impl Visitor for Census<'_> {

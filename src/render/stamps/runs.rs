@@ -21,7 +21,7 @@ const FEW_ELEMENTS: u64 = 8;
 /// More sides than this are too many.
 const MOST_SIDES: usize = 1 << 8;
 
-/// The runs that are stamped.
+/// Runs that are stamped.
 pub(super) struct Runs {
     /// The most elements of a run, and how many plain ones one of them is worth.
     pub(super) longest: u64,
@@ -30,7 +30,7 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    /// Those of a scene, if many lie alike; one element is worth a number of plain ones.
+    /// Creates the runs of a scene if many are congruent; `worth` is the cost of an element in plain ones.
     pub(super) fn of(scene: &Scene<'_>, stencil: &Stencil, worth: u64) -> Option<Self> {
         let Scene { graph, .. } = scene;
         // Lines that are not equally long are drawn as soon one by one.
@@ -59,7 +59,7 @@ impl Runs {
 }
 
 impl Stamps<'_> {
-    /// What of a run is painted, by a stamp.
+    /// Returns the stamp of the part of a run that is painted.
     pub(in crate::render) fn of(
         &self,
         scene: &Scene<'_>,
@@ -88,7 +88,7 @@ impl Stamps<'_> {
     }
 }
 
-/// Draws what of a run is painted on a sheet, where a map into its pixels puts it.
+/// Draws the part of a run that is painted on a sheet; `map` is into the pixels of the sheet.
 fn draw(scene: &Scene<'_>, run: &Run<'_>, painted: Painted, map: DAffine2, sheet: &mut Sheet) {
     let moved = run.moved_to(map);
     let mut points = Vec::new();

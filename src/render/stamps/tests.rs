@@ -28,44 +28,41 @@ fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
     (differences.max().unwrap(), mean, of_means.abs())
 }
 
-/// Holds a picture put together of stamps, as if there were so many of each that they are worth it,
-/// against one without, and tells how many elements a walk that puts them comes to one by one.
+/// Compares a picture made with stamps, for an assumed large number of elements, with one without stamps.
 fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     let catalogue = Catalogue::embedded();
-    {
-        let source = catalogue.rule(name).unwrap();
-        let document = Document::read(&source, &catalogue).unwrap();
-        let model = document.resolve(&[]).unwrap().0;
-        let graph = model.compile(30).unwrap();
-        let mut options = Options {
-            size: Size::Long(128),
-            detail: Some(Detail {
-                pixels: 0.5,
-                decides_steps: true,
-            }),
-            ..Options::of(model.heading())
-        };
-        style(&mut options.style);
-        let growth = Growth::steps(30);
-        let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
-        // As if there were so many that they are worth it.
-        scene.elements = u64::MAX;
-        if graph.seeds {
-            scene.uses = 0;
-        }
-        scene.is_to_detail = false;
-        let one_by_one = drawn(&scene, 1);
-        scene.is_to_detail = true;
-        let stamped = drawn(&scene, 1);
-        // The squares of some stand on the grid.
-        let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
-        assert!(shows, "{name}: nothing is stamped");
-        assert!(stamped == drawn(&scene, 3), "{name} on three threads");
-        let (most, mean, of_means) = difference(&stamped, &one_by_one);
-        let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
-        assert!(is_near, "{name}: {most}, {mean}, {of_means}");
+    let source = catalogue.rule(name).unwrap();
+    let document = Document::read(&source, &catalogue).unwrap();
+    let model = document.resolve(&[]).unwrap().0;
+    let graph = model.compile(30).unwrap();
+    let mut options = Options {
+        size: Size::Long(128),
+        detail: Some(Detail {
+            pixels: 0.5,
+            decides_steps: true,
+        }),
+        ..Options::of(model.heading())
+    };
+    style(&mut options.style);
+    let growth = Growth::steps(30);
+    let layout = Layout::find(&graph, &growth, &options).unwrap();
+    let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+    // As if there were so many that they are worth it.
+    scene.elements = u64::MAX;
+    if graph.seeds {
+        scene.uses = 0;
     }
+    scene.is_to_detail = false;
+    let one_by_one = drawn(&scene, 1);
+    scene.is_to_detail = true;
+    let stamped = drawn(&scene, 1);
+    // The squares of some stand on the grid.
+    let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
+    assert!(shows, "{name}: nothing is stamped");
+    assert!(stamped == drawn(&scene, 3), "{name} on three threads");
+    let (most, mean, of_means) = difference(&stamped, &one_by_one);
+    let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
+    assert!(is_near, "{name}: {most}, {mean}, {of_means}");
 }
 
 #[test]
@@ -86,7 +83,7 @@ fn stamps_cover_what_elements_do() {
     }
 }
 
-/// In two colours, which are covered apart, and in one.
+/// The cases have outlines in the same and in another colour.
 #[test]
 fn stamps_cover_what_outlined_elements_do() {
     let [light, dark] = [Colour::of_rgba([200, 90, 40, 255]), Colour::BLACK];

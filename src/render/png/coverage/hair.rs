@@ -77,7 +77,7 @@ impl Hairs {
         -libm::expm1f(-taken / UNIT)
     }
 
-    /// Whether there have never been any.
+    /// Returns whether no hair has ever been drawn.
     pub(super) fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }

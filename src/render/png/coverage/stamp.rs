@@ -3,24 +3,24 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use super::{MARGIN, Plane, Position, RoundPen, bounding, cover, flattened, index};
 
-/// What is covered of some pixels, drawn once to be put in many places.
+/// Coverage of some pixels, drawn once and put in many places.
 #[derive(Debug)]
 pub(crate) struct Stamp {
-    /// What areas cover,
+    /// Coverage of areas.
     pub(crate) areas: Print,
-    /// and what lines and outlines do, which may lie on top in another colour.
+    /// Coverage of lines and outlines, which may lie on top in another colour.
     pub(crate) strokes: Print,
 }
 
 impl Stamp {
-    /// The bytes of memory that it takes.
+    /// Returns its size in memory, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let cells = [&self.areas, &self.strokes].map(|print| size_of_val(&*print.cells));
         size_of::<Self>() + cells[0] + cells[1]
     }
 }
 
-/// What is covered of some pixels.
+/// Coverage of a rectangle of pixels by one plane.
 #[derive(Debug, Default)]
 pub(crate) struct Print {
     /// Its upper left pixel, seen from that on which it is put,
@@ -31,21 +31,21 @@ pub(crate) struct Print {
     cells: Box<[u64]>,
 }
 
-/// Small planes apart from any picture, on which a stamp is drawn.
+/// Small planes on which a stamp is drawn.
 pub(crate) struct Sheet {
-    /// Of areas, and of strokes if there may be any.
+    /// Planes of areas and, if there is a pen, of strokes.
     areas: Plane,
     strokes: Option<Plane>,
-    /// What draws lines,
+    /// Pen of lines and outlines.
     pen: Option<Arc<RoundPen>>,
-    /// and whether it outlines areas.
+    /// Whether areas are outlined.
     pub(crate) outlines: bool,
     /// Whether all could be drawn that was to be.
     is_whole: bool,
 }
 
 impl Sheet {
-    /// An empty one of so many pixels, with a pen for lines, which outlines areas as well if it is to.
+    /// Creates an empty sheet of a size in pixels.
     pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>, outlines: bool) -> Self {
         let plane = || Plane::of_rows(size, 0..size[1]);
         Self {
@@ -89,7 +89,7 @@ impl Sheet {
         }
     }
 
-    /// Adds the points of a curve, but the first, to those of a line, or of what encircles an area.
+    /// Adds the points of a curve except the first to those of a line, or of the boundary of an area.
     pub(crate) fn add_curve(points: &mut Vec<Position>, curve: [Position; 4], encircles: bool) {
         if encircles {
             points.extend(bounding(curve));
@@ -110,7 +110,7 @@ impl Sheet {
 }
 
 impl Print {
-    /// What a plane covers, of which a pixel is to come to the pixel that it is put on.
+    /// Creates the print of a plane whose pixel `pixel` is its origin.
     fn of(mut plane: Plane, pixel: [i64; 2]) -> Self {
         let [rows, columns] = plane.take_touched();
         let stride = plane.stride;
@@ -131,7 +131,7 @@ impl Print {
 }
 
 impl Plane {
-    /// Covers what a print does that is put on a pixel.
+    /// Covers the samples of a print whose origin is put on a pixel.
     pub(crate) fn stamp(&mut self, stamp: &Print, pixel: [i64; 2]) {
         let Print { corner, width, .. } = *stamp;
         if width == 0 {
