@@ -1,7 +1,7 @@
-//! Any text as an expression: read, printed, read again, compiled and evaluated.
+//! Fuzzing of expressions from arbitrary text: read, printed, read again, compiled and evaluated.
 //!
-//! What must hold: nothing panics; mistakes lie in the text; a printed expression is read as the
-//! same; folding what is constant changes no value.
+//! Checks that nothing panics; that mistakes lie in the text; that a printed expression is read as equal; and
+//! that constant folding changes no value.
 
 #![no_main]
 
@@ -17,7 +17,7 @@ fuzz_target!(|text: &str| {
         Err(error) => return lies_in(text, &error),
     };
     let printed = expression.to_string();
-    // More parentheses and digits may be more than is read.
+    // Additional parentheses and digits may exceed the limit of the parser.
     match Expression::parse(&printed) {
         Ok(again) => {
             assert_eq!(again, expression, "{printed}");

@@ -1,8 +1,9 @@
-//! Any bytes as a rule file: read, printed, read again, forecast, grown, drawn and written as a table.
+//! Fuzzing of rule files from arbitrary bytes: read, printed, read again, forecast, grown, drawn and written
+//! as a table.
 //!
-//! What must hold: nothing panics; what is wrong has a message, and messages are of bounded length;
-//! a printed file says the same; forecast and box agree with the walk; pictures are XML with finite
-//! numbers.
+//! Checks that nothing panics; that every mistake has a message, and messages are of bounded length; that a
+//! printed file is equivalent; that forecast and bounding box agree with the walk; and that pictures are XML
+//! with finite numbers.
 
 #![no_main]
 
@@ -25,14 +26,14 @@ use kfrac::rule::Rule;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use mutate::{Random, mutated};
 
-/// Few, so that an input takes milliseconds.
+/// Maximum number of elements, small enough for milliseconds per input.
 const MOST_ELEMENTS: u64 = 1_000;
 const MOST_STEPS: u32 = 64;
 
-/// What is said of one file is at most this long.
+/// Maximum length of the messages about one file, in bytes.
 const MOST_SAID: usize = 1 << 20;
 
-/// How far boxes may be apart, as a multiple of the coordinates.
+/// Maximum distance of bounding boxes, as a multiple of the coordinates.
 const TOLERANCE: f64 = 1e-9;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -44,7 +45,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let yaml = document.to_yaml();
     let grown = grow(&rule);
-    // Aliases, written out, may be more than a file can hold.
+    // Expanded aliases may exceed the maximum size of a file.
     if yaml.len() <= Source::MOST_BYTES {
         let (again, rule) = read(&Source::new("fuzz.yaml", yaml.as_str()))
             .unwrap_or_else(|| panic!("what was printed cannot be read:\n{yaml}"));
@@ -91,7 +92,7 @@ fn said(found: &Diagnostics) {
     assert!(found.to_string().len() < MOST_SAID, "too much is said");
 }
 
-/// What a rule grows to, or why it does not.
+/// Returns the table and the picture of a rule, or the reason why it does not grow.
 fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let steps = rule.steps().unwrap_or(3).min(MOST_STEPS);
     let graph = Graph::compile(rule, steps).map_err(|error| {

@@ -1,9 +1,9 @@
-//! Mistakes that leave much of a rule file whole: words, bracketed groups and lines that are
-//! repeated, left out, exchanged, or replaced by pieces of the dictionary.
+//! Mutations that leave much of a rule file intact: words, bracketed groups and lines are repeated, removed,
+//! exchanged, or replaced by pieces of the dictionary.
 
 use std::ops::Range;
 
-/// A generator of choices (Marsaglia's xorshift, 2003).
+/// Generator of choices (Marsaglia's xorshift, 2003).
 pub struct Random(u32);
 
 impl Random {
@@ -23,7 +23,7 @@ impl Random {
     }
 }
 
-/// The text with a few mistakes.
+/// Returns the text with up to three mutations.
 pub fn mutated(text: &str, random: &mut Random) -> String {
     let mut text = text.to_owned();
     for _ in 0..=random.below(3) {
@@ -65,7 +65,7 @@ fn lines(text: &str) -> Vec<Range<usize>> {
     lines.collect()
 }
 
-/// What stands between brackets, with them.
+/// Returns the ranges of bracketed groups, including the brackets.
 fn groups(text: &str) -> Vec<Range<usize>> {
     let mut open = Vec::new();
     let mut groups = Vec::new();
@@ -79,7 +79,7 @@ fn groups(text: &str) -> Vec<Range<usize>> {
     groups
 }
 
-/// Names and numbers.
+/// Returns the ranges of names and numbers.
 fn words(text: &str) -> Vec<Range<usize>> {
     let in_word = |c: char| c.is_alphanumeric() || "_.".contains(c);
     let mut words: Vec<Range<usize>> = Vec::new();

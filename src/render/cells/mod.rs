@@ -1,8 +1,9 @@
-//! Pictures by cells: limit sets whose copies overlap, or become flat, so that elements to a detail are
-//! far more than pixels or have no area.
+//! Pictures by cells: limit sets whose copies overlap or become flat, so that elements down to a detail are
+//! far more numerous than pixels, or have no area.
 //!
-//! These pictures show the limit set itself, as a pen of no less than a pixel goes over a point of each
-//! [cell](crate::grow::LimitCells) that it meets: all that lies within half a pixel of it.
+//! The picture shows the limit set itself: a pen at least a pixel wide is put on a point of each
+//! [cell](crate::grow::LimitCells) that the set meets, so that it covers everything within half a pixel of
+//! that point.
 
 mod plan;
 
@@ -21,38 +22,38 @@ use super::sight::NEARLY;
 use super::surface::{FINE, Paint, Pen, Stroke, Surface, position};
 use super::{Canvas, Classes, Drawing, Empty, Format, Options, Picture, RenderError, Size};
 
-/// Cells along a pixel: the finest of these that takes not too much work.
+/// Numbers of cells along a pixel, in the order in which they are tried.
 const FINENESS: [u8; 4] = [1, 2, 4, 8];
 
-/// Images of points that are worth a finer look.
+/// Number of images of points above which the next finer grid is not tried.
 const WORTH: u64 = 12_000_000;
 
-/// The most by which the number of cells grows where their sides are halved.
+/// Maximum factor by which the number of cells grows when their sides are halved.
 const MOST_TIMES: u64 = 4;
 
-/// The most images of points.
+/// Maximum number of images of points.
 const MOST_IMAGES: u64 = 400_000_000;
 
-/// The most images of points where steps are told.
+/// Maximum number of images of points if colours depend on steps.
 const MOST_IMAGES_BY_STEPS: u64 = 250_000_000;
 
-/// The most images of points where only a part of the set is shown, for which elements may be few.
+/// Maximum number of images of points if only a part of the set is shown, which may have few elements.
 const MOST_IMAGES_ABOUT_A_WINDOW: u64 = 60_000_000;
 
-/// A limit set on its canvas, by cells.
+/// Limit set on its canvas, as cells.
 pub(super) struct Cells<'a> {
     canvas: Canvas,
-    /// The number of lines and dots that are drawn.
+    /// Number of lines and dots that are drawn.
     count: u64,
-    /// The most maps that were applied to a point.
+    /// Maximum number of maps that were applied to a point.
     steps: u32,
     style: &'a Style,
     pen: Pen,
-    /// The ends of what is drawn in a colour, lines and dots.
+    /// Ends of the lines and dots of each colour.
     layers: Vec<(Colour, Vec<[DVec2; 2]>)>,
 }
 
-/// The search for the cells of a picture.
+/// Search for the cells of a picture.
 struct Finder<'a> {
     set: LimitCells<'a>,
     options: &'a Options,
@@ -60,8 +61,8 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The cells of a size, by steps where elements are replaced down to a length; `None` where that takes
-    /// too much work.
+    /// Finds the cells of a grid of `scale` cells per unit; by steps, if elements are replaced down to a
+    /// length. `None` if that takes too much work.
     fn find(&self, scale: f64, shortest: Option<f64>) -> Result<Option<Found>, RenderError> {
         let search = self.search(scale);
         self.done(match shortest {
@@ -70,7 +71,8 @@ impl Finder<'_> {
         })
     }
 
-    /// The box of the set, where the graph does not tell it.
+    /// Finds the bounding box of the set, for graphs that do not determine it. `None` if that takes too much
+    /// work.
     fn bounds(&self) -> Result<Option<Bounds>, RenderError> {
         let long = match self.options.size {
             Size::Long(side) => side,
@@ -101,17 +103,18 @@ impl Finder<'_> {
     }
 }
 
-/// Whether a limit set is drawn by cells without a look at its elements: its copies are no similar ones, and
-/// become flat.
+/// Returns whether a limit set is drawn by cells regardless of the number of its elements: its maps are
+/// affine but not similarities, so that elements become flat.
 fn becomes_flat(graph: &Graph) -> bool {
     graph.is_affine() && !graph.is_similar()
 }
 
-/// Returns the most elements of a limit set that is drawn by elements: more than its pixels could tell.
+/// Returns the maximum number of elements of a limit set that is drawn by elements; pixels could not show
+/// more.
 fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
     let is_closed = |object: &Object| graph.base_elements()[object.base_element].is_closed();
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
-    // Lines are drawn by long runs.
+    // Lines are drawn in long runs, so that more of them are affordable.
     let to_a_pixel = if drawn.all(is_closed) { 2.0 } else { 8.0 };
     let [width, height] = match options.size {
         Size::Long(side) => [side; 2],
@@ -121,14 +124,14 @@ fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
     to_a_pixel * f64::from(width) * f64::from(height) / (finest * finest)
 }
 
-/// Estimates whether a graph of similarities has more than `most` elements down to a length, by the powers of
-/// 2 that they are long.
+/// Estimates whether a graph of similarities has more than `most` elements down to a length, from their
+/// numbers by object and logarithm of the length.
 fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
     const AN_OCTAVE: f64 = 64.0;
     const MOST_WORK: usize = 4_000_000;
     let steps = |length: f64| (libm::log2(length) * AN_OCTAVE).round();
     let end = steps(shortest);
-    // Outlines of many pieces take as long as some plain ones.
+    // An outline of many pieces takes as long as several simple ones.
     let pieces = graph.base_elements().iter().map(|it| it.pieces().len());
     let worth: Vec<f64> = pieces
         .map(|pieces| (pieces as f64 / 4.0).max(1.0))
@@ -165,14 +168,14 @@ fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
     stand > most
 }
 
-/// The way in which a picture is drawn.
+/// Method by which a picture is drawn.
 pub(super) enum Way<'a> {
     Elements(Box<Layout<'a>>),
     Cells(Cells<'a>),
 }
 
 impl<'a> Way<'a> {
-    /// By elements, unless what is drawn is a limit set whose elements are too many, or flat.
+    /// Chooses elements, unless the picture shows a limit set whose elements are too many or flat.
     pub(super) fn find(
         graph: &'a Graph,
         growth: &Growth<'a>,
@@ -215,7 +218,7 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Whether it is the number of elements that is refused.
+/// Returns whether an error refuses the number of elements.
 fn is_too_much(error: &RenderError) -> bool {
     matches!(
         error,
@@ -240,7 +243,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The limit set of a graph, where it can be drawn so.
+    /// Finds the cells of the limit set of a graph; `None` if that takes too much work.
     fn of(
         graph: &Graph,
         growth: &Growth<'_>,
@@ -264,7 +267,7 @@ impl<'a> Cells<'a> {
             },
         };
         let is_exact = options.format == Format::Png;
-        // Where steps are told, cells are pixels that have one colour.
+        // If colours depend on steps, every cell is a pixel of one colour.
         let all: &[u8] = if is_exact && !plan.tells_steps {
             &FINENESS
         } else {
@@ -301,7 +304,7 @@ impl<'a> Cells<'a> {
             marks.flatten().for_each(|end| *end += shift);
         } else {
             for (colour, field) in colours.into_iter().zip(&fields) {
-                // Rows that lie within others: more would add nothing.
+                // The pen covers the inner cells of the rows between.
                 let step = i64::from(fineness / 2).max(1);
                 let mut marks = Vec::new();
                 for row in field.rows() {
@@ -331,8 +334,8 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Returns the way, of no more than half a pixel along each axis, by which the middles of cells come to
-/// lie on those of pixels, where both are as large: each pixel has one colour then.
+/// Returns the shift, by at most half a pixel along each axis, that moves the centres of cells to those of
+/// pixels if both have the same size, so that each pixel has one colour.
 fn to_pixels(canvas: &Canvas, pixels: f64, fields: &[Field]) -> DVec2 {
     let Some(field) = fields.first().filter(|_| pixels <= 1.0) else {
         return DVec2::ZERO;
@@ -342,7 +345,7 @@ fn to_pixels(canvas: &Canvas, pixels: f64, fields: &[Field]) -> DVec2 {
     DVec2::new(way.x, -way.y)
 }
 
-/// Returns the marks of every step, in the order of their classes.
+/// Returns the marks by class, in the order of the classes; labels are steps.
 fn labelled(
     fields: &[Field],
     graph: &Graph,

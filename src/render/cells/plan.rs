@@ -1,4 +1,4 @@
-//! Which limit sets are drawn by cells, in which colours, and by which pen.
+//! Plan of a picture by cells: whether cells can show a limit set, their colours, and the pen.
 
 use crate::geometry::{Bounds, DAffine2};
 use crate::graph::{Graph, Object, Replacement};
@@ -8,19 +8,19 @@ use crate::render::surface::Pen;
 use crate::render::{Canvas, Classes, NoRoom, Options, RenderError};
 use crate::style::{Cap, ColorBy, Colour, Join, Width};
 
-/// Objects that are looked into for one colour of all that becomes of them.
+/// Maximum number of instances that are examined in the search for layers of one class.
 const MOST_PARTS: usize = 1 << 12;
 
-/// The colours, layers and pen of a picture.
+/// Colours, layers and pen of a picture.
 pub(super) struct Plan {
     pub(super) layers: Vec<(Colour, Layer)>,
     pub(super) pen: Pen,
-    /// Whether colours tell steps.
+    /// Whether colours depend on steps.
     pub(super) tells_steps: bool,
 }
 
 impl Plan {
-    /// The canvas of the limit set, where the graph tells its box.
+    /// Returns the canvas of the limit set, if the graph determines its bounding box.
     pub(super) fn canvas(
         &self,
         graph: &Graph,
@@ -69,7 +69,7 @@ impl Plan {
         let is_kept = |object: &&Object| matches!(object.replacement, Replacement::Kept);
         let all_closed = drawn.clone().all(|object| is_closed(&object));
         let any_closed = drawn.clone().any(|object| is_closed(&object));
-        // An element that is replaced for ever is a dot in the end.
+        // In the limit, an element that is always replaced is a dot.
         let kept: Vec<&Object> = drawn.filter(is_kept).collect();
         let outlines = any_closed && style.outlines_polygons();
         let has_two_colours = !all_closed && any_closed && style.lines() != style.polygons();
@@ -90,7 +90,7 @@ impl Plan {
             Width::Relative(_) if kept.is_empty() => least,
             Width::Relative(_) => return None,
         };
-        // Steps are told apart within a layer.
+        // Steps are distinguished within a layer.
         let classes = Classes::before_survey(style.color_by, graph, 0);
         let layers = layers(graph, &classes)?;
         let own = if all_closed && !outlines {
@@ -114,7 +114,8 @@ impl Plan {
     }
 }
 
-/// Returns the layers of each class, in the order of the classes: objects all of whose parts are of one class.
+/// Returns the layers of each class, in the order of the classes. A layer consists of instances whose
+/// descendants are all of one class. `None` if there are too many, or if classes are not known by object.
 fn layers(graph: &Graph, classes: &Classes) -> Option<Vec<(u64, Layer)>> {
     let of_object = |object: usize| match classes.count() {
         1 => Some(0),

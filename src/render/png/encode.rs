@@ -1,3 +1,5 @@
+//! Encoding of pixels as PNG, in the smallest layout that represents them exactly.
+
 use std::io::{self, Write};
 
 use png::{BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter};
@@ -5,11 +7,12 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use crate::render::Labels;
 
-/// Edges of one colour have no more tones than this. What has more is continuous: palettes, densities.
+/// Maximum number of tones at the edges of one colour. Pictures with more are continuous: palettes,
+/// densities.
 const TONES: usize = 128;
 
-/// Writes pixels as PNG, with no more bits a pixel than they need: indexed where there are 256
-/// colours at most, grey where there is nothing else, without opacity where all is opaque.
+/// Writes pixels as PNG with no more bits per pixel than they need: indexed for at most 256 colours,
+/// greyscale if there are only greys, without an alpha channel if all pixels are opaque.
 pub(in crate::render) fn encode(
     pixmap: &Pixmap,
     labels: &Labels,
@@ -20,8 +23,8 @@ pub(in crate::render) fn encode(
     encode_pieces(size, &colours, labels, out, |encode| encode(pixmap))
 }
 
-/// The same of pixels that come in pieces of some rows each, from the top, and of whose colours all
-/// is known. `give` hands on one after another.
+/// Writes pixels that come in pieces of some rows each, from the top. `colours` are the colours of all
+/// pieces; `give` passes on one piece after another.
 pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
     [width, height]: [u32; 2],
     colours: &Colours,
@@ -32,12 +35,13 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
     let mut encoder = Encoder::new(out, width, height);
     let layout = colours.layout();
     if colours.few.colours.len() > TONES {
-        // Half the time of what is usual, for a tenth more bytes: these pictures take longest.
+        // Takes half the time of the default for a tenth more bytes: these pictures take longest.
         encoder.set_deflate_compression(DeflateCompression::Level(2));
     } else {
         encoder.set_compression(Compression::Balanced);
     }
-    // Line art has long runs of one colour, which filters, a compression's own too, only break up.
+    // Line art has long runs of one colour. Filters break them up, including the default of a compression
+    // level.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_color(layout.colour);
     encoder.set_depth(layout.depth);
@@ -101,18 +105,18 @@ fn rgba(pixel: PremultipliedColorU8) -> Rgba {
     [colour.red(), colour.green(), colour.blue(), colour.alpha()]
 }
 
-/// What colours a picture has.
+/// Colours of a picture.
 pub(in crate::render) struct Colours {
-    /// Every one of them, if there are 256 at most.
+    /// All colours, if there are at most 256.
     few: Few,
     grey: bool,
     opaque: bool,
 }
 
-/// Some hundred colours, and where to find them: a hash table with linear probing.
+/// Set of some hundred colours: a hash table with linear probing.
 struct Few {
     colours: Vec<PremultipliedColorU8>,
-    /// One more than the place of a colour, 0 where there is none.
+    /// Index of a colour plus 1; 0 for a free slot.
     slots: [u16; Self::SLOTS],
 }
 
@@ -120,7 +124,7 @@ impl Few {
     const MOST: usize = 256;
     const SLOTS: usize = 1024;
 
-    /// The first colours.
+    /// Creates a set of colours.
     fn new(colours: Vec<PremultipliedColorU8>) -> Self {
         let mut few = Self {
             colours: Vec::new(),
@@ -130,7 +134,7 @@ impl Few {
         few
     }
 
-    /// Where a colour is, or could be.
+    /// Returns the slot in which a colour is or could be.
     fn slot(&self, colour: PremultipliedColorU8) -> usize {
         // Fibonacci hashing: the upper ten bits.
         let mut slot = bits(colour).wrapping_mul(0x9E37_79B9) as usize >> 22;
@@ -142,7 +146,7 @@ impl Few {
         slot
     }
 
-    /// Adds a colour, unless there are more than enough.
+    /// Adds a colour, unless there are more than `MOST` already.
     fn add(&mut self, colour: PremultipliedColorU8) {
         if self.colours.len() > Self::MOST {
             return;
@@ -154,14 +158,14 @@ impl Few {
         }
     }
 
-    /// The place of a colour that there is.
+    /// Returns the index of a colour of the set.
     fn place(&self, colour: PremultipliedColorU8) -> u8 {
         let place = self.slots[self.slot(colour)].saturating_sub(1);
         u8::try_from(place).unwrap_or_default()
     }
 }
 
-/// How pixels are laid out.
+/// Layout of pixels.
 struct Layout {
     colour: ColorType,
     depth: BitDepth,
@@ -169,7 +173,7 @@ struct Layout {
 }
 
 impl Colours {
-    /// Those of a picture without pixels.
+    /// Returns the colours of a picture without pixels.
     pub(in crate::render) fn none() -> Self {
         Self {
             few: Few::new(Vec::new()),
@@ -184,7 +188,7 @@ impl Colours {
         colours.sorted()
     }
 
-    /// Adds those of some pixels.
+    /// Adds the colours of some pixels.
     pub(in crate::render) fn add(&mut self, pixmap: &Pixmap) {
         let mut last = None;
         for &pixel in pixmap.pixels() {
@@ -198,12 +202,12 @@ impl Colours {
         }
     }
 
-    /// Whether more pixels change nothing, on a background that is opaque or is not.
+    /// Returns whether further pixels cannot change the layout, on a background that is opaque or not.
     pub(in crate::render) fn are_settled(&self, on_opaque: bool) -> bool {
         self.few.colours.len() > Few::MOST && !self.grey && (on_opaque || !self.opaque)
     }
 
-    /// The same in an order that does not depend on where they are.
+    /// Sorts the colours, so that their order does not depend on their positions.
     pub(in crate::render) fn sorted(self) -> Self {
         let mut colours = self.few.colours;
         colours.sort_unstable_by_key(|&pixel| bits(pixel));
@@ -213,7 +217,7 @@ impl Colours {
         }
     }
 
-    /// The colours of a palette in its order.
+    /// Returns the colours of a palette in its order.
     fn palette(&self) -> Vec<Rgba> {
         self.few.colours.iter().map(|&pixel| rgba(pixel)).collect()
     }
@@ -242,12 +246,12 @@ impl Colours {
     }
 }
 
-/// A pixel as a number.
+/// Returns a pixel as a number.
 fn bits(pixel: PremultipliedColorU8) -> u32 {
     u32::from_be_bytes([pixel.alpha(), pixel.red(), pixel.green(), pixel.blue()])
 }
 
-/// A row of a picture with a palette: places in it, packed from the left.
+/// Encodes a row as indices into the palette, packed from the left.
 fn indices(pixels: &[PremultipliedColorU8], few: &Few, depth: BitDepth, row: &mut Vec<u8>) {
     let depth = depth as usize;
     let mut last = None;

@@ -1,4 +1,4 @@
-//! Strokes with corners and flat ends: a polygon for every line, corner and end.
+//! Strokes with corners and flat ends, drawn as a polygon for every line, corner and end.
 
 use crate::render::surface::{FINE, Pen, Position};
 use crate::style::{Cap, Join};
@@ -7,19 +7,19 @@ use super::coverage::Plane;
 use super::nib::Trail;
 use super::skia::MITER_LIMIT;
 
-/// The widest strokes that are drawn so, in pixels.
+/// Maximum width of these strokes, in pixels.
 const WIDEST: f64 = 4.0;
 
-/// Lines are drawn in pieces of so many pixels.
+/// Maximum length of the pieces in which lines are drawn, in pixels.
 const PIECE: f64 = 48.0;
 
-/// The corners of what stands for a disc.
+/// Number of vertices of the polygon that replaces a disc.
 const DISC: usize = 24;
 
-/// A pen for such strokes.
+/// Pen for these strokes.
 #[derive(Clone, Copy)]
 pub(super) struct FlatPen {
-    /// Half the width, in the units of positions.
+    /// Half the width, in hundredths of a pixel.
     half: f64,
     cap: Cap,
     join: Join,
@@ -37,23 +37,23 @@ impl FlatPen {
     }
 }
 
-/// A stroke that is being drawn.
+/// Stroke in progress.
 pub(super) struct FlatStroke {
     pen: FlatPen,
-    /// The least and the most of what can be seen.
+    /// Minimum and maximum of the positions that may be visible.
     seen: [[f64; 2]; 2],
-    /// Offsets of the two sides of level and upright lines from their middle, rounded.
+    /// Rounded offsets of the two sides of horizontal and vertical lines from the centre line.
     sides: [i64; 2],
     start: Position,
     at: Position,
-    /// The directions of the first line of the subpath and of the last.
+    /// Directions of the first and the last line of the subpath.
     directions: Option<[[f64; 2]; 2]>,
     /// Whether a subpath has begun that is neither closed nor ended.
     is_open: bool,
 }
 
 impl FlatStroke {
-    /// Creates a stroke on a picture of a size in pixels.
+    /// Creates a stroke on a picture of a given size in pixels.
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
     pub(super) fn new(pen: FlatPen, size: [i64; 2]) -> Self {
         let beyond = 4.0 * pen.half + PIECE * FINE;
@@ -84,7 +84,7 @@ impl FlatStroke {
         self.directions = between.map(|sides| sides.map(|[from, to]| direction(from, to).0));
     }
 
-    /// A straight line.
+    /// Draws a straight line.
     pub(super) fn line(&mut self, to: Position, plane: &mut Plane) {
         let (direction, length) = direction(self.at, to);
         if length == 0.0 {
@@ -127,7 +127,7 @@ impl FlatStroke {
         self.cap(self.at, on, plane);
     }
 
-    /// The sides of a line, in pieces that are not long.
+    /// Draws a line without its ends, in pieces of limited length.
     fn piece(&self, from: Position, to: Position, direction: [f64; 2], plane: &mut Plane) {
         if let Some(axis) = (0..2).find(|&axis| from[axis] == to[axis]) {
             let mut least = [0, 1].map(|axis| from[axis].min(to[axis]));
@@ -165,7 +165,7 @@ impl FlatStroke {
         }
     }
 
-    /// What part of a line may be seen, from 0 to 1 (Liang & Barsky 1984).
+    /// Returns the part of a line that may be visible, from 0 to 1 (Liang & Barsky 1984).
     fn seen_part(&self, start: [f64; 2], along: [f64; 2]) -> Option<[f64; 2]> {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for axis in 0..2 {
@@ -183,7 +183,7 @@ impl FlatStroke {
         (first <= last).then_some([first, last])
     }
 
-    /// What fills the gap between two lines that meet.
+    /// Fills the gap between two lines that meet.
     fn corner(&self, at: Position, [a, b]: [f64; 2], [c, d]: [f64; 2], plane: &mut Plane) {
         let (cross, dot) = (a * d - b * c, a * c + b * d);
         if cross == 0.0 && dot > 0.0 {
@@ -193,7 +193,7 @@ impl FlatStroke {
             return self.disc(at, plane);
         }
         if self.pen.join == Join::Miter && dot == 0.0 && (a == 0.0 || b == 0.0) {
-            // The mitre of a quarter turn is a square.
+            // The mitre of a right angle is a square.
             let ([mut left, mut top], [mut right, mut bottom]) = (at, at);
             let grow = |near: &mut i64, far: &mut i64, is_back: bool| {
                 let (place, side) = if is_back { (near, 0) } else { (far, 1) };
@@ -205,7 +205,7 @@ impl FlatStroke {
                 return;
             }
         }
-        // On the outer side of the turn.
+        // The corner lies on the outer side of the turn.
         let side = if cross > 0.0 {
             -self.pen.half
         } else {
@@ -224,7 +224,7 @@ impl FlatStroke {
         }
     }
 
-    /// What a line has beyond its end.
+    /// Draws the cap beyond the end of a line.
     fn cap(&self, at: Position, direction: [f64; 2], plane: &mut Plane) {
         match self.pen.cap {
             Cap::Butt => {}
@@ -247,7 +247,7 @@ impl FlatStroke {
 
     fn disc(&self, at: Position, plane: &mut Plane) {
         let middle = point(at);
-        // As large as the disc.
+        // The polygon has the area of the disc.
         let step = std::f64::consts::TAU / DISC as f64;
         let radius = self.pen.half * (step / libm::sin(step)).sqrt();
         let corners: [Position; DISC] = std::array::from_fn(|number| {
@@ -258,7 +258,7 @@ impl FlatStroke {
     }
 }
 
-/// Returns the direction of a line and its length.
+/// Returns the direction and the length of a line.
 #[inline]
 fn direction(from: Position, to: Position) -> ([f64; 2], f64) {
     let along = sub(point(to), point(from));

@@ -1,3 +1,5 @@
+//! Strokers, which draw strokes as coverage: round pens, hairlines, and pens with corners or flat ends.
+
 use std::sync::Arc;
 
 use crate::render::surface::{Pen, Position};
@@ -6,23 +8,23 @@ use crate::style::{Cap, Join};
 use super::coverage::{HairPen, Plane, RoundPen};
 use super::flat::{FlatPen, FlatStroke};
 
-/// What draws a stroke as coverage.
+/// Stroker.
 #[derive(Clone)]
 pub(super) enum Nib {
-    /// A round pen.
+    /// Round pen.
     Round(Arc<RoundPen>),
-    /// A hair.
+    /// Hairline.
     Hair(HairPen),
-    /// A pen for corners or flat ends.
+    /// Pen with corners or flat ends.
     Flat(FlatPen),
 }
 
-/// The round pens that have been used, by width.
+/// Round pens that have been used, by width.
 #[derive(Default)]
 pub(super) struct Nibs(Vec<(f64, Arc<RoundPen>)>);
 
 impl Nibs {
-    /// The nib of a pen, if there is one.
+    /// Returns the stroker of a pen, if its strokes are drawn as coverage.
     #[inline]
     pub(super) fn nib(&mut self, pen: Pen) -> Option<Nib> {
         let width = pen.width;
@@ -49,12 +51,13 @@ impl Nibs {
 /// State of a subpath.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Trail {
-    /// Its first and its current position.
+    /// First position.
     pub(super) start: Position,
+    /// Current position.
     pub(super) at: Position,
-    /// The second vertex and the last but one, once there are two.
+    /// Second vertex and last vertex but one, once there are two.
     pub(super) between: Option<[Position; 2]>,
-    /// Whether it has begun and is neither closed nor ended.
+    /// Whether the subpath has begun and is neither closed nor ended.
     pub(super) is_open: bool,
 }
 
@@ -81,10 +84,10 @@ impl Trail {
     }
 }
 
-/// A nib in use, with the state of its subpath.
+/// Stroker in use, with the state of its subpath.
 pub(super) enum Hand {
     Round(Arc<RoundPen>),
-    /// A hair, and whether a subpath has just begun.
+    /// Hairline, and whether a subpath has just begun.
     Hair {
         pen: HairPen,
         begins: bool,
@@ -93,7 +96,7 @@ pub(super) enum Hand {
 }
 
 impl Hand {
-    /// Takes a nib into use on a picture of a size in pixels.
+    /// Puts a stroker to use on a picture of a given size in pixels.
     pub(super) fn of(nib: &Nib, size: [i64; 2]) -> Self {
         match nib {
             Nib::Round(pen) => Self::Round(Arc::clone(pen)),
@@ -115,7 +118,7 @@ impl Hand {
         }
     }
 
-    /// Goes on with a subpath whose part before was drawn on another plane, perhaps.
+    /// Continues a subpath, the beginning of which may have been drawn on another coverage buffer.
     #[inline]
     pub(super) fn go_on(&mut self, plane: &mut Plane, trail: &Trail) {
         match self {
@@ -125,7 +128,7 @@ impl Hand {
         }
     }
 
-    /// Lines on from a position, one after another.
+    /// Draws lines from a position to the following ones, one after another.
     #[inline]
     pub(super) fn lines(&mut self, plane: &mut Plane, mut from: Position, to: &[Position]) {
         match self {
@@ -145,14 +148,14 @@ impl Hand {
         }
     }
 
-    /// Closes the subpath, whose last line leads to its start.
+    /// Closes the subpath; its last line leads to its start.
     pub(super) fn close(&mut self, plane: &mut Plane) {
         if let Self::Flat(stroke) = self {
             stroke.close(plane);
         }
     }
 
-    /// Ends the subpath where it is.
+    /// Ends the subpath at its current position.
     pub(super) fn end(&mut self, plane: &mut Plane) {
         if let Self::Flat(stroke) = self {
             stroke.end(plane);

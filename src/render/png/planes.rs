@@ -1,3 +1,5 @@
+//! Coverage buffers of a part of a picture, which threads fill in parallel.
+
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
@@ -6,24 +8,24 @@ use crate::render::filled::Filled;
 
 use super::coverage::{MARGIN, Plane};
 
-/// Planes beside the first one have no more pixels than this together.
+/// Maximum total number of pixels of the buffers other than the first.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// Those of a picture that is drawn in bands, so that it stays within 300 MB.
+/// The maximum for a picture that is drawn in bands, so that it stays within 300 MB.
 const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
 
-/// Planes of one part of a picture, so that several threads cover it at once. What they cover comes
-/// together when it is coloured; which of them it is on does not show, wherever a path is divided.
+/// Coverage buffers of one part of a picture, so that several threads cover it at once. The buffers are
+/// united when the part is coloured, so that the division of paths between them has no effect.
 pub(super) struct Planes {
     picture: [u32; 2],
     rows: Range<u32>,
-    /// Nothing as long as nothing has been covered.
+    /// Buffers; `None` while nothing is covered.
     planes: Vec<Mutex<Option<Plane>>>,
     filled: Arc<Filled>,
 }
 
 impl Planes {
-    /// As many planes as there are threads, but no more than memory should hold.
+    /// Creates one buffer per thread, within the limits of memory.
     pub(super) fn new(picture: [u32; 2], rows: Range<u32>, threads: usize) -> Self {
         let pixels = u64::from(picture[0]) * u64::from(rows.end - rows.start).max(1);
         let is_band = rows != (0..picture[1]);
@@ -42,7 +44,7 @@ impl Planes {
         }
     }
 
-    /// The same planes, on which nothing is covered, for as many other rows of the picture.
+    /// Moves the empty buffers to as many other rows of the picture; `None` if the number of rows differs.
     pub(super) fn moved_to(self, rows: &Range<u32>) -> Option<Self> {
         if self.rows.len() != rows.len() {
             return None;
@@ -65,7 +67,7 @@ impl Planes {
         })
     }
 
-    /// Covers something on a plane on which no other thread draws.
+    /// Covers something on a buffer on which no other thread draws.
     pub(super) fn with_one(&self, cover: impl FnOnce(&mut Plane)) {
         let planes = (0..).zip(&self.planes);
         let planes = planes.skip(pick(self.planes.len()));
@@ -79,12 +81,12 @@ impl Planes {
         cover(self.made(number, &mut plane));
     }
 
-    /// Which pixels are covered all over.
+    /// Returns the index of the pixels that are covered completely.
     pub(super) fn filled(&self) -> &Arc<Filled> {
         &self.filled
     }
 
-    /// A plane, made if it is not there yet.
+    /// Returns a buffer, which is created if it does not exist yet.
     fn made<'p>(&self, number: usize, plane: &'p mut Option<Plane>) -> &'p mut Plane {
         plane.get_or_insert_with(|| {
             let plane = Plane::of_rows(self.picture, self.rows.clone());
@@ -93,7 +95,7 @@ impl Planes {
         })
     }
 
-    /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
+    /// Calls `paint` with every covered pixel and its coverage, in any order, and clears the buffers.
     pub(super) fn drain(&self, paint: impl FnMut(usize, u32)) {
         let mut planes = self.planes.iter().map(lock);
         let Some(mut first) = planes.next() else {

@@ -6,16 +6,16 @@ use crate::render::surface::Position;
 
 use super::coverage::Plane;
 
-/// Rows of a block; blocks begin at multiples of it, independently of bands.
+/// Number of rows of a block. Blocks begin at multiples of it, independently of bands.
 const ROWS: u16 = 16;
 
 /// Maximum number of vertices of a stretch.
 const MANY: usize = 128;
 
-/// Vertices, or rows, that are enough work to hand to a thread.
+/// Numbers of vertices and of rows that are worth a thread.
 const WORTH: [usize; 2] = [1 << 14, 1 << 9];
 
-/// Hundredths of a pixel, as a whole number.
+/// Units of positions per pixel.
 const FINE: i64 = 100;
 
 /// Outlines whose area is to be covered together, under the nonzero rule.
@@ -23,15 +23,18 @@ const FINE: i64 = 100;
 /// Stretches outside the visible rows or to the right are dropped; of those to the left one side is kept.
 #[derive(Default)]
 pub(super) struct Region {
-    /// The visible part: the right border, and the upper and the lower one, as positions.
+    /// Right border of the visible part, as a position.
     right: i64,
+    /// Upper and lower border of the visible part, as positions.
     seen: [i64; 2],
     stretches: Vec<Stretch>,
-    /// The vertices of all stretches, relative to the first vertex of each.
+    /// Vertices of all stretches, relative to the first vertex of each.
     offsets: Vec<[i16; 2]>,
-    /// The current stretch, and the first and the current position of the subpath.
+    /// Current stretch.
     open: Stretch,
+    /// First position of the current subpath.
     start: Position,
+    /// Current position.
     at: Position,
 }
 
@@ -39,22 +42,22 @@ pub(super) struct Region {
 #[derive(Default)]
 struct Stretch {
     from: Position,
-    /// The indices of the offsets of its vertices after `from`.
+    /// Indices of the offsets of its vertices after `from`.
     between: Range<usize>,
     to: Position,
-    /// The bounding box: least and most, by axis.
+    /// Bounding box: minimum and maximum, by axis.
     bounds: [[i64; 2]; 2],
 }
 
 impl Region {
-    /// Sets the visible part: some rows of a picture of a width, in pixels.
+    /// Sets the visible part: some rows of a picture `width` pixels wide.
     pub(super) fn begin(&mut self, width: u32, rows: Range<u32>) {
         let fine = |pixels: u32| i64::from(pixels) * FINE;
         self.right = fine(width);
         self.seen = [fine(rows.start), fine(rows.end)];
     }
 
-    /// Takes all outlines out.
+    /// Returns all outlines and removes them from the region.
     pub(super) fn take(&mut self) -> Self {
         let empty = Self {
             right: self.right,
@@ -124,7 +127,7 @@ impl Region {
         stretch.to = self.at;
         let is_seen =
             top < bottom && top < self.seen[1] && bottom > self.seen[0] && left < self.right;
-        // Left of the border only the rows between both ends matter.
+        // To the left of the picture, only the rows between both ends matter.
         if !is_seen || right < 0 {
             self.offsets.truncate(stretch.between.start);
         }
@@ -135,7 +138,8 @@ impl Region {
         self.begin_stretch();
     }
 
-    /// Returns the rows with any area, first and last, in pieces that are enough work for a thread.
+    /// Iterates over the first and last rows of pieces that are enough work for a thread, where there is any
+    /// area.
     pub(super) fn pieces(&self) -> impl Iterator<Item = [i64; 2]> + use<> {
         let rows = self.stretches.iter().map(|stretch| stretch.bounds[1]);
         let met = rows.fold([i64::MAX, i64::MIN], |[top, bottom], [low, high]| {
@@ -236,7 +240,7 @@ mod tests {
             if has_room {
                 assert!(whole == drained(&mut expected), "{count} corners");
             }
-            // Bands on planes of their own.
+            // Bands are drawn on buffers of their own.
             let mut in_bands = Vec::new();
             for top in [0, 4, 20, 32] {
                 let bottom = [0, 4, 20, 32, SIZE[1]].into_iter().find(|end| *end > top);
@@ -278,7 +282,7 @@ mod tests {
         let bytes = region.offsets.len() * size_of::<[i16; 2]>() + stretches;
         assert!(bytes < 5 * count, "{bytes} bytes");
         assert!(region.vertices() <= count + count / MANY + 2);
-        // One side for each stretch to the left, nothing elsewhere.
+        // One side remains for each stretch to the left, nothing elsewhere.
         for (shift, most) in [([0, 100_000], 0), ([100_000, 0], 0), ([-100_000, 0], 900)] {
             let moved = star(vertices, 2000.0)
                 .into_iter()
@@ -287,7 +291,7 @@ mod tests {
             assert!(region.vertices() <= most, "{}", region.vertices());
             assert!(region.offsets.is_empty());
         }
-        // Positions beyond all pictures.
+        // Positions far beyond any picture.
         let far = [[i64::MIN, -5000], [i64::MAX, 2500], [i64::MIN, i64::MAX]];
         let region = of(&[far.to_vec()]);
         let mut plane = Plane::new(SIZE);

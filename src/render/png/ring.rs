@@ -1,5 +1,5 @@
-//! Filled subpaths: polygons one by one where they have room, a region of those of very many vertices. tiny-skia
-//! fills large outlines of few vertices, which it does quickly.
+//! Filled subpaths. Subpaths within the limits are covered as polygons, one by one; those of very many
+//! vertices form a region. tiny-skia fills large outlines of few vertices, which it does quickly.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use super::coverage::{MOST_CORNERS, has_room};
 const MANY_VERTICES: usize = 1 << 20;
 
 impl Png<'_, '_> {
-    /// Ends a subpath that may be a polygon that is covered.
+    /// Ends the current subpath, which is covered if it is within the limits.
     pub(super) fn end_ring(&mut self) {
         if self.ring.is_empty() {
             return;

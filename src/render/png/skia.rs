@@ -1,4 +1,4 @@
-//! Paths that tiny-skia draws.
+//! Paths that are drawn by tiny-skia.
 
 use std::ops::Range;
 
@@ -12,39 +12,40 @@ use crate::style::{Cap, Colour, Join};
 
 use super::split::{ROWS, split};
 
-/// A path that is only stroked is drawn in pieces of about this many vertices,
+/// Approximate number of vertices of the pieces in which a path is drawn that is only stroked.
 const STROKE_CHUNK: usize = 1 << 17;
 
-/// and one that is only filled in pieces of about this many, broken between subpaths. What has more
-/// nevertheless is filled some rows at a time, each of about so many vertices: what it takes to fill
-/// them is many times as large as they are.
+/// Approximate number of vertices of the pieces, broken between subpaths, in which a path is drawn that is
+/// only filled. A path that has more nevertheless is filled some rows at a time, each of about as many
+/// vertices: filling takes many times the memory of the vertices.
 const FILL_CHUNK: usize = 1 << 20;
 
-/// SVG's limit of a mitre's length, in widths.
+/// SVG's limit of the length of a mitre, in widths.
 pub(super) const MITER_LIMIT: f32 = 4.0;
 
-/// A path, in pieces if it is long.
+/// Path, drawn in pieces if it is long.
 #[derive(Default)]
 pub(super) struct Outline {
     paint: Paint,
     path: PathBuilder,
-    /// The number of vertices in the path.
+    /// Number of vertices of the path.
     length: usize,
-    /// Where the subpath starts.
+    /// Start of the subpath.
     start: [f32; 2],
-    /// The pen's position, and the one before it if a straight line leads from there.
+    /// Position of the pen.
     pen: [f32; 2],
+    /// Previous position, if a straight line leads from there.
     before: Option<[f32; 2]>,
     /// Whether the start of the subpath has been drawn in an earlier piece.
     is_broken: bool,
-    /// The rows of the picture that are drawn, where it is drawn in bands.
+    /// First row of the band and first row after it, if the picture is drawn in bands.
     band: Option<[u32; 2]>,
-    /// Pieces of one path that is not opaque come together here before they are laid over the rest.
+    /// Layer that collects the pieces of a translucent path before it is laid over the rest.
     layer: Option<Pixmap>,
 }
 
 impl Outline {
-    /// What is drawn of paths in a band of rows.
+    /// Creates an outline for a band of rows.
     pub(super) fn of_rows(rows: Range<u32>) -> Self {
         Self {
             band: Some([rows.start, rows.end]),
@@ -52,7 +53,7 @@ impl Outline {
         }
     }
 
-    /// Other rows are drawn from now on, if some are.
+    /// Moves to another band of rows, if the picture is drawn in bands.
     pub(super) fn move_to_rows(&mut self, rows: &Range<u32>) {
         if let Some(band) = &mut self.band {
             *band = [rows.start, rows.end];
@@ -95,7 +96,7 @@ impl Outline {
 
     fn curve_to_pixel(&mut self, [ax, ay]: [f32; 2], [bx, by]: [f32; 2], [x, y]: [f32; 2]) {
         self.path.cubic_to(ax, ay, bx, by, x, y);
-        // A curve is flattened to some lines.
+        // Curves are flattened to several lines.
         self.length += 4;
         self.before = None;
         self.pen = [x, y];
@@ -114,13 +115,13 @@ impl Outline {
         }
     }
 
-    /// Draws what there is of a long stroke.
+    /// Draws the accumulated portion of a long stroke.
     #[inline]
     pub(super) fn hand_on(&mut self, pixmap: &mut Pixmap) {
         if self.length > STROKE_CHUNK && self.paint.fill.is_none() {
             self.flush(pixmap, false);
             self.is_broken = true;
-            // The last line comes again, so that its corner with the next one is drawn.
+            // The last line is repeated, so that its corner with the next one is drawn.
             let [x, y] = self.before.unwrap_or(self.pen);
             self.path.move_to(x, y);
             if self.before.is_some() {
@@ -133,7 +134,7 @@ impl Outline {
         self.flush(pixmap, true);
     }
 
-    /// Draws what there is of the path.
+    /// Draws the accumulated portion of the path.
     fn flush(&mut self, pixmap: &mut Pixmap, is_whole: bool) {
         if self.path.is_empty() && self.layer.is_none() {
             return;
@@ -176,7 +177,7 @@ impl Outline {
     }
 }
 
-/// A position in pixels.
+/// Converts a position to pixels.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -192,7 +193,7 @@ fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
     if let Some(fill) = paint.fill {
         pixmap.fill_path(path, &ink(fill), FillRule::Winding, none, None);
     }
-    // A stroke of no width is nothing, not a hairline.
+    // A stroke of width 0 is empty, not a hairline.
     if let Some(stroke) = paint.stroke
         && stroke.pen.width > 0.0
     {
@@ -249,7 +250,7 @@ fn draw_long(
     stroked.end(pixmap);
 }
 
-/// Draws what rows of a picture show of a path.
+/// Draws the part of a path that lies in the given rows of a picture.
 fn draw_band(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint, rows: [u32; 2]) {
     let none = Transform::identity();
     let mut fill = |path: Option<tiny_skia::Path>, colour| {
@@ -294,7 +295,7 @@ fn shape(Stroke { pen, .. }: &Stroke) -> tiny_skia::Stroke {
             Join::Bevel => LineJoin::Bevel,
             Join::Miter => LineJoin::Miter,
         },
-        // None where there are no dashes.
+        // `None` without dashes.
         dash: StrokeDash::new(vec![dash, dash], 0.0),
     }
 }
@@ -313,7 +314,7 @@ fn opaque(paint: Paint) -> Paint {
 mod tests {
     use super::*;
 
-    /// A jagged star of many vertices.
+    /// Returns a jagged star of many vertices.
     fn star() -> tiny_skia::Path {
         const COUNT: u32 = 300_000;
         let mut path = PathBuilder::new();
@@ -369,7 +370,7 @@ mod tests {
             let sum: u64 = differences.iter().map(|&off| u64::from(off)).sum();
             let mean = sum as f64 / differences.len() as f64;
             assert!(mean < 0.1, "{mean}");
-            // Where the stroke is broken its pieces overlap.
+            // Pieces of a stroke overlap where it is divided.
             let far = differences.iter().filter(|&&off| off > 16).count();
             assert!(far <= if paint.stroke.is_some() { 20 } else { 0 }, "{far}");
             assert!(whole.data().iter().any(|&value| value > 0));

@@ -1,19 +1,18 @@
-//! Paths for bands: what tiny-skia draws of a picture must not depend on where bands begin.
-//!
-//! It cuts paths off at the edges of what it draws on, and rounds the ends that this makes. So all
-//! lines get vertices where they cross certain rows, whichever band is drawn; bands begin in such
-//! rows, and what is cut off there ends in a vertex.
+//! Division of paths at rows, so that the output of tiny-skia does not depend on where bands begin. tiny-skia
+//! clips paths at the edges of its pixmap and rounds the ends that result. All lines therefore get vertices
+//! where they cross certain rows, whichever band is drawn; bands begin in these rows, and clipped lines end
+//! in a vertex.
 
 use tiny_skia::{Path, PathBuilder, PathSegment, Point};
 
-/// Lines have vertices in every so manieth row; bands begin in these.
+/// Distance between the rows in which lines have vertices; bands begin in these.
 pub(crate) const ROWS: u32 = 4;
 
-/// Curves are drawn as lines that are no farther from them than this, in pixels.
+/// Maximum deviation of lines from the curves that they replace, in pixels.
 const FLAT: f64 = 1.0 / 64.0;
 
-/// A path of straight lines, with vertices in these rows as far as they are near a band, whose first
-/// row comes to lie at 0.
+/// Returns a path of straight lines, with vertices in these rows near a band. The first row of the band
+/// becomes row 0.
 pub(super) fn split(path: &Path, [top, bottom]: [u32; 2]) -> Option<Path> {
     let mut lines = Lines {
         path: PathBuilder::new(),
@@ -34,7 +33,7 @@ pub(super) fn split(path: &Path, [top, bottom]: [u32; 2]) -> Option<Path> {
             PathSegment::QuadTo(b, c) => {
                 let [a, b, c] = [lines.at, b, c].map(double);
                 let bend = distance(a, b, c);
-                // A chord of 1/n of the parameter is no farther away than 2 bend / 8 n².
+                // A chord over 1/n of the parameter deviates by at most 2 bend / 8 n².
                 lines.curve(0.25 * bend, c, |t| {
                     let s = 1.0 - t;
                     [0, 1].map(|i| s * s * a[i] + 2.0 * s * t * b[i] + t * t * c[i])
@@ -64,21 +63,21 @@ pub(super) fn split(path: &Path, [top, bottom]: [u32; 2]) -> Option<Path> {
 struct Lines {
     path: PathBuilder,
     top: f64,
-    /// Rows between which there are vertices.
+    /// Rows between which lines get vertices.
     near: [f64; 2],
     at: Point,
-    /// Whether that is still to be drawn: of lines that stay beyond these rows only the ends matter.
+    /// Whether the line to that point is pending: of lines that stay beyond these rows, only the ends matter.
     is_held: bool,
 }
 
 impl Lines {
-    /// A row in the band.
+    /// Converts a row of the picture to a row of the band.
     #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
     fn moved(&self, y: f32) -> f32 {
         (f64::from(y) - self.top) as f32
     }
 
-    /// Draws what is held.
+    /// Draws the pending line.
     fn end(&mut self) {
         if std::mem::take(&mut self.is_held) {
             self.path.line_to(self.at.x, self.moved(self.at.y));
@@ -112,7 +111,7 @@ impl Lines {
         self.at = to;
     }
 
-    /// A curve that a single line would be so far away from.
+    /// Draws a curve from which a single chord would deviate by `off`.
     fn curve(&mut self, off: f64, end: [f64; 2], at: impl Fn(f64) -> [f64; 2]) {
         let count = (off / FLAT).sqrt().ceil().clamp(1.0, 1000.0);
         let mut number = 1.0;
@@ -133,7 +132,7 @@ fn double(point: Point) -> [f64; 2] {
     [point.x.into(), point.y.into()]
 }
 
-/// How far three points are from evenly spaced ones on a line.
+/// Returns the length of the second difference of three points; 0 if they are evenly spaced on a line.
 fn distance(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|i| a[i] - 2.0 * b[i] + c[i]);
     (x * x + y * y).sqrt()

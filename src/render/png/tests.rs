@@ -1,3 +1,5 @@
+//! Tests of PNG drawing: threads, chunks, tufts and occlusion do not change pixels.
+
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 use std::io;
@@ -37,8 +39,8 @@ fn stroke(width: f64) -> Paint {
     }
 }
 
-/// Paths of all the ways in which something is drawn: hairs, round pens, small polygons, and what
-/// is left to others.
+/// Returns paths for every way of drawing: hairlines, round pens, small polygons, and paths that are left to
+/// tiny-skia.
 fn paths() -> Vec<(Paint, Vec<Position>)> {
     let fill = Paint {
         fill: Some(Colour::BLACK),
@@ -75,7 +77,7 @@ fn draw(png: &mut impl Surface, paths: &[(Paint, Vec<Position>)]) {
     }
 }
 
-/// The pixels of a picture that some threads have drawn.
+/// Returns the pixels of a picture that is drawn on `threads` threads.
 fn drawn(threads: usize, draw: impl FnOnce(&mut Png<'_, '_>)) -> Vec<u8> {
     with_team(NonZero::new(threads).unwrap(), |team| {
         let mut png = Png::begin(SIZE, None, team).unwrap();
@@ -96,7 +98,7 @@ fn the_number_of_threads_does_not_show() {
             paint.stroke = paint.stroke.map(|stroke| Stroke { colour, ..stroke });
             (paint, vertices)
         });
-        // More than one stretch.
+        // More than one chunk.
         let rounds = if colour == colour.opaque() { 150 } else { 1 };
         for _ in 0..rounds {
             all.extend(of_colour.clone());
@@ -110,7 +112,7 @@ fn the_number_of_threads_does_not_show() {
     }
 }
 
-/// Paths of all caps and joins, and of both fill and stroke.
+/// Returns paths of all caps and joins, with and without a fill.
 fn shaped_paths() -> Vec<(Paint, Vec<Position>)> {
     let mut paths = Vec::new();
     let zigzag = [
@@ -138,8 +140,8 @@ fn shaped_paths() -> Vec<(Paint, Vec<Position>)> {
     paths
 }
 
-/// tiny-skia knows sixteen shades along one axis and four along the other, and no corners of strokes that
-/// are thinner than a pixel.
+/// tiny-skia distinguishes sixteen shades along one axis and four along the other, and draws no corners of
+/// strokes that are thinner than a pixel.
 #[test]
 fn strokes_with_corners_are_those_of_the_reference() {
     let is_wide = |paint: &Paint| paint.stroke.is_some_and(|stroke| stroke.pen.width > 1.0);
@@ -172,7 +174,7 @@ fn strokes_with_corners_are_those_of_the_reference() {
     }
 }
 
-/// Many elements in one path, each with fill and stroke: all strokes lie over all fills.
+/// A path of several shapes, each with fill and stroke: all strokes lie over all fills.
 #[test]
 fn strokes_lie_over_fills() {
     let fill = Colour::of_rgba([200, 90, 0, 255]);
@@ -188,7 +190,7 @@ fn strokes_lie_over_fills() {
             png.close();
         }
         png.end().unwrap();
-        // What comes then is on top.
+        // Later paths lie on top.
         png.begin(&Paint {
             fill: Some(Colour::BLACK),
             stroke: None,
@@ -200,7 +202,7 @@ fn strokes_lie_over_fills() {
     let pixel = |x: usize, y: usize| &drawn[4 * (y * SIZE[0] as usize + x)..][..4];
     assert_eq!(pixel(15, 20), [200, 90, 0, 255]);
     assert_eq!(pixel(14, 14), [0, 0, 0, 255]);
-    // The side of one square in the middle of the other, on both sides of the border of pixels.
+    // The side of one square in the middle of the other, on both sides of the border between pixels.
     for x in [19, 20, 29, 30] {
         let [red, green, blue, alpha] = *pixel(x, 20) else {
             panic!()
@@ -213,7 +215,7 @@ fn strokes_lie_over_fills() {
     }
 }
 
-/// Stretches end anywhere along a path, also where it has only begun.
+/// Chunks may end anywhere along a path, also at its start.
 #[test]
 fn long_paths_are_in_one_piece() {
     let zigzag = |number: i64| [number % 8000, 1000 + 4000 * (number % 2) + number / 20];
@@ -239,7 +241,7 @@ fn long_paths_are_in_one_piece() {
     }
 }
 
-/// A closed path of very many vertices is filled and stroked on any thread; chunks hold its lines and not the
+/// A closed path of very many vertices is filled and stroked on any thread; chunks hold its lines, not the
 /// polygons of its stroke.
 #[test]
 fn long_outlines_are_those_of_the_reference() {
@@ -296,11 +298,11 @@ fn long_outlines_are_those_of_the_reference() {
     }
 }
 
-/// A picture on which every line is drawn by itself, and even what is hidden unless it is asked.
+/// Surface on which every line is drawn by itself, and on which nothing is hidden unless `hides` is set.
 struct Plain<'p, 't, 'w> {
     png: &'p mut Png<'t, 'w>,
     hides: bool,
-    /// The number of vertices.
+    /// Number of vertices.
     drawn: usize,
 }
 
@@ -356,7 +358,7 @@ impl Surface for Plain<'_, '_, '_> {
     }
 }
 
-/// A tree of two unlike branches.
+/// Tree with two different branches.
 const TREE: &str = "
 title: Tree
 initiator: segment
@@ -423,7 +425,7 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
     }
 }
 
-/// Squares, each on another one like it.
+/// Squares, each of which coincides with another one.
 const TWICE: &str = "
 title: Twice
 initiator: segment
@@ -441,8 +443,7 @@ generator:
     - {from: [1/2, 1/2], to: [1, 1/2]}
 ";
 
-/// Also where another colour comes next, and on several threads, some of which look while others
-/// draw.
+/// Covers successive colours, and several threads, some of which query while others draw.
 #[test]
 fn what_is_hidden_would_not_show() {
     let catalogue = Catalogue::embedded();
@@ -476,14 +477,14 @@ fn what_is_hidden_would_not_show() {
         for threads in [1, 3] {
             let (some, seen) = drawn(threads, true);
             assert!(seen == every, "{color_by:?} on {threads} threads");
-            // How much is left out on several threads depends on who is faster.
+            // The number of elements left out on several threads depends on timing.
             let is_less = some < all * 3 / 4 || threads > 1 || color_by == ColorBy::Index;
             assert!(is_less, "{color_by:?}: {some} of {all}");
         }
     }
 }
 
-/// A square in a square, the other way round, is a hole in a letter of this size.
+/// A square of opposite orientation inside another one is a hole, in letters of either size.
 #[test]
 fn letters_have_holes() {
     let square = |from: i64, to: i64| [[from, from], [to, from], [to, to], [from, to]];
@@ -504,7 +505,7 @@ fn letters_have_holes() {
                 png.close();
             }
             png.end().unwrap();
-            // What comes next is no word.
+            // The next path is not text.
             png.begin(&fill).unwrap();
             assert!(png.covers);
             png.end().unwrap();

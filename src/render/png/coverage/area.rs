@@ -1,20 +1,22 @@
+//! Areas of outlines of limited size, decided for every sample.
+
 use super::polygon::bounds;
 use super::{FINE, Plane, Position, SAMPLES, cover, index};
 
-/// The most vertices of an outline whose area is covered here,
+/// Maximum number of vertices of an outline whose area is covered.
 pub(crate) const MOST_CORNERS: usize = 1 << 12;
 
-/// and the most pixels of its box.
+/// Maximum number of pixels of its bounding box.
 const MOST_PIXELS: i64 = 1 << 14;
 
-/// How often an outline winds around each sample of a pixel, modulo 256; while it is being summed, how
-/// much more often than around that of the pixel to the left.
+/// Winding numbers of an outline about the samples of a pixel, modulo 256; during summation, their
+/// differences from those of the pixel to the left.
 type Windings = [i8; SAMPLES as usize];
 
-/// What is in use while an area is covered.
+/// Scratch memory for winding numbers.
 pub(super) type Scratch = Vec<Windings>;
 
-/// Where samples lie beside the left border of their pixels, by number.
+/// Offsets of samples from the left border of their pixels, by number.
 const BESIDE: [f64; SAMPLES as usize] = {
     let mut beside = [0.0; SAMPLES as usize];
     let mut number = 0;
@@ -25,7 +27,8 @@ const BESIDE: [f64; SAMPLES as usize] = {
     beside
 };
 
-/// Whether an outline of any shape is such that [`Plane::polygon`] covers its area.
+/// Returns whether an outline is within the limits, so that [`Plane::polygon`] covers its area whatever its
+/// shape.
 pub(crate) fn has_room(vertices: &[Position]) -> bool {
     let [least, most] = bounds(vertices);
     let side = |axis: usize| (most[axis].saturating_sub(least[axis]) / FINE).saturating_add(2);
@@ -33,10 +36,11 @@ pub(crate) fn has_room(vertices: &[Position]) -> bool {
 }
 
 impl Plane {
-    /// Covers what an outline winds around, if it has room; otherwise nothing.
+    /// Covers the area of an outline, the samples with nonzero winding number, if it is within the limits.
+    /// Otherwise covers nothing and returns `false`.
     ///
-    /// Every sample is decided for itself: every side is followed through the rows of samples, of
-    /// which each has one of every pixel.
+    /// Every sample is decided by itself: every side is followed through the rows of samples, each of which
+    /// has one sample of every pixel.
     pub(super) fn area(&mut self, vertices: &[Position]) -> bool {
         if !has_room(vertices) {
             return false;
@@ -76,13 +80,12 @@ impl Plane {
         true
     }
 
-    /// Covers a convex polygon in these columns and rows, of which there are two at most each: the same
-    /// samples.
+    /// Covers a convex polygon in at most two columns and two rows, by the same samples as [`Plane::area`].
     #[inline]
     pub(super) fn tiny(&mut self, vertices: &[Position], columns: [i64; 2], rows: [i64; 2]) {
         let mut masks = [[0; 2]; 2];
         follow(vertices, columns[0], rows, |row, sample, column, _| {
-            // Between two sides.
+            // Samples between two sides.
             let [first, second] = &mut masks[row];
             *first ^= u64::from(column == 0) << sample;
             *second ^= u64::from(column <= 1) << sample;
@@ -96,9 +99,9 @@ impl Plane {
     }
 }
 
-/// Follows the sides of a polygon through the rows of samples of some rows of pixels. Tells where: the row
-/// of pixels and that of samples in it, from which column on, counted from the first, samples lie to
-/// the right, and how that winds around them.
+/// Follows the sides of a polygon through the rows of samples of some rows of pixels. For each crossing,
+/// `meet` receives the row of pixels, the row of samples in it, the first column whose sample lies to the
+/// right, counted from the first column, and the contribution to the winding numbers.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "columns of a picture")]
 fn follow(
@@ -116,8 +119,8 @@ fn follow(
     }
 }
 
-/// Follows one side through the rows of samples from `lines[0]` up to `lines[1]`, always from its upper end, so
-/// that both polygons that share it see the same crossings.
+/// Follows one side through the rows of samples from `lines[0]` to before `lines[1]`, always from its upper
+/// end, so that both polygons that share it see the same crossings.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "exact on the picture")]
 pub(super) fn follow_side(
@@ -130,7 +133,7 @@ pub(super) fn follow_side(
     let is_down = from[1] < to[1];
     let winding = if is_down { 1 } else { -1 };
     let (upper, lower) = if is_down { (from, to) } else { (to, from) };
-    // Counted from the end of the side, so that crossings do not depend on the rows.
+    // Positions are relative to the end of the side, so that crossings do not depend on the rows.
     let start = line_below(upper[1]);
     let first = start.max(lines[0]);
     let end = line_below(lower[1]).min(lines[1]);
@@ -150,21 +153,21 @@ pub(super) fn follow_side(
     }
 }
 
-/// The first row of samples that lies below a position, or on it.
+/// Returns the first row of samples at or below a position.
 #[inline]
 fn line_below(y: i64) -> i64 {
     /// Positions are clamped to this; visible ones are much nearer.
     const FAR: i64 = 1 << 48;
     let samples = i64::from(SAMPLES);
     let y = y.clamp(-FAR, FAR);
-    // Twice as fine, for samples lie in the middle of their rows: the quotient is rounded up.
+    // Samples lie in the middle of their rows, hence the doubled resolution; the quotient is rounded up.
     (2 * samples * y - FINE + 2 * FINE - 1).div_euclid(2 * FINE)
 }
 
-/// The samples that are wound around, as bits.
+/// Returns the samples with nonzero winding number, as bits.
 #[inline]
 pub(super) fn wound<W: Copy + Default + PartialEq>(windings: &[W; SAMPLES as usize]) -> u64 {
-    // Eight bytes of 0 or 1 become eight bits.
+    // Multiplier that gathers eight bytes of 0 or 1 into eight bits.
     const GATHER: u64 = 0x0102_0408_1020_4080;
     let mut bits = [0; 8];
     for (bits, windings) in bits.iter_mut().zip(windings.as_chunks::<8>().0) {

@@ -1,20 +1,22 @@
+//! Flattening of curves to lines.
+
 use super::Position;
 
-/// The most hundredths of a pixel that a curve is away from the lines which it is drawn as,
+/// Maximum deviation of the lines from the curve that they replace, in hundredths of a pixel.
 const TOLERANCE: f64 = 1.0;
 
-/// and the most lines.
+/// Maximum number of lines.
 const MOST_LINES: f64 = 1e4;
 
-/// A cubic Bézier curve.
+/// Cubic Bézier curve.
 type Curve = [[f64; 2]; 4];
 
-/// Where the lines end which a curve is drawn as.
+/// Iterates over the ends of the lines that replace a curve.
 pub(crate) fn flattened(curve: [Position; 4]) -> impl Iterator<Item = Position> {
     flattened_within(places(curve), TOLERANCE).map(rounded)
 }
 
-/// The same of a curve in any units, within a tolerance.
+/// Iterates over the ends of the lines that replace a curve in any units, within a tolerance.
 pub(crate) fn flattened_within(
     curve: Curve,
     tolerance: f64,
@@ -22,19 +24,20 @@ pub(crate) fn flattened_within(
     lines(curve, least_lines(curve, tolerance), 1.0)
 }
 
-/// Where lines end which a curve is drawn as where it bounds a polygon: they are as close, and bound
-/// as much. There may be millions of polygons, so that what chords cut off each would be missed.
+/// Iterates over the ends of the lines that replace a curve as a side of a polygon: they deviate equally to
+/// both sides, and bound the same area. A picture may have millions of polygons, which would visibly lose
+/// what chords cut off.
 pub(crate) fn bounding(curve: [Position; 4]) -> impl ExactSizeIterator<Item = Position> {
     bounding_within(places(curve), TOLERANCE).map(rounded)
 }
 
-/// The same of a curve in any units, and as far from it as a tolerance allows.
+/// Iterates over the ends of the lines that bound the same area as a curve in any units, within a tolerance.
 pub(crate) fn bounding_within(
     curve: Curve,
     tolerance: f64,
 ) -> impl ExactSizeIterator<Item = [f64; 2]> {
     let count = least_lines(curve, tolerance).max(2.0);
-    // Chords of a parabola, evenly spread, cut off one part in the square of their number.
+    // Evenly spaced chords of a parabola cut off the reciprocal of the square of their number.
     lines(curve, count, 1.0 / (1.0 - 1.0 / (count * count)))
 }
 
@@ -50,7 +53,7 @@ fn rounded(point: [f64; 2]) -> Position {
     point.map(|place| place.round() as i64)
 }
 
-/// How many lines a curve is drawn as.
+/// Returns the number of lines that replace a curve.
 fn least_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
     let bend = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
         let [x, y] = [0, 1].map(|axis| p[axis] - 2.0 * q[axis] + r[axis]);
@@ -62,8 +65,8 @@ fn least_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
     lines.clamp(1.0, MOST_LINES)
 }
 
-/// Where a number of lines end which are so many times as far from the line between the curve's
-/// ends as it is.
+/// Iterates over the ends of `count` lines. Their distances from the line between the curve's ends are those
+/// of the curve, multiplied by `swell`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -80,7 +83,7 @@ fn lines(curve: Curve, count: f64, swell: f64) -> impl ExactSizeIterator<Item = 
     })
 }
 
-/// A point of a curve, moved away from the line between the ends.
+/// Returns a point of a curve, with its distance from the line between the ends multiplied by `swell`.
 fn point([p, q, r, s]: Curve, t: f64, swell: f64) -> [f64; 2] {
     let u = 1.0 - t;
     [0, 1].map(|axis| {

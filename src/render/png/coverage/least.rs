@@ -1,9 +1,9 @@
-//! Filled shapes that are narrower than a pixel, drawn a pixel wide: however small the pieces of a set
-//! become, they leave ink.
+//! Filled shapes narrower than a pixel, drawn a pixel wide, so that a set stays visible however small its
+//! pieces become.
 //!
-//! A convex shape of width w, the least distance of two parallels that it lies between, has its sides
-//! moved outwards by (1 − w) / 2 pixels. It is drawn as it is from a pixel on, and tends to the dot, or the
-//! line, of a round pen of a pixel.
+//! The sides of a convex shape of width w, the least distance between two parallel lines that enclose it, are
+//! moved outwards by (1 − w) / 2 pixels. Shapes of at least a pixel are drawn as they are; shrinking shapes
+//! tend to a dot or a line of a round pen of one pixel.
 
 use std::sync::LazyLock;
 
@@ -11,21 +11,21 @@ use super::polygon::{HalfPlane, MOST_PIXELS, MOST_VERTICES, SOME_VERTICES};
 use super::polygon::{bounds, orientation, rounded, sides};
 use super::{FINE, Plane, Position, RoundPen};
 
-/// No filled shape is drawn narrower than this, in hundredths of a pixel.
+/// Minimum width of a filled shape, in hundredths of a pixel.
 const NARROWEST: i64 = FINE;
 
-/// Shapes that are no longer than this are drawn as dots.
+/// Maximum length of shapes that are drawn as dots, in hundredths of a pixel.
 const LONGEST_DOT: i64 = 25;
 
-/// Shapes that are narrower than this have lost their sides by rounding.
+/// Width below which a shape has lost its sides by rounding, in hundredths of a pixel.
 const LINE: f64 = 1.0;
 
-/// The pen for dots and lines.
+/// Pen for dots and lines.
 static PEN: LazyLock<RoundPen> = LazyLock::new(|| RoundPen::new(NARROWEST as f64 / FINE as f64));
 
 impl Plane {
-    /// Covers a polygon as [`Plane::polygon`] does, but no narrower than a pixel if it is convex, or lies
-    /// within a pixel.
+    /// Covers a polygon as [`Plane::polygon`] does, but at least a pixel wide if it is convex or fits in a
+    /// pixel.
     #[inline]
     pub(crate) fn shape(&mut self, vertices: &[Position]) -> bool {
         let [least, most] = bounds(vertices);
@@ -79,8 +79,8 @@ impl Plane {
         width < LINE || self.polygon(vertices)
     }
 
-    /// Covers a small convex polygon whose sides are moved outwards by so many hundredths of a pixel, up to
-    /// as far beyond its ends.
+    /// Covers a small convex polygon with its sides moved outwards by `by` hundredths of a pixel, and
+    /// extended at its ends by as much.
     fn moved(&mut self, vertices: &[Position], by: f64, ends: [Position; 2]) {
         let [least, most] = bounds(vertices);
         let reach = NARROWEST / 2;
@@ -108,7 +108,7 @@ impl Plane {
                 add(to, side.map(|along| along * orientation));
             }
         }
-        // Acute corners would reach far.
+        // Acute corners would extend far.
         let [from, to] = ends;
         let [x, y] = [to[0] - from[0], to[1] - from[1]];
         add(from, [y, -x]);
@@ -122,8 +122,8 @@ impl Plane {
     }
 }
 
-/// Whether a polygon is surely as wide as a pixel, or so long and of so many corners that it is not looked
-/// at.
+/// Returns whether a polygon is certainly as wide as a pixel, or too long and with too many vertices to be
+/// examined.
 #[inline]
 fn is_broad(vertices: &[Position], longest: i64) -> bool {
     if longest > NARROWEST && vertices.len() > MOST_VERTICES {
@@ -139,19 +139,19 @@ fn is_broad(vertices: &[Position], longest: i64) -> bool {
             - (before[1] - from[1]) * (vertex[0] - from[0]);
         before = vertex;
     }
-    // The area of a convex shape is no more than its width times its diameter, which is less than 3/2 of
-    // the longer side of its box.
+    // The area of a convex shape is at most its width times its diameter, which is less than 3/2 of the
+    // longer side of its bounding box.
     twice.abs() > 3 * NARROWEST * longest
 }
 
-/// The middle of the box of some vertices, if there are any.
+/// Returns the centre of the bounding box of vertices, if there are any.
 fn middle(vertices: &[Position]) -> Option<Position> {
     let [least, most] = bounds(vertices);
     let middle = [0, 1].map(|axis| i64::midpoint(least[axis], most[axis]));
     (!vertices.is_empty()).then_some(middle)
 }
 
-/// The least distance of two parallels that a convex polygon lies between; 0 where it has no area.
+/// Returns the least distance between two parallel lines that enclose a convex polygon; 0 if it has no area.
 fn width(vertices: &[Position]) -> f64 {
     let mut width = f64::INFINITY;
     let mut before = vertices.last().copied().unwrap_or_default();
@@ -171,7 +171,7 @@ fn width(vertices: &[Position]) -> f64 {
     if width.is_finite() { width } else { 0.0 }
 }
 
-/// Two vertices that are as far apart as any.
+/// Returns two vertices at the largest distance from each other.
 fn farthest(vertices: &[Position]) -> [Position; 2] {
     let first = vertices.first().copied().unwrap_or_default();
     let mut farthest = (0, [first; 2]);
@@ -191,7 +191,7 @@ fn farthest(vertices: &[Position]) -> [Position; 2] {
 mod tests {
     use super::super::{Plane, WHOLE};
 
-    /// The ink of a shape, in pixels.
+    /// Returns the area that a shape covers, in pixels.
     fn ink(vertices: &[[i64; 2]]) -> f64 {
         let mut plane = Plane::new([30, 30]);
         assert!(plane.shape(vertices));

@@ -1,21 +1,25 @@
+//! Round pens: strokes as rows of prints of a disc, which are tabulated.
+
 use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
-/// Where the pen can stand: steps to a pixel, as a power of two.
+/// Steps per pixel at which the pen can stand, as a power of two.
 const STEP_BITS: u32 = 4;
 const STEPS: i64 = 1 << STEP_BITS;
 
-/// Positions are reckoned in steps with so many binary places.
+/// Number of binary places of positions in steps.
 const PLACES: u32 = 28;
 
-/// Steps with places that are a hundredth of a pixel.
+/// A hundredth of a pixel, in steps with these places.
 const HUNDREDTH: i64 = ((STEPS << PLACES) + FINE / 2) / FINE;
 
-/// Numbers of prints to a length have so many binary places,
+/// Number of binary places of densities of prints.
 const DENSITY_PLACES: u32 = 20;
 
-/// as have the parts of one by their number; ways are shifted first so that products fit.
+/// Number of binary places of the reciprocals of numbers of parts.
 const PART_PLACES: u32 = 24;
+/// Shift that is applied to distances before multiplication, so that products fit.
 const PART_SHIFT: u32 = 8;
+/// Reciprocals of numbers of parts.
 const PARTS: [i64; 128] = {
     let mut parts = [0; 128];
     let mut number = 1;
@@ -26,24 +30,23 @@ const PARTS: [i64; 128] = {
     parts
 };
 
-/// From one print of the pen to the next it is no farther than this part of the width, and no
-/// farther than so many pixels. Between them the edge of a line is hollow by 0.02 pixels at most,
-/// and a line has 1 % less ink.
+/// Maximum distance between successive prints, as a fraction of the width. Between prints, the edge of a line
+/// recedes by at most 0.02 pixels, and a line covers 1 % less.
 const SPACING: f64 = 0.25;
+/// Maximum distance between successive prints, in pixels.
 const MOST_SPACING: f64 = 0.4;
 
-/// A round pen: the line that it draws is what a disk covers that moves along, as strokes with
-/// round joins and caps are. It is drawn as a row of prints of the disk, each from a table.
+/// Round pen. Its lines cover the area of a moving disc, as strokes with round joins and caps do. A line is
+/// drawn as a row of prints of the disc, each from a table.
 pub(crate) struct RoundPen {
-    /// From the centre to the left and upper sides, in steps with places, less half a step.
+    /// Distance from the centre to the left and upper sides, in steps with places, minus half a step.
     reach: i64,
-    /// Prints to a hundredth of a pixel, with `DENSITY_PLACES`.
+    /// Number of prints per hundredth of a pixel, with `DENSITY_PLACES`.
     density: i64,
     prints: Prints,
 }
 
-/// What a pen covers of a square of so many pixels, by the place of the disk's upper left corner
-/// in the first of them.
+/// Masks of a pen in a square of pixels, by the position of the disc's upper left corner in the first pixel.
 enum Prints {
     Two(Vec<Print<2>>),
     Three(Vec<Print<3>>),
@@ -54,10 +57,10 @@ enum Prints {
 type Print<const SIDE: usize> = [[u64; SIDE]; SIDE];
 
 impl RoundPen {
-    /// The widths that there are pens of, in pixels: what is thinner falls between the samples.
+    /// Widths of pens, in pixels; thinner lines fall between the samples.
     pub(crate) const WIDTHS: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 
-    /// A pen of one of the [`WIDTHS`](Self::WIDTHS).
+    /// Creates a pen of one of the [`WIDTHS`](Self::WIDTHS).
     #[expect(clippy::cast_possible_truncation, reason = "pens are small")]
     pub(crate) fn new(width: f64) -> Self {
         let radius = width / 2.0;
@@ -79,7 +82,7 @@ impl RoundPen {
     }
 }
 
-/// The prints of a pen, by rows of places.
+/// Returns the prints of a pen, by rows of positions.
 fn prints<const SIDE: usize>(radius: f64) -> Vec<Print<SIDE>> {
     let centre = |step: i64| step as f64 / STEPS as f64 + radius;
     let places = (0..STEPS).flat_map(|y| (0..STEPS).map(move |x| [centre(x), centre(y)]));
@@ -95,7 +98,7 @@ fn prints<const SIDE: usize>(radius: f64) -> Vec<Print<SIDE>> {
 }
 
 impl Plane {
-    /// A dot.
+    /// Draws a dot.
     #[inline]
     pub(crate) fn dot(&mut self, pen: &RoundPen, at: Position) {
         if self.is_near(at) {
@@ -109,8 +112,8 @@ impl Plane {
         }
     }
 
-    /// Takes a position as one that the pen has been to on this plane, whatever has covered the dot there:
-    /// what lies between it and the next one may then be covered.
+    /// Records that the pen has been at a position, the dot at which may be on another buffer. The line to
+    /// the next position may then be covered.
     #[inline]
     pub(crate) fn reach(&mut self, pen: &RoundPen, at: Position) {
         if self.is_near(at) {
@@ -118,7 +121,8 @@ impl Plane {
         }
     }
 
-    /// A line on from where the pen has been on this plane: with a dot, a line or [`Plane::reach`].
+    /// Draws a line from a position where the pen has been on this buffer: by a dot, a line or
+    /// [`Plane::reach`].
     #[inline]
     pub(crate) fn line(&mut self, pen: &RoundPen, from: Position, to: Position) {
         if self.is_near(from) && self.is_near(to) {
@@ -161,11 +165,11 @@ impl Plane {
             }
         }
         self.print(prints, end);
-        // Where the line starts has been touched before.
+        // The start of the line has been recorded before.
         self.touch(end);
     }
 
-    /// Covers what the pen covers with the upper left corner of its box in a place.
+    /// Covers the print of the pen with the upper left corner of its box at a given position.
     #[inline(always)]
     fn print<const SIDE: usize>(&mut self, prints: &[Print<SIDE>], corner: [i64; 2]) {
         let [x, y] = corner.map(place);
@@ -190,26 +194,26 @@ impl Plane {
     #[inline]
     fn touch(&mut self, corner: [i64; 2]) {
         let [column, row] = corner.map(|corner| place(corner) >> STEP_BITS);
-        // The widest pen reaches into the fourth pixel after the first.
+        // The widest pen extends to the fourth pixel after the first.
         self.touched.add([column, column + 4], [row, row + 4]);
     }
 
-    /// Whether a position lies near enough to be seen, which most often it does.
+    /// Returns whether a position is near enough to the picture to be visible, as most are.
     #[inline]
     pub(super) fn is_near(&self, [x, y]: Position) -> bool {
-        // What lies too far left or above is larger than any side.
+        // Positions too far left or above become larger than any side.
         let most = self.picture.map(|side| index((side + 2 * MARGIN) * FINE));
         index(x + MARGIN * FINE) <= most[0] && index(y + MARGIN * FINE) <= most[1]
     }
 
-    /// The part of a line that lies near enough to be seen.
+    /// Returns the part of a line that is near enough to the picture to be visible.
     #[cold]
     pub(super) fn clipped(&self, from: Position, to: Position) -> Option<[Position; 2]> {
         clipped(from, to, self.picture.map(|side| (side + MARGIN) * FINE))
     }
 }
 
-/// The part of a line in a box, after Liang and Barsky (1984).
+/// Returns the part of a line that lies in a box (Liang & Barsky 1984).
 #[expect(
     clippy::cast_possible_truncation,
     reason = "what is clipped lies in the box"
@@ -236,8 +240,8 @@ fn clipped(from: Position, to: Position, most: [i64; 2]) -> Option<[Position; 2]
     })
 }
 
-/// How many prints come after the first. Of the length it is enough to know it within 7 %: the
-/// larger extent and three eighths of the smaller.
+/// Returns the number of prints after the first. An approximation of the length within 7 % suffices: the
+/// larger extent plus three eighths of the smaller.
 #[inline]
 fn pieces(pen: &RoundPen, from: Position, to: Position) -> i64 {
     let [x, y] = [0, 1].map(|axis| (to[axis] - from[axis]).abs());
@@ -245,7 +249,7 @@ fn pieces(pen: &RoundPen, from: Position, to: Position) -> i64 {
     ((length * pen.density) >> DENSITY_PLACES) + 1
 }
 
-/// One of several equal parts of a way.
+/// Returns one of `parts` equal parts of a distance.
 #[inline]
 fn part(way: i64, parts: i64) -> i64 {
     match PARTS.get(index(parts)) {
@@ -254,8 +258,8 @@ fn part(way: i64, parts: i64) -> i64 {
     }
 }
 
-/// Where the upper left corner of the pen's box is, in steps with places, if the pen stands at a
-/// position; half a step further, so that places are rounded.
+/// Returns the upper left corner of the box of a pen at a position, in steps with places. Half a step is
+/// added, so that [`place`] rounds.
 #[inline]
 fn corner(pen: &RoundPen, position: Position) -> [i64; 2] {
     position.map(|fine| fine * HUNDREDTH - pen.reach)

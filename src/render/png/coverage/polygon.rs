@@ -1,3 +1,5 @@
+//! Small convex polygons, covered as intersections of tabulated half planes.
+
 use std::sync::LazyLock;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -5,50 +7,52 @@ use std::sync::atomic::Ordering::Relaxed;
 use super::has_room;
 use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
 
-/// The most vertices of a polygon that is drawn here.
+/// Maximum number of vertices of such a polygon.
 pub(super) const MOST_VERTICES: usize = 32;
 
-/// Most polygons have no more vertices than this, and of the others most no more than that.
+/// Number of vertices that most polygons do not exceed.
 const FEW_VERTICES: usize = 4;
+/// Number of vertices that most other polygons do not exceed.
 pub(super) const SOME_VERTICES: usize = 12;
 
-/// The most pixels of its width and height.
+/// Maximum width and height of such a polygon, in pixels.
 pub(super) const MOST_PIXELS: i64 = 8;
 
-/// Half planes are off by some hundredths of a pixel, which adds up where many meet: of what is no wider
-/// than this, in hundredths, the samples are found one by one; not of triangles and quadrangles that are
-/// longer, which have two long sides at most, and which neighbours share with them.
+/// Width, in hundredths of a pixel, up to which every sample of a polygon is decided by itself. Half planes
+/// are off by some hundredths of a pixel, which adds up where many meet. Longer triangles and quadrilaterals
+/// are exempt: they have at most two long sides, which neighbours share.
 const TINIEST: i64 = 20;
 
-/// Directions to an octant in which half planes are tabulated,
+/// Number of directions per octant for which half planes are tabulated.
 const DIRECTIONS: usize = 8;
 
-/// and distances of their edges to a pixel's width.
+/// Number of distances of an edge per pixel for which half planes are tabulated.
 const DISTANCES: f64 = 64.0;
 
-/// Half planes whose edges are farther from the centre of a pixel than this, in `DISTANCES`, cover
-/// all of it or nothing.
+/// Distance of an edge from the centre of a pixel, in `DISTANCES`, beyond which a half plane covers all of
+/// the pixel or nothing.
 const FARTHEST: usize = 48;
 
-/// A half plane: what lies left of an edge, on the picture where y points down.
+/// Half plane to the left of an edge, on a picture where y points down.
 #[derive(Clone, Copy, Default)]
 pub(super) struct HalfPlane {
-    /// The twofold areas that a pixel right and one down take from that of edge and pixel's centre.
+    /// Change of the area from a pixel to the next one to the right.
     right: i64,
+    /// Change of the area from a pixel to the next one below.
     down: i64,
-    /// The area at the first pixel.
+    /// Twice the area of the triangle of the edge and the centre of the first pixel.
     area: i64,
-    /// Areas become distances,
+    /// Factor that converts areas to distances.
     scale: f64,
-    /// counted from this one.
+    /// Offset of distances.
     from: f64,
-    /// The first mask of its direction in the table.
+    /// Index of the first mask of the direction in the table.
     masks: usize,
-    /// All bits where the table holds the other side of the edge.
+    /// All ones if the table holds the other side of the edge.
     other: u64,
 }
 
-/// The masks of half planes by direction, from along x a quarter turn and another, and distance.
+/// Masks of half planes by direction, over two quarter turns from the x axis, and by distance.
 static HALF_PLANES: LazyLock<Vec<u64>> = LazyLock::new(|| {
     let mut masks = Vec::new();
     for octant in 0..4 {
@@ -73,11 +77,12 @@ static HALF_PLANES: LazyLock<Vec<u64>> = LazyLock::new(|| {
 });
 
 impl HalfPlane {
-    /// One side of the edge through a point along a vector; the centre of the first pixel.
+    /// Creates the half plane on one side of the edge through a point along a vector. `centre` is that of the
+    /// first pixel.
     #[inline]
     pub(super) fn of(point: Position, [x, y]: [i64; 2], centre: Position) -> Self {
         let turned = y < 0 || (y == 0 && x < 0);
-        // One direction of every edge, so that the two sides are exact complements.
+        // Every edge has one direction, so that its two sides are exact complements.
         let [x, y] = if turned { [-x, -y] } else { [x, y] };
         let area = x * (centre[1] - point[1]) - y * (centre[0] - point[0]);
         let (across, down) = (x.abs() as f64, y as f64);
@@ -100,14 +105,14 @@ impl HalfPlane {
         }
     }
 
-    /// The same with its edge moved outwards by so many hundredths of a pixel.
+    /// Moves the edge outwards by a distance in hundredths of a pixel.
     pub(super) fn moved(self, by: f64) -> Self {
         let by = by * DISTANCES / FINE as f64;
         let from = self.from + if self.other == 0 { by } else { -by };
         Self { from, ..self }
     }
 
-    /// What it covers of a pixel.
+    /// Returns the mask of a pixel, for its area.
     #[inline]
     fn mask(&self, table: &[u64], area: i64) -> u64 {
         const MOST: f64 = 2.0 * FARTHEST as f64 - 1.0;
@@ -126,7 +131,7 @@ fn number(value: f64) -> usize {
     value as i32 as usize
 }
 
-/// The box of vertices, least and most.
+/// Returns the bounding box of vertices: minimum and maximum.
 #[inline]
 pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
     let none = [[i64::MAX; 2], [i64::MIN; 2]];
@@ -138,13 +143,13 @@ pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
     })
 }
 
-/// Whether a box is that of a small polygon.
+/// Returns whether a bounding box is that of a small polygon.
 #[inline]
 fn is_small([least, most]: &[Position; 2]) -> bool {
     (0..2).all(|axis| most[axis].saturating_sub(least[axis]) <= MOST_PIXELS * FINE)
 }
 
-/// The sides of a polygon, that to the first vertex first.
+/// Returns the sides of a polygon, first the side to its first vertex.
 #[inline]
 pub(super) fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST] {
     let mut sides = [[0; 2]; MOST];
@@ -157,8 +162,8 @@ pub(super) fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST
 }
 
 impl Plane {
-    /// Covers a polygon, under the nonzero rule, if it is small and convex or [has room](has_room);
-    /// otherwise nothing.
+    /// Covers a polygon, under the nonzero rule, if it is small and convex or [within the limits](has_room).
+    /// Otherwise covers nothing and returns `false`.
     #[inline]
     pub(crate) fn polygon(&mut self, vertices: &[Position]) -> bool {
         let mut hull = [[0; 2]; SOME_VERTICES];
@@ -167,7 +172,7 @@ impl Plane {
             || self.area(vertices)
     }
 
-    /// Covers a polygon if it is small and convex.
+    /// Covers a polygon if it is small and convex. Otherwise covers nothing and returns `false`.
     #[inline]
     fn convex(&mut self, vertices: &[Position]) -> bool {
         let count = vertices.len();
@@ -225,8 +230,8 @@ impl Plane {
         true
     }
 
-    /// Covers a rectangle of level and upright sides as [`Plane::polygon`] does, if it is small and not too
-    /// narrow; otherwise nothing.
+    /// Covers a rectangle of horizontal and vertical sides as [`Plane::polygon`] does, if it is small and not
+    /// too narrow. Otherwise covers nothing and returns `false`.
     #[inline]
     pub(crate) fn rectangle(&mut self, least: Position, most: Position) -> bool {
         let bounds = [least, most];
@@ -267,7 +272,8 @@ impl Plane {
         self.touched.add(columns, rows);
     }
 
-    /// The columns and rows that a box meets, margins among them, if it meets any.
+    /// Returns the columns and rows that a bounding box meets, including those of margins; `None` if it meets
+    /// none.
     #[inline]
     pub(super) fn pixels(&self, [least, most]: [Position; 2]) -> Option<[[i64; 2]; 2]> {
         let met = [0, 1].map(|axis| {
@@ -279,13 +285,13 @@ impl Plane {
         met.iter().all(|[first, last]| first <= last).then_some(met)
     }
 
-    /// The cell of a pixel.
+    /// Returns the index of the cell of a pixel.
     #[inline]
     pub(super) fn cell(&self, [column, row]: [i64; 2]) -> usize {
         index(row - self.top + MARGIN) * self.stride + index(column + MARGIN)
     }
 
-    /// Whether all of a rectangle is covered, as is most of it where polygons overlap.
+    /// Returns whether a rectangle is covered completely, which is frequent where polygons overlap.
     #[inline]
     pub(super) fn is_full(&self, columns: [i64; 2], rows: [i64; 2]) -> bool {
         let width = index(columns[1] - columns[0] + 1);
@@ -296,7 +302,7 @@ impl Plane {
         })
     }
 
-    /// Covers what all half planes cover in a rectangle.
+    /// Covers the intersection of half planes in a rectangle of pixels.
     pub(super) fn intersection(
         &mut self,
         edges: &mut [HalfPlane],
@@ -323,12 +329,12 @@ impl Plane {
 /// Returns the index in the table of a distance in hundredths of a pixel, as [`HalfPlane::mask`] does.
 #[inline]
 fn slot(distance: i64) -> usize {
-    // `DISTANCES` to a pixel.
+    // Factor `DISTANCES` / 100.
     let slot = (distance * 16).div_euclid(25) + FARTHEST as i64;
     index(slot.clamp(0, 2 * FARTHEST as i64 - 1))
 }
 
-/// Returns whether a polygon is a rectangle with level and upright sides.
+/// Returns whether a polygon is a rectangle with horizontal and vertical sides.
 #[inline]
 fn is_rectangle(vertices: &[Position]) -> bool {
     let [a, b, c, d] = *vertices else {
@@ -342,8 +348,8 @@ fn is_rectangle(vertices: &[Position]) -> bool {
     })
 }
 
-/// Whether a convex polygon, of which the larger side of its box is known, is no wider than `TINIEST` in
-/// the mean.
+/// Returns whether the mean width of a convex polygon is at most `TINIEST`. `longest` is the longer side of
+/// its bounding box.
 #[inline]
 fn is_narrow(vertices: &[Position], longest: i64) -> bool {
     let from = vertices[0];
@@ -354,12 +360,12 @@ fn is_narrow(vertices: &[Position], longest: i64) -> bool {
     sides.sum::<i64>().abs() <= 2 * TINIEST * longest
 }
 
-/// Which way round a convex polygon with these sides runs: 1 if its inside is left of them on the
-/// picture where y points down, -1 if right, 0 if it has none. None of one that is not convex.
+/// Returns the orientation of a convex polygon with these sides: 1 if its inside lies to the left on a
+/// picture where y points down, -1 if to the right, 0 if it has none. `None` if it is not convex.
 #[inline]
 pub(super) fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
     let (mut lefts, mut rights) = (false, false);
-    // How often they turn back right and left, and up and down.
+    // Number of reversals along each axis.
     let (mut backs, mut signs) = ([0; 2], [0; 2]);
     let mut before = *sides.last()?;
     for &side in sides {
@@ -373,14 +379,13 @@ pub(super) fn orientation(sides: &[[i64; 2]]) -> Option<i64> {
             signs[axis] = if sign == 0 { signs[axis] } else { sign };
         }
     }
-    // Stars turn one way too, but more than once.
+    // Stars also turn in one direction, but more than once.
     let turns_once = backs.iter().all(|&backs| backs <= 2);
     (turns_once && !(lefts && rights)).then_some(i64::from(lefts) - i64::from(rights))
 }
 
-/// The vertices of the hull of a small polygon whose area is less than that of the hull by no more than
-/// rounding makes it, as is that of one that would be convex if its positions were not rounded. Where
-/// sides cross it may be another polygon.
+/// Returns the hull of a small polygon that exceeds its area by no more than rounding, as for a polygon that
+/// would be convex without rounding. If sides cross, the hull may enclose another polygon.
 pub(super) fn rounded<'h>(
     vertices: &[Position],
     hull: &'h mut [Position; SOME_VERTICES],
@@ -392,8 +397,8 @@ pub(super) fn rounded<'h>(
     let turn = |a: Position, b: Position, c: Position| {
         (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
     };
-    // Twice the area, and all ways along and down: half a unit at either end of each changes the area by
-    // a quarter of them at most.
+    // Twice the area, and the total extent of the sides along both axes: half a unit at either end of each
+    // side changes the area by at most a quarter of that.
     let from = vertices[0];
     let (mut area, mut ways) = (0, 0);
     let mut before = vertices[count - 1];
@@ -402,7 +407,7 @@ pub(super) fn rounded<'h>(
         ways += (vertex[0] - before[0]).abs() + (vertex[1] - before[1]).abs();
         before = vertex;
     }
-    // From a vertex that the hull has.
+    // The first vertex belongs to the hull.
     let (first, _) = (0..).zip(vertices).min_by_key(|(_, vertex)| **vertex)?;
     let (mut corners, mut lost) = (0, 0);
     for number in first..=first + count {

@@ -1,3 +1,5 @@
+//! Tests of coverage: areas, overlaps, threads and borders.
+
 #![allow(clippy::cast_possible_truncation, reason = "positions are small")]
 
 use std::sync::atomic::Ordering::Relaxed;
@@ -8,7 +10,7 @@ use super::{HairPen, Plane, Position, RoundPen, SAMPLES, WHOLE};
 
 const SIZE: u32 = 64;
 
-/// A line that goes on on another plane, outside of all that has been covered there, is not lost.
+/// A line that continues on another buffer, outside of everything covered there, is not lost.
 #[test]
 fn lines_go_on_on_other_planes() {
     let corners = [[1000, 1000], [3000, 2000], [500, 3000], [4000, 400]];
@@ -33,7 +35,7 @@ fn lines_go_on_on_other_planes() {
         .for_each(|other| assert!(other.cells.iter().all(|cell| cell.load(Relaxed) == 0)));
 }
 
-/// How much of every pixel is covered by what is drawn.
+/// Returns the coverage of every pixel.
 fn covered(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
     let mut plane = Plane::new([SIZE; 2]);
     draw(&mut plane);
@@ -47,7 +49,7 @@ fn drained(plane: &mut Plane) -> Vec<u32> {
     covered
 }
 
-/// The samples of every pixel that are covered by what is drawn.
+/// Returns the number of covered samples of every pixel.
 fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
     let covered = covered(draw);
     covered
@@ -56,7 +58,7 @@ fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
         .collect()
 }
 
-/// The area that is covered, in pixels.
+/// Returns the covered area, in pixels.
 fn area(samples: &[u32]) -> f64 {
     f64::from(samples.iter().sum::<u32>()) / f64::from(SAMPLES)
 }
@@ -65,7 +67,7 @@ fn length([x, y]: Position, [u, v]: Position) -> f64 {
     f64::hypot((u - x) as f64, (v - y) as f64) / 100.0
 }
 
-/// What a stroke of one line covers.
+/// Returns the samples that a stroke of one line covers.
 fn stroke(width: f64, from: Position, to: Position) -> Vec<u32> {
     let pen = RoundPen::new(width);
     samples(|plane| {
@@ -74,14 +76,14 @@ fn stroke(width: f64, from: Position, to: Position) -> Vec<u32> {
     })
 }
 
-/// The area that a line of a hair covers, in pixels.
+/// Returns the area that a hairline covers, in pixels.
 fn hair_area(width: f64, from: Position, to: Position) -> f64 {
     let pen = HairPen::new(width, 0.5);
     let covered = covered(|plane| plane.hair(&pen, from, to, true));
     covered.into_iter().map(f64::from).sum::<f64>() / f64::from(WHOLE)
 }
 
-/// A position so far inside that pens do not reach the border.
+/// Returns positions so far inside that pens do not reach the border.
 fn inside() -> impl Strategy<Value = Position> {
     [200..6200i64, 200..6200]
 }
@@ -99,7 +101,7 @@ proptest! {
         let radius = width / 2.0;
         let expected = width * length(from, to) + std::f64::consts::PI * radius * radius;
         let covered = area(&stroke(width, from, to));
-        // Samples lie in rows, some of them a tenth of a pixel apart.
+        // Samples lie in rows, some of which are a tenth of a pixel apart.
         prop_assert!(
             (covered - expected).abs() <= 0.02 * expected + 0.05 * length(from, to) + 0.1,
             "{covered} instead of {expected}"
@@ -147,7 +149,7 @@ proptest! {
 
     #[test]
     fn lines_from_anywhere_are_cut_at_the_border(from in anywhere(), to in anywhere()) {
-        // A line is as long on the picture as it is without any border, if that is not far.
+        // The visible part of a line is no longer than the line or the diagonal.
         let covered = area(&stroke(1.0, from, to));
         let diagonal = f64::from(SIZE) * std::f64::consts::SQRT_2;
         prop_assert!(covered <= 1.03 * diagonal.min(length(from, to)) + 2.0);
@@ -161,8 +163,8 @@ proptest! {
     fn a_hair_covers_its_area(width in 0.01..0.25, from in inside(), to in inside()) {
         let expected = width * (length(from, to) + width);
         let covered = hair_area(width, from, to);
-        // A line of a length through a pixel takes 1 - (1 - width)^length of its light: just its width if
-        // that is 1, more than its area if it is short, and less across both corners.
+        // A line of length l through a pixel absorbs 1 - (1 - width)^l of its light: its width if l is 1,
+        // more than its area if it is short, and less along a diagonal.
         let short = -f64::ln(1.0 - width) / width;
         let diagonal = std::f64::consts::SQRT_2;
         let long = (1.0 - f64::powf(1.0 - width, diagonal)) / (diagonal * width);
@@ -170,7 +172,7 @@ proptest! {
             (long * expected - 2e-3..=short * expected + 2e-3).contains(&covered),
             "{covered} instead of {expected}"
         );
-        // Along a border of pixels, a half lies in either: 2 (1 - √(1 - width)) is up to 1.072 widths.
+        // Along a border between pixels, half lies in either: 2 (1 - √(1 - width)) is at most 1.072 widths.
         if length(from, to) > 16.0 {
             let off = (covered - expected).abs();
             prop_assert!(off <= 0.08 * expected, "{covered} instead of {expected}");
@@ -245,7 +247,7 @@ proptest! {
             let part = samples(|plane| assert!(plane.polygon(&part)));
             sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
         }
-        // Half planes are rounded, so that where three meet a sample may be missed or met twice.
+        // Half planes are rounded, so that a sample may be missed or covered twice where three meet.
         for (whole, sum) in whole.iter().zip(sum) {
             prop_assert!(whole.abs_diff(sum) <= 3, "{whole} and {sum}");
         }
@@ -272,8 +274,8 @@ fn lines_have_their_ink_on_average() {
     }
 }
 
-/// Lines in one place let through what lines in random places do, and no number of them takes
-/// more than all.
+/// Coincident lines transmit as much light as lines at random positions, and any number of them absorbs at
+/// most all.
 #[test]
 fn hairs_that_lie_together_fill_a_pixel() {
     let pen = HairPen::new(0.1, 0.0);
@@ -288,7 +290,7 @@ fn hairs_that_lie_together_fill_a_pixel() {
     }
 }
 
-/// A hair that moves is seen to move, and not to jump from pixel to pixel.
+/// A moving hairline crosses the border of a pixel gradually.
 #[test]
 fn hairs_cross_the_border_of_a_pixel_bit_by_bit() {
     let pen = HairPen::new(0.2, 0.0);
@@ -319,7 +321,7 @@ fn a_line_through_the_whole_plane_is_drawn_where_it_is_seen() {
     }
 }
 
-/// How often an outline winds around a point, by the sides that cross the ray from there to the right.
+/// Returns the winding number of an outline about a point, from the sides that cross the ray to the right.
 fn winding(vertices: &[Position], [x, y]: [f64; 2]) -> i32 {
     let nexts = vertices.iter().cycle().skip(1);
     let sides = vertices.iter().zip(nexts);
@@ -335,7 +337,7 @@ fn winding(vertices: &[Position], [x, y]: [f64; 2]) -> i32 {
     crossings.sum()
 }
 
-/// Outlines of any shape that are not convex, or too large for the short way.
+/// Returns outlines that are not convex or are too large for half planes.
 fn any_shape() -> impl Strategy<Value = Vec<Position>> {
     let corner = [-300..6700i64, -300..6700i64];
     let near = [2000..2600i64, 2000..2600i64];
@@ -358,7 +360,7 @@ proptest! {
                 winding(&vertices, [x + u, y + v]) != 0
             };
             let expected = (0..SAMPLES).filter(is_inside).count();
-            // A side may run through a sample, within rounding.
+            // A side may pass through a sample, within rounding.
             prop_assert!((expected as i64 - i64::from(covered)).abs() <= 1, "{covered} instead of {expected}");
         }
     }
@@ -375,14 +377,14 @@ proptest! {
         });
         let soon = samples(|plane| assert!(plane.polygon_of::<5>(&vertices)));
         let exact = samples(|plane| assert!(plane.area(&vertices)));
-        // Of a side the first way knows the direction in steps only.
+        // Half planes have discrete directions.
         let differences = soon.iter().zip(&exact).map(|(a, b)| a.abs_diff(*b));
         prop_assert!(differences.clone().all(|difference| difference <= 6));
         let off = area(&soon) - area(&exact);
         prop_assert!(off.abs() <= 0.01 * radius / 10.0, "{off}");
     }
 
-    /// Positions are rounded, so that the outlines of small disks turn both ways.
+    /// Positions are rounded, so that the outlines of small discs turn in both directions.
     #[test]
     fn rounded_polygons_are_covered_as_convex_ones(
         corner in [500..5000i64, 500..5000],
@@ -399,7 +401,7 @@ proptest! {
         let exact = samples(|plane| assert!(plane.area(&vertices)));
         let off = area(&soon) - area(&exact);
         prop_assert!(off.abs() <= 0.03 + 0.0025 * radius, "{off}");
-        // The other way round, and from another vertex.
+        // In the other direction, and from another vertex.
         let backwards: Vec<Position> = vertices.iter().rev().copied().collect();
         prop_assert!(soon == samples(|plane| assert!(plane.polygon(&backwards))));
     }
@@ -443,10 +445,10 @@ fn small_ellipses_and_bars_have_their_ink_on_average() {
     let ellipses = round.into_iter().chain(narrow).map(|shape| (8, shape));
     for (corners, [along, across]) in ellipses.chain(narrow.map(|shape| (4, shape))) {
         let shape = |number: i64| {
-            // Places that are spread out evenly.
+            // Centres are spread evenly.
             let middle = [number * 61 % 100, number * 8747 % 10_000 / 100];
             let corner = |corner: i64| {
-                // Of a bar half way between those of the ellipse.
+                // Corners of a bar lie half way between those of the ellipse.
                 let turn = (corner as f64 + if corners == 4 { 0.5 } else { 0.0 })
                     * std::f64::consts::TAU
                     / corners as f64;
@@ -471,7 +473,7 @@ fn small_ellipses_and_bars_have_their_ink_on_average() {
     }
 }
 
-/// What is not convex by more than rounding is covered as it is.
+/// Polygons that are not convex, by more than rounding, are covered exactly.
 #[test]
 fn small_stars_keep_their_notches() {
     for radius in [20, 60, 150] {
