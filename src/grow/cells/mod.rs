@@ -200,12 +200,9 @@ impl<'g> LimitCells<'g> {
         for fineness in FINER {
             let inner: Vec<Field> = known.fields.iter().map(Field::inner).collect();
             let fields = known.fields.iter();
-            let wave: Vec<Vec<DVec2>> = { fields.clone().zip(&inner) }
-                .map(|(field, inner)| field.points_without(inner))
-                .collect();
-            let images = wave.iter().zip(nodes);
-            let images: usize = images
-                .map(|(points, it)| points.len() * it.images.len())
+            let counts = fields.clone().zip(&inner).zip(nodes);
+            let images: usize = counts
+                .map(|((field, inner), it)| field.count_without(inner) * it.images.len())
                 .sum();
             if images as f64 * fineness * fineness > FINER_WORTH {
                 break;
@@ -213,13 +210,15 @@ impl<'g> LimitCells<'g> {
             let mut orbit = Orbit {
                 net: &self.net,
                 search,
-                fields: fields.map(|it| Field::new(it.scale() * fineness)).collect(),
+                fields: { fields.clone() }
+                    .map(|it| Field::new(it.scale() * fineness))
+                    .collect(),
                 wave: vec![Vec::new(); nodes.len()],
                 left: search.most_images.saturating_sub(known.images),
                 without: &inner,
             };
-            for (number, points) in wave.into_iter().enumerate() {
-                for point in points {
+            for (number, (field, inner)) in fields.zip(&inner).enumerate() {
+                for point in field.points_without(inner) {
                     orbit.add(number, point)?;
                 }
             }

@@ -1,5 +1,9 @@
 //! Cells of the plane that hold points of a set, and one such point of each.
 
+mod around;
+mod rows;
+mod spread;
+
 use crate::geometry::{Bounds, DVec2};
 
 /// Cells along a side of a tile.
@@ -45,12 +49,6 @@ struct Tile {
 /// A point that is farther from the origin than cells are numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooFar;
-
-/// A row of cells of a [`Field`].
-pub(crate) struct Row<'f> {
-    field: &'f Field,
-    number: i64,
-}
 
 impl Field {
     /// Returns a field without points, of a number of cells to a unit of length.
@@ -154,35 +152,6 @@ impl Field {
             .map(u16::from_le_bytes)
     }
 
-    /// Adds the cells of another field of this scale, by the greatest labels of the cells around them.
-    pub(super) fn spread_to(&mut self, other: &Self) -> Result<(), TooFar> {
-        let mut open = Vec::new();
-        for row in other.low[1] * SIDE..(other.low[1] + other.room[1]) * SIDE {
-            for column in other.low[0]..other.low[0] + other.room[0] {
-                let left = other.word(column, row) & !self.word(column, row);
-                open.extend(bits(left).map(|bit| [column * SIDE + bit, row]));
-            }
-        }
-        while !open.is_empty() {
-            let before = open.len();
-            let mut found = Vec::new();
-            open.retain(|&cell| {
-                let around = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [x, y]));
-                let around = around.filter_map(|[x, y]| self.place([cell[0] + x, cell[1] + y]));
-                let label = around.map(u16::from_le_bytes).max();
-                found.extend(label.map(|label| (cell, label)));
-                label.is_none()
-            });
-            for (cell, label) in found {
-                self.label((corner(cell) + 0.5) / self.scale, label)?;
-            }
-            if open.len() == before {
-                break;
-            }
-        }
-        Ok(())
-    }
-
     /// Forgets all points.
     pub(super) fn clear(&mut self) {
         if !self.bounds.is_empty() {
@@ -235,66 +204,6 @@ impl Field {
         self.slot(tile).ok_or(TooFar)
     }
 
-    /// Fills cells with no fewer than three neighbours of four that hold points: where the set has an area,
-    /// a point of every cell leads to a point of most cells, not of all.
-    pub(super) fn fill_pits(&mut self) {
-        let mut filled = Vec::new();
-        for (slot, &number) in self.directory.iter().enumerate() {
-            if number == NONE {
-                continue;
-            }
-            let [column, first] = self.corner_of(slot);
-            for row in first..first + SIDE {
-                let [three, _] = self.neighbours(column, row);
-                let pits = three & !self.word(column, row);
-                for bit in bits(pits) {
-                    let cell = [column * SIDE + bit, row];
-                    let beside = [[cell[0] - 1, row], [cell[0] + 1, row]];
-                    let beside = beside.into_iter().find_map(|cell| self.place(cell));
-                    filled.push((number as usize, within(cell), beside.unwrap_or_default()));
-                }
-            }
-        }
-        for (number, [column, row], place) in filled {
-            let tile = &mut self.tiles[number];
-            tile.rows[row] |= 1 << column;
-            tile.places[row * WIDTH + column] = place;
-        }
-    }
-
-    /// The cells whose eight neighbours all hold points, and which do themselves.
-    pub(super) fn inner(&self) -> Self {
-        let mut inner = Self {
-            low: self.low,
-            room: self.room,
-            directory: vec![NONE; self.directory.len()],
-            ..Self::new(self.scale)
-        };
-        let between = |column: i64, row: i64| {
-            let word = self.word(column, row);
-            let [left, right] = self.beside(column, row, word);
-            word & left & right
-        };
-        for (slot, number) in self.directory.iter().enumerate() {
-            if *number == NONE {
-                continue;
-            }
-            let [column, first] = self.corner_of(slot);
-            let mut tile = Tile::default();
-            let mut words = [first - 1, first].map(|row| between(column, row));
-            for (row, inner) in (first..).zip(&mut tile.rows) {
-                let above = between(column, row + 1);
-                *inner = words[0] & words[1] & above;
-                words = [words[1], above];
-            }
-            if tile.rows != [0; WIDTH] {
-                inner.directory[slot] = u32::try_from(inner.tiles.len()).unwrap_or(NONE);
-                inner.tiles.push(tile);
-            }
-        }
-        inner
-    }
-
     /// The points of all cells, but of those that another field of this scale holds.
     pub(super) fn points_without(&self, other: &Self) -> Vec<DVec2> {
         let mut points = Vec::new();
@@ -307,6 +216,18 @@ impl Field {
         points
     }
 
+    /// The number of cells that hold a point, but of those that another field of this scale holds.
+    pub(super) fn count_without(&self, other: &Self) -> usize {
+        let mut count = 0;
+        for row in self.low[1] * SIDE..(self.low[1] + self.room[1]) * SIDE {
+            for column in self.low[0]..self.low[0] + self.room[0] {
+                let left = self.word(column, row) & !other.word(column, row);
+                count += left.count_ones() as usize;
+            }
+        }
+        count
+    }
+
     /// The column of a tile of the directory, and its first row of cells.
     fn corner_of(&self, slot: usize) -> [i64; 2] {
         let slot = i64::try_from(slot).unwrap_or(0);
@@ -314,35 +235,6 @@ impl Field {
             self.low[0] + slot % self.room[0],
             (self.low[1] + slot / self.room[0]) * SIDE,
         ]
-    }
-
-    /// Whether the left and the right neighbours of the cells of a word hold points.
-    fn beside(&self, column: i64, row: i64, word: u64) -> [u64; 2] {
-        [
-            word << 1 | self.word(column - 1, row) >> 63,
-            word >> 1 | self.word(column + 1, row) << 63,
-        ]
-    }
-
-    /// Which cells of a word have neighbours that hold points: three of four, and all.
-    fn neighbours(&self, column: i64, row: i64) -> [u64; 2] {
-        let [left, right] = self.beside(column, row, self.word(column, row));
-        let [below, above] = [row - 1, row + 1].map(|row| self.word(column, row));
-        let (either, both) = (left | right, left & right);
-        [
-            both & (below | above) | either & (below & above),
-            both & below & above,
-        ]
-    }
-
-    /// All rows of cells that may hold points, from the lowest on.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
-        let from = self.low[1] * SIDE;
-        let to = (self.low[1] + self.room[1]) * SIDE;
-        (from..to).map(|number| Row {
-            field: self,
-            number,
-        })
     }
 
     /// The cells of a row of a tile, as bits.
@@ -372,89 +264,6 @@ impl Default for Tile {
         Self {
             rows: [0; WIDTH],
             places: vec![[0; 2]; WIDTH * WIDTH].into(),
-        }
-    }
-}
-
-impl Row<'_> {
-    /// The number of the row.
-    pub(crate) fn number(&self) -> i64 {
-        self.number
-    }
-
-    /// Visits the cells of the row that hold points, from left to right: as runs, by the middles of
-    /// their ends.
-    pub(crate) fn visit_runs(&self, visit: impl FnMut([DVec2; 2])) {
-        self.visit(|word, _| [word, word], visit);
-    }
-
-    /// Visits the cells as [`Row::visit_runs`] does, but those with no more than two neighbours of four by
-    /// their points, and those that have all four only if inner ones are needed.
-    pub(crate) fn visit_points(&self, needs_inner: bool, visit: impl FnMut([DVec2; 2])) {
-        let Self { field, number } = *self;
-        let sort = |word: u64, column: i64| {
-            let [three, all] = field.neighbours(column, number);
-            let visited = if needs_inner { word } else { word & !all };
-            [visited, word & three]
-        };
-        self.visit(sort, visit);
-    }
-
-    /// Visits runs of cells that have one label, by the middles of their ends.
-    pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u16, [DVec2; 2])) {
-        let Self { field, number } = *self;
-        let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
-        let mut run: Option<(u16, [i64; 2])> = None;
-        for column in field.low[0]..field.low[0] + field.room[0] {
-            for bit in bits(field.word(column, number)) {
-                let cell = column * SIDE + bit;
-                let label = u16::from_le_bytes(field.place([cell, number]).unwrap_or_default());
-                match &mut run {
-                    Some((of, [_, last])) if *of == label && *last + 1 == cell => *last = cell,
-                    _ => {
-                        if let Some((label, ends)) = run.replace((label, [cell; 2])) {
-                            visit(label, ends.map(middle));
-                        }
-                    }
-                }
-            }
-        }
-        if let Some((label, ends)) = run {
-            visit(label, ends.map(middle));
-        }
-    }
-
-    /// Visits those cells of each word and column that come first of what `sort` makes of them: those
-    /// that come second as runs, others by their points.
-    fn visit(&self, sort: impl Fn(u64, i64) -> [u64; 2], mut visit: impl FnMut([DVec2; 2])) {
-        let Self { field, number } = *self;
-        let columns = field.low[0]..field.low[0] + field.room[0];
-        let mut run: Option<[i64; 2]> = None;
-        let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
-        for column in columns {
-            let word = field.word(column, number);
-            if word == 0 {
-                continue;
-            }
-            let [visited, in_runs] = sort(word, column);
-            for bit in bits(visited) {
-                let cell = column * SIDE + bit;
-                if in_runs >> bit & 1 == 0 {
-                    visit([field.point([cell, number]); 2]);
-                    continue;
-                }
-                match &mut run {
-                    Some([_, last]) if *last + 1 == cell => *last = cell,
-                    _ => {
-                        if let Some(ends) = run.replace([cell; 2]) {
-                            visit(ends.map(middle));
-                        }
-                    }
-                }
-            }
-        }
-        if let Some(ends) = run {
-            visit(ends.map(middle));
         }
     }
 }

@@ -1,0 +1,105 @@
+//! The cells of a field row by row, as they are drawn.
+
+use super::{Field, SIDE, bits, corner};
+use crate::geometry::DVec2;
+
+/// A row of cells of a [`Field`].
+pub(crate) struct Row<'f> {
+    field: &'f Field,
+    number: i64,
+}
+
+impl Field {
+    /// All rows of cells that may hold points, from the lowest on.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let from = self.low[1] * SIDE;
+        let to = (self.low[1] + self.room[1]) * SIDE;
+        (from..to).map(|number| Row {
+            field: self,
+            number,
+        })
+    }
+}
+
+impl Row<'_> {
+    /// The number of the row.
+    pub(crate) fn number(&self) -> i64 {
+        self.number
+    }
+
+    /// Visits the cells of the row that hold points, from left to right: as runs, by the middles of
+    /// their ends.
+    pub(crate) fn visit_runs(&self, visit: impl FnMut([DVec2; 2])) {
+        self.visit(|word, _| [word, word], visit);
+    }
+
+    /// Visits the cells as [`Row::visit_runs`] does, but those with no more than two neighbours of four by
+    /// their points, and those that have all four only if inner ones are needed.
+    pub(crate) fn visit_points(&self, needs_inner: bool, visit: impl FnMut([DVec2; 2])) {
+        let Self { field, number } = *self;
+        let sort = |word: u64, column: i64| {
+            let [three, all] = field.neighbours(column, number);
+            let visited = if needs_inner { word } else { word & !all };
+            [visited, word & three]
+        };
+        self.visit(sort, visit);
+    }
+
+    /// Visits runs of cells that have one label, by the middles of their ends.
+    pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u16, [DVec2; 2])) {
+        let Self { field, number } = *self;
+        let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
+        let mut run: Option<(u16, [i64; 2])> = None;
+        for column in field.low[0]..field.low[0] + field.room[0] {
+            for bit in bits(field.word(column, number)) {
+                let cell = column * SIDE + bit;
+                let label = u16::from_le_bytes(field.place([cell, number]).unwrap_or_default());
+                match &mut run {
+                    Some((of, [_, last])) if *of == label && *last + 1 == cell => *last = cell,
+                    _ => {
+                        if let Some((label, ends)) = run.replace((label, [cell; 2])) {
+                            visit(label, ends.map(middle));
+                        }
+                    }
+                }
+            }
+        }
+        if let Some((label, ends)) = run {
+            visit(label, ends.map(middle));
+        }
+    }
+
+    /// Visits those cells of each word and column that come first of what `sort` makes of them: those
+    /// that come second as runs, others by their points.
+    fn visit(&self, sort: impl Fn(u64, i64) -> [u64; 2], mut visit: impl FnMut([DVec2; 2])) {
+        let Self { field, number } = *self;
+        let columns = field.low[0]..field.low[0] + field.room[0];
+        let mut run: Option<[i64; 2]> = None;
+        let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
+        for column in columns {
+            let word = field.word(column, number);
+            if word == 0 {
+                continue;
+            }
+            let [visited, in_runs] = sort(word, column);
+            for bit in bits(visited) {
+                let cell = column * SIDE + bit;
+                if in_runs >> bit & 1 == 0 {
+                    visit([field.point([cell, number]); 2]);
+                    continue;
+                }
+                match &mut run {
+                    Some([_, last]) if *last + 1 == cell => *last = cell,
+                    _ => {
+                        if let Some(ends) = run.replace([cell; 2]) {
+                            visit(ends.map(middle));
+                        }
+                    }
+                }
+            }
+        }
+        if let Some(ends) = run {
+            visit(ends.map(middle));
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Labels that spread to the cells around.
+
+use super::{Field, SIDE, TooFar, WIDTH, bits, corner, tile_of, within};
+
+impl Field {
+    /// Adds the cells of another field of this scale, by the greatest labels of the cells around them.
+    pub(in crate::grow::cells) fn spread_to(&mut self, other: &Self) -> Result<(), TooFar> {
+        // Words of cells that have no label, and one at least of which may get one.
+        let mut open = Vec::new();
+        for row in other.low[1] * SIDE..(other.low[1] + other.room[1]) * SIDE {
+            for column in other.low[0]..other.low[0] + other.room[0] {
+                let left = other.word(column, row) & !self.word(column, row);
+                open.extend((left != 0).then_some((column, row, left)));
+            }
+        }
+        let mut found = Vec::new();
+        loop {
+            open.retain_mut(|(column, row, left)| {
+                let reached = *left & self.reached(*column, *row);
+                for bit in bits(reached) {
+                    let cell = [*column * SIDE + bit, *row];
+                    found.push((cell, self.greatest_around(cell)));
+                }
+                *left &= !reached;
+                *left != 0
+            });
+            if found.is_empty() {
+                return Ok(());
+            }
+            for (cell, label) in found.drain(..) {
+                self.label((corner(cell) + 0.5) / self.scale, label)?;
+            }
+        }
+    }
+
+    /// The cells of a word that hold points, or of which one of the eight neighbours does.
+    fn reached(&self, column: i64, row: i64) -> u64 {
+        let [below, own, above] = [row - 1, row, row + 1].map(|row| {
+            let word = self.word(column, row);
+            let [left, right] = self.beside(column, row, word);
+            word | left | right
+        });
+        below | own | above
+    }
+
+    /// The greatest label of a cell and its eight neighbours, or 0.
+    fn greatest_around(&self, cell: [i64; 2]) -> u16 {
+        let within = within(cell);
+        if within.iter().any(|at| [0, WIDTH - 1].contains(at)) {
+            let around = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [x, y]));
+            let around = around.filter_map(|[x, y]| self.place([cell[0] + x, cell[1] + y]));
+            return around.map(u16::from_le_bytes).max().unwrap_or(0);
+        }
+        let Some(tile) = self.tile(tile_of(cell)) else {
+            return 0;
+        };
+        let [column, row] = within;
+        let mut greatest = 0;
+        for row in row - 1..=row + 1 {
+            for column in column - 1..=column + 1 {
+                if tile.rows[row] >> column & 1 == 1 {
+                    let label = u16::from_le_bytes(tile.places[row * WIDTH + column]);
+                    greatest = greatest.max(label);
+                }
+            }
+        }
+        greatest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::DVec2;
+    use std::collections::BTreeMap;
+
+    fn middle(cell: [i64; 2]) -> DVec2 {
+        corner(cell) + 0.5
+    }
+
+    /// Labels spread round by round to all that is connected, across the edges of tiles, and no farther.
+    #[test]
+    fn labels_spread_by_rounds() {
+        let mut other = Field::new(1.0);
+        let band = (-70..70).flat_map(|x| (-3..3).map(move |y| [x, x + y]));
+        let mut cells: Vec<[i64; 2]> = band.chain([[200, 0], [201, 1]]).collect();
+        cells.retain(|[x, y]| (x * 7 + y * 3).rem_euclid(5) > 0);
+        for &cell in &cells {
+            other.add(middle(cell)).unwrap();
+        }
+        let mut field = Field::new(1.0);
+        let mut expected = BTreeMap::new();
+        for (&cell, label) in cells[..cells.len() - 2].iter().step_by(97).zip(1..) {
+            field.label(middle(cell), label).unwrap();
+            expected.insert(cell, label);
+        }
+        loop {
+            let before = expected.clone();
+            for &cell in &cells {
+                let around =
+                    (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0] + x, cell[1] + y]));
+                let greatest = around.filter_map(|cell| before.get(&cell)).max();
+                if let Some(&greatest) = greatest {
+                    expected.entry(cell).or_insert(greatest);
+                }
+            }
+            if expected.len() == before.len() {
+                break;
+            }
+        }
+        field.spread_to(&other).unwrap();
+        assert!(expected.len() > 500 && expected.len() < cells.len());
+        for x in -80..210 {
+            for y in -80..80 {
+                let label = field.label_of(middle([x, y]));
+                assert_eq!(label, expected.get(&[x, y]).copied(), "{x} {y}");
+            }
+        }
+    }
+}
