@@ -17,6 +17,9 @@ mod field;
 mod net;
 mod outline;
 mod steps;
+#[cfg(test)]
+mod tests;
+mod waves;
 
 pub(crate) use field::Field;
 pub(crate) use net::Layer;
@@ -29,7 +32,8 @@ use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 
 use self::field::TooFar;
-use self::net::{Net, Node};
+use self::net::{Edge, Net, Node};
+use self::waves::Waves;
 
 /// Points whose images are looked for together.
 const BLOCK: usize = 1 << 15;
@@ -118,14 +122,14 @@ impl<'g> LimitCells<'g> {
                 let (shown, inner): (Vec<_>, Vec<_>) = nodes[at]
                     .images
                     .iter()
-                    .partition(|(_, whole)| *whole >= first_layer);
-                for (map, _) in shown {
+                    .partition(|image| image.whole >= first_layer);
+                for Edge { map, .. } in shown {
                     bounds.add(map.transform_point2(point));
                 }
                 // As linear congruential generators go (Knuth), by the upper bits.
                 turn = turn.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let choice = (u64::from(turn) * inner.len() as u64) >> 32;
-                let Some((map, whole)) = inner.get(choice as usize) else {
+                let Some(Edge { map, whole, .. }) = inner.get(choice as usize) else {
                     break;
                 };
                 (at, point) = (*whole, map.transform_point2(point));
@@ -177,13 +181,14 @@ impl<'g> LimitCells<'g> {
             net: &self.net,
             search,
             fields: fields.collect(),
-            wave: vec![Vec::new(); nodes.len()],
+            waves: Waves::of(&self.net),
             left: search.most_images,
             without: &[],
         };
         orbit.begin(with_outlines.then_some(self.graph))?;
         let mut steps = 0;
-        while orbit.go_on()? {
+        while !orbit.waves.are_over() {
+            orbit.go_on()?;
             steps += 1;
         }
         Ok(Found {
@@ -213,16 +218,18 @@ impl<'g> LimitCells<'g> {
                 fields: { fields.clone() }
                     .map(|it| Field::new(it.scale() * fineness))
                     .collect(),
-                wave: vec![Vec::new(); nodes.len()],
+                waves: Waves::of(&self.net),
                 left: search.most_images.saturating_sub(known.images),
                 without: &inner,
             };
             for (number, (field, inner)) in fields.zip(&inner).enumerate() {
                 for point in field.points_without(inner) {
-                    orbit.add(number, point)?;
+                    orbit.add(number, point, 0)?;
                 }
             }
-            while orbit.go_on()? {}
+            while !orbit.waves.are_over() {
+                orbit.go_on()?;
+            }
             known.images = search.most_images - orbit.left;
             for (field, finer) in known.fields.iter_mut().zip(&orbit.fields) {
                 for point in finer.points_without(&Field::new(finer.scale())) {
@@ -247,8 +254,8 @@ struct Orbit<'a> {
     net: &'a Net,
     search: &'a Search<'a>,
     fields: Vec<Field>,
-    /// By set, the points that are new.
-    wave: Vec<Vec<DVec2>>,
+    /// The points that are new.
+    waves: Waves<DVec2>,
     /// Images that may still be worked out.
     left: u64,
     /// By set, if they are given, cells from which points are not followed.
@@ -256,12 +263,13 @@ struct Orbit<'a> {
 }
 
 impl Orbit<'_> {
-    fn add(&mut self, node: usize, point: DVec2) -> Result<(), TooFar> {
+    /// Adds a point that so many maps lead to from those of the last wave.
+    fn add(&mut self, node: usize, point: DVec2, maps: usize) -> Result<(), TooFar> {
         if self.leaves_out(node, point) {
             return Ok(());
         }
         if self.fields[node].add(point)? && !self.net.nodes[node].images.is_empty() {
-            self.wave[node].push(point);
+            self.waves.push(maps, node, point);
         }
         Ok(())
     }
@@ -288,31 +296,30 @@ impl Orbit<'_> {
                 let points = outlined(graph, node, scale, self.left)?;
                 self.take(points.len())?;
                 for point in points {
-                    self.add(number, point)?;
+                    self.add(number, point, 0)?;
                 }
             }
             if let Some(point) = node.point {
-                self.add(number, point)?;
+                self.add(number, point, 0)?;
             }
         }
         Ok(())
     }
 
-    /// Applies all maps to the points that are new; whether there were any.
-    fn go_on(&mut self) -> Result<bool, Stopped> {
+    /// Applies all maps to the points of the next wave.
+    fn go_on(&mut self) -> Result<(), Stopped> {
         let net = self.net;
-        let empty = vec![Vec::new(); net.nodes.len()];
-        let wave = std::mem::replace(&mut self.wave, empty);
+        let wave = self.waves.next();
         for (node, points) in net.nodes.iter().zip(&wave) {
-            let maps = &node.images;
+            let edges = &node.images;
             for block in points.chunks(BLOCK) {
-                let images = block.len() * maps.len();
+                let images = block.len() * edges.len();
                 self.take(images)?;
                 let threads = self.search.threads.get().min(images / WORTH_A_THREAD);
                 if threads < 2 {
                     for point in block {
-                        for (map, whole) in maps {
-                            self.add(*whole, map.transform_point2(*point))?;
+                        for edge in edges {
+                            self.add(edge.whole, edge.map.transform_point2(*point), edge.maps)?;
                         }
                     }
                     continue;
@@ -322,16 +329,16 @@ impl Orbit<'_> {
                     !this.fields[whole].holds(image) && !this.leaves_out(whole, image)
                 };
                 let found = looked_for(block, threads, |point, found| {
-                    let images = maps.iter();
-                    let images = images.map(|(map, whole)| (*whole, map.transform_point2(*point)));
-                    found.extend(images.filter(|(whole, image)| is_new(*whole, *image)));
+                    let images = edges.iter();
+                    let images = images.map(|edge| (edge, edge.map.transform_point2(*point)));
+                    found.extend(images.filter(|(edge, image)| is_new(edge.whole, *image)));
                 });
-                for (whole, image) in found {
-                    self.add(whole, image)?;
+                for (edge, image) in found {
+                    self.add(edge.whole, image, edge.maps)?;
                 }
             }
         }
-        Ok(wave.iter().any(|points| !points.is_empty()))
+        Ok(())
     }
 }
 

@@ -9,11 +9,31 @@ const MOST_LEVELS: usize = 1 << 20;
 /// A map that makes everything smaller than this leaves a point.
 const NEGLIGIBLE: f64 = 1e-18;
 
+/// Sets are left out between others where no more than so many maps come together.
+const MOST_MAPS: usize = 16;
+
+/// A way in which a set is part of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    pub(super) map: DAffine2,
+    /// The other set, by number.
+    pub(super) whole: usize,
+    /// The number of maps that are composed.
+    pub(super) maps: usize,
+}
+
+impl Edge {
+    /// How many steps later than by one map something is born that is in the whole so.
+    pub(super) fn later(&self) -> u16 {
+        u16::try_from(self.maps.saturating_sub(1)).unwrap_or(u16::MAX)
+    }
+}
+
 /// A set of the limit, in a unit frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Node {
-    /// The maps by which it is part of other sets, and these, by number.
-    pub(super) images: Vec<(DAffine2, usize)>,
+    /// The ways in which it is part of other sets.
+    pub(super) images: Vec<Edge>,
     /// The maps by which outlines are parts of it, and base elements by number.
     pub(super) outlines: Vec<(DAffine2, usize)>,
     /// A point of it, where it is more than outlines and images of those.
@@ -72,7 +92,11 @@ impl Builder<'_> {
         let mut nodes = vec![Node::default(); behaviours + layers.len()];
         let mut add = |whole: usize, map: &DAffine2, object: usize| {
             if let Some(part) = self.node(object) {
-                let image = (*map, whole);
+                let image = Edge {
+                    map: *map,
+                    whole,
+                    maps: 1,
+                };
                 if !nodes[part].images.contains(&image) {
                     nodes[part].images.push(image);
                 }
@@ -96,6 +120,7 @@ impl Builder<'_> {
         let mut net = Net { nodes };
         net.measure(behaviours);
         self.find_points(&mut net);
+        net.leave_out(behaviours);
         net
     }
 
@@ -151,13 +176,13 @@ impl Net {
             let mut changes = false;
             for part in (0..behaviours).rev() {
                 let images = self.nodes[part].images.iter();
-                let longest = images.map(|(map, whole)| {
-                    let own = if *whole == part {
+                let longest = images.map(|image| {
+                    let own = if image.whole == part {
                         0.0
                     } else {
-                        stretch(&map.matrix2)
+                        stretch(&image.map.matrix2)
                     };
-                    own * self.nodes[*whole].stretch
+                    own * self.nodes[image.whole].stretch
                 });
                 let longest = longest.fold(self.nodes[part].stretch, f64::max);
                 changes |= longest > self.nodes[part].stretch;
@@ -167,5 +192,39 @@ impl Net {
                 break;
             }
         }
+    }
+
+    /// Leaves out the sets that are part of one other in one way only: what is part of them becomes part of
+    /// that. None of their own cells are needed then.
+    fn leave_out(&mut self, behaviours: usize) {
+        for part in 0..behaviours {
+            let [edge] = self.nodes[part].images[..] else {
+                continue;
+            };
+            if edge.whole == part {
+                continue;
+            }
+            for node in &mut self.nodes[..behaviours] {
+                let images = std::mem::take(&mut node.images);
+                for mut image in images {
+                    if image.whole == part && image.maps + edge.maps <= MOST_MAPS {
+                        image = Edge {
+                            map: edge.map * image.map,
+                            whole: edge.whole,
+                            maps: image.maps + edge.maps,
+                        };
+                    }
+                    if !node.images.contains(&image) {
+                        node.images.push(image);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The most maps that are composed in one edge.
+    pub(super) fn most_maps(&self) -> usize {
+        let images = self.nodes.iter().flat_map(|node| &node.images);
+        images.map(|image| image.maps).max().unwrap_or(1)
     }
 }

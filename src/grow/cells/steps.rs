@@ -9,8 +9,12 @@
 //! - Points of outlines, step by step, as far as they are not within what is replaced for ever: images of
 //!   it would cover all images of such a point.
 
+use std::collections::VecDeque;
+
 use super::field::{Field, TooFar};
-use super::{BLOCK, Found, LimitCells, Search, Stopped, WORTH_A_THREAD};
+use super::net::Edge;
+use super::waves::Waves;
+use super::{Found, LimitCells, Search, Stopped};
 use super::{finished, looked_for, outlined};
 use crate::geometry::{DAffine2, DMat2, DVec2, stretch};
 
@@ -25,6 +29,12 @@ const WORTH: u64 = 12_000_000;
 
 /// Points along a side of a cell that outlines are followed by: the most that take not too much work.
 const FINENESS: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Points whose images are looked for together: few, so that most that meet others are known to.
+const BLOCK: usize = 1 << 12;
+
+/// Images that are worth another thread.
+const WORTH_A_THREAD: usize = 1 << 13;
 
 /// Growth of the number of cells where their sides are halved.
 const TIMES: u64 = 4;
@@ -57,19 +67,25 @@ struct Steps<'a> {
     shortest: f64,
     /// By set and then by layer: the cells of what is replaced for ever,
     cores: Vec<Field>,
-    /// and the last steps in cells.
+    /// and the last steps in cells, which are larger for sets.
     last: Vec<Field>,
-    /// Points of the step before, by set.
-    wave: Vec<Vec<Drawn>>,
+    waves: Waves<Drawn>,
+    /// By the number of maps from the last wave on, less one, by set, and by the size of cells that points
+    /// stand for: the points of the waves that come.
+    met: VecDeque<Vec<Vec<Field>>>,
+    /// The step of what one map leads to from the last wave.
     step: u16,
     /// Images that may still be worked out.
     left: u64,
 }
 
 /// An image of a point.
-struct Image {
-    whole: usize,
+struct Image<'a> {
+    edge: &'a Edge,
     drawn: Drawn,
+    step: u16,
+    /// The number of the size of the cell that the point stands for.
+    size: usize,
     /// Whether hardly anything that comes of the point is born in a later step.
     is_last: bool,
 }
@@ -90,7 +106,8 @@ impl LimitCells<'_> {
             search,
             shortest,
             last: Vec::new(),
-            wave: Vec::new(),
+            waves: Waves::of(&self.net),
+            met: VecDeque::new(),
             step: 0,
             left: search.most_images.saturating_sub(cores.images),
             cores: cores.fields,
@@ -103,7 +120,9 @@ impl LimitCells<'_> {
                 break;
             }
         }
-        for (last, core) in steps.last.iter_mut().zip(&steps.cores) {
+        let first_layer = steps.first_layer();
+        let labelled = steps.last.iter_mut().zip(&steps.cores);
+        for (last, core) in labelled.skip(first_layer) {
             last.spread_to(core)?;
         }
         let mut outer = 0;
@@ -114,7 +133,6 @@ impl LimitCells<'_> {
                 break;
             }
         }
-        let first_layer = steps.first_layer();
         Ok(Found {
             fields: finished(steps.last.split_off(first_layer)),
             images: search.most_images - steps.left,
@@ -141,34 +159,74 @@ impl Steps<'_> {
         stretch(&drawn.linear) * self.set.net.nodes[whole].stretch / self.shortest
     }
 
-    /// Works out the images of the points of the last step that are kept, and adds each.
+    /// Makes room for the points of the waves that come, by fields of every set.
+    fn begin(&mut self, met: impl Fn(usize) -> Vec<Field>) {
+        let net = &self.set.net;
+        let first_layer = self.first_layer();
+        self.step = 0;
+        self.waves = Waves::of(net);
+        let waves = 0..net.most_maps();
+        self.met = waves
+            .map(|_| (0..first_layer).map(&met).collect())
+            .collect();
+    }
+
+    /// Whether a point like the image is among those of its wave.
+    #[inline]
+    fn has_met(&self, image: &Image<'_>) -> bool {
+        let sizes = &self.met[image.edge.maps - 1][image.edge.whole];
+        sizes[image.size.min(sizes.len() - 1)].holds(image.drawn.at)
+    }
+
+    /// Goes on from an image, unless that has been met.
+    #[inline]
+    fn follow(&mut self, image: &Image<'_>) -> Result<(), TooFar> {
+        let Edge { whole, maps, .. } = *image.edge;
+        let sizes = &mut self.met[maps - 1][whole];
+        let last = sizes.len() - 1;
+        if sizes[image.size.min(last)].add(image.drawn.at)? {
+            self.waves.push(maps, whole, image.drawn);
+        }
+        Ok(())
+    }
+
+    /// Works out the images of the points of the next wave that are kept, and adds each.
     fn go_on(
         &mut self,
-        is_kept: impl Fn(&Self, &Image) -> bool + Sync,
-        mut add: impl FnMut(&mut Self, Image) -> Result<(), Stopped>,
+        is_kept: impl Fn(&Self, &Image<'_>) -> bool + Sync,
+        mut add: impl FnMut(&mut Self, Image<'_>) -> Result<(), Stopped>,
     ) -> Result<(), Stopped> {
         let set = self.set;
         let first_layer = self.first_layer();
         self.step = self.step.checked_add(1).ok_or(Stopped::TooMany)?;
-        let empty = vec![Vec::new(); self.wave.len()];
-        let wave = std::mem::replace(&mut self.wave, empty);
+        self.met.rotate_left(1);
+        self.met
+            .back_mut()
+            .into_iter()
+            .flatten()
+            .flatten()
+            .for_each(Field::clear);
+        let wave = self.waves.next();
         for ((number, node), points) in set.net.nodes.iter().enumerate().zip(&wave) {
             for block in points.chunks(BLOCK) {
                 let images = block.len() * node.images.len();
                 self.take(images)?;
                 let threads = self.search.threads.get().min(images / WORTH_A_THREAD);
                 let this = &*self;
-                let found = looked_for(block, threads, |drawn, found: &mut Vec<Image>| {
+                let found = looked_for(block, threads, |drawn, found: &mut Vec<Image<'_>>| {
                     let from = found.len();
                     let mut is_last = this.ratio(number, drawn) < SHORT;
                     let mut goes_on = false;
-                    for (map, whole) in &node.images {
-                        let drawn = drawn.mapped(map);
-                        if this.ratio(*whole, &drawn) >= 1.0 {
-                            goes_on |= *whole < first_layer;
+                    for edge in &node.images {
+                        let drawn = drawn.mapped(&edge.map);
+                        let ratio = this.ratio(edge.whole, &drawn);
+                        if ratio >= 1.0 {
+                            goes_on |= edge.whole < first_layer;
                             found.push(Image {
-                                whole: *whole,
+                                edge,
                                 drawn,
+                                step: this.step.saturating_add(edge.later()),
+                                size: size_of(ratio),
                                 is_last: false,
                             });
                         }
@@ -177,14 +235,14 @@ impl Steps<'_> {
                     found[from..]
                         .iter_mut()
                         .for_each(|image| image.is_last = is_last);
-                    let mut at = from;
-                    while let Some(image) = found.get(at) {
-                        if is_kept(this, image) {
-                            at += 1;
-                        } else {
-                            found.swap_remove(at);
+                    let mut kept = from;
+                    for at in from..found.len() {
+                        if is_kept(this, &found[at]) {
+                            found.swap(kept, at);
+                            kept += 1;
                         }
                     }
+                    found.truncate(kept);
                 });
                 for image in found {
                     add(self, image)?;
@@ -194,52 +252,38 @@ impl Steps<'_> {
         Ok(())
     }
 
-    fn is_done(&self) -> bool {
-        self.wave.iter().all(Vec::is_empty)
-    }
-
     /// Finds the last steps of what is replaced for ever, to cells of `grain` picture cells along a side;
     /// returns the number of steps.
     fn follow_points(&mut self, grain: f64) -> Result<u16, Stopped> {
-        let nodes = &self.set.net.nodes;
         let first_layer = self.first_layer();
-        let linear = DMat2::IDENTITY;
-        let start = nodes[..first_layer].iter().map(|node| {
-            let point = node.point.filter(|_| node.stretch >= self.shortest);
-            point.map(|at| Drawn { at, linear }).into_iter().collect()
+        let cores = self.cores.iter().enumerate();
+        // One point of a cell of this size leads on, and so labels all of it.
+        let grain = |set: usize| if set < first_layer { grain } else { 1.0 };
+        let scales: Vec<f64> = cores.map(|(set, core)| core.scale() / grain(set)).collect();
+        self.last = scales.iter().map(|&scale| Field::new(scale)).collect();
+        self.begin(|set| {
+            let sizes = std::iter::successors(Some(scales[set]), |scale| Some(scale / 2.0));
+            sizes.take(MOST_SIZES).map(Field::new).collect()
         });
-        self.wave = start.collect();
-        self.step = 0;
-        let cells = self.cores.iter().map(|core| Field::new(core.scale()));
-        self.last = cells.collect();
-        // Points of the step, by the size of cells that they stand for.
-        let mut met: Vec<Vec<Field>> = { self.cores[..first_layer].iter() }
-            .map(|core| {
-                let finest = core.scale() / grain;
-                let sizes = std::iter::successors(Some(finest), |scale| Some(scale / 2.0));
-                sizes.take(MOST_SIZES).map(Field::new).collect()
-            })
-            .collect();
-        while !self.is_done() {
-            met.iter_mut().flatten().for_each(Field::clear);
-            let is_kept = |this: &Self, image: &Image| {
-                image.whole < first_layer
-                    || image.is_last
-                        && this.last[image.whole].label_of(image.drawn.at) != Some(this.step)
+        let linear = DMat2::IDENTITY;
+        for (number, node) in self.set.net.nodes[..first_layer].iter().enumerate() {
+            if let Some(at) = node.point.filter(|_| node.stretch >= self.shortest) {
+                self.waves.push(0, number, Drawn { at, linear });
+            }
+        }
+        while !self.waves.are_over() {
+            let is_kept = |this: &Self, image: &Image<'_>| {
+                let last = &this.last[image.edge.whole];
+                let is_known = |known: u16| known >= image.step;
+                image.is_last && !last.label_of(image.drawn.at).is_some_and(is_known)
+                    || image.edge.whole < first_layer && !this.has_met(image)
             };
             self.go_on(is_kept, |this, image| {
-                let Image {
-                    whole,
-                    drawn,
-                    is_last,
-                } = image;
-                if whole >= first_layer || is_last {
-                    this.last[whole].label(drawn.at, this.step)?;
+                if image.is_last {
+                    this.last[image.edge.whole].label(image.drawn.at, image.step)?;
                 }
-                if whole < first_layer
-                    && met[whole][size_of(this.ratio(whole, &drawn))].add(drawn.at)?
-                {
-                    this.wave[whole].push(drawn);
+                if image.edge.whole < first_layer {
+                    this.follow(&image)?;
                 }
                 Ok(())
             })?;
@@ -253,15 +297,14 @@ impl Steps<'_> {
         let set = self.set;
         let first_layer = self.first_layer();
         let linear = DMat2::IDENTITY;
-        let mut met: Vec<Field> = { self.cores[..first_layer].iter() }
-            .map(|core| Field::new(core.scale() * fineness))
+        let scales: Vec<f64> = { self.cores.iter() }
+            .map(|core| core.scale() * fineness)
             .collect();
-        self.step = 0;
-        self.wave = vec![Vec::new(); first_layer];
+        self.begin(|set| vec![Field::new(scales[set])]);
+        let mut met: Vec<Field> = scales.iter().map(|&scale| Field::new(scale)).collect();
         for (number, node) in set.net.nodes.iter().enumerate() {
             let points = if node.stretch > 0.0 {
-                let scale = self.cores[number].scale() * fineness;
-                outlined(set.graph, node, scale, self.left)?
+                outlined(set.graph, node, scales[number], self.left)?
             } else {
                 Vec::new()
             };
@@ -272,27 +315,26 @@ impl Steps<'_> {
                 } else if !self.is_covered(number, &Drawn { at, linear }, 0)
                     && met[number].add(at)?
                 {
-                    self.wave[number].push(Drawn { at, linear });
+                    self.waves.push(0, number, Drawn { at, linear });
                 }
             }
         }
-        while !self.is_done() {
-            met.iter_mut().for_each(Field::clear);
-            let is_kept = |this: &Self, image: &Image| {
-                let Image { whole, drawn, .. } = image;
-                if *whole < first_layer {
-                    !this.is_covered(*whole, drawn, this.step)
+        while !self.waves.are_over() {
+            let is_kept = |this: &Self, image: &Image<'_>| {
+                let whole = image.edge.whole;
+                if whole < first_layer {
+                    !this.has_met(image) && !this.is_covered(whole, &image.drawn, image.step)
                 } else {
-                    let known = this.last[*whole].label_of(drawn.at);
-                    known.is_none_or(|known| known < this.step)
+                    let known = this.last[whole].label_of(image.drawn.at);
+                    known.is_none_or(|known| known < image.step)
                 }
             };
             self.go_on(is_kept, |this, image| {
-                let Image { whole, drawn, .. } = image;
+                let whole = image.edge.whole;
                 if whole >= first_layer {
-                    this.last[whole].label(drawn.at, this.step)?;
-                } else if met[whole].add(drawn.at)? {
-                    this.wave[whole].push(drawn);
+                    this.last[whole].label(image.drawn.at, image.step)?;
+                } else {
+                    this.follow(&image)?;
                 }
                 Ok(())
             })?;
