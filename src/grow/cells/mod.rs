@@ -16,6 +16,7 @@
 mod field;
 mod net;
 mod outline;
+mod shown;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -33,6 +34,7 @@ use crate::graph::Graph;
 
 use self::field::TooFar;
 use self::net::{Edge, Net, Node};
+use self::shown::Shown;
 use self::waves::Waves;
 
 /// Points whose images are looked for together.
@@ -173,18 +175,8 @@ impl<'g> LimitCells<'g> {
     /// Finds the cells of all sets, and of every layer after these; without outlines, of what is replaced
     /// for ever.
     fn find_all(&self, search: &Search<'_>, with_outlines: bool) -> Result<Found, Stopped> {
-        let nodes = &self.net.nodes;
-        let fields = nodes
-            .iter()
-            .map(|node| Field::new(search.scale * node.stretch));
-        let mut orbit = Orbit {
-            net: &self.net,
-            search,
-            fields: fields.collect(),
-            waves: Waves::of(&self.net),
-            left: search.most_images,
-            without: &[],
-        };
+        let scales = { self.net.nodes.iter() }.map(|node| search.scale * node.stretch);
+        let mut orbit = Orbit::new(self, search, scales, search.most_images, &[]);
         orbit.begin(with_outlines.then_some(self.graph))?;
         let mut steps = 0;
         while !orbit.waves.are_over() {
@@ -194,7 +186,7 @@ impl<'g> LimitCells<'g> {
         Ok(Found {
             images: search.most_images - orbit.left,
             steps,
-            fields: orbit.fields,
+            fields: orbit.into_fields()?,
         })
     }
 
@@ -212,16 +204,9 @@ impl<'g> LimitCells<'g> {
             if images as f64 * fineness * fineness > FINER_WORTH {
                 break;
             }
-            let mut orbit = Orbit {
-                net: &self.net,
-                search,
-                fields: { fields.clone() }
-                    .map(|it| Field::new(it.scale() * fineness))
-                    .collect(),
-                waves: Waves::of(&self.net),
-                left: search.most_images.saturating_sub(known.images),
-                without: &inner,
-            };
+            let scales = fields.clone().map(|it| it.scale() * fineness);
+            let left = search.most_images.saturating_sub(known.images);
+            let mut orbit = Orbit::new(self, search, scales, left, &inner);
             for (number, (field, inner)) in fields.zip(&inner).enumerate() {
                 for point in field.points_without(inner) {
                     orbit.add(number, point, 0)?;
@@ -231,7 +216,7 @@ impl<'g> LimitCells<'g> {
                 orbit.go_on()?;
             }
             known.images = search.most_images - orbit.left;
-            for (field, finer) in known.fields.iter_mut().zip(&orbit.fields) {
+            for (field, finer) in known.fields.iter_mut().zip(&orbit.into_fields()?) {
                 for point in finer.points_without(&Field::new(finer.scale())) {
                     field.add(point)?;
                 }
@@ -253,7 +238,10 @@ fn finished(mut layers: Vec<Field>) -> Vec<Field> {
 struct Orbit<'a> {
     net: &'a Net,
     search: &'a Search<'a>,
+    /// The cells of sets,
     fields: Vec<Field>,
+    /// and of layers.
+    shown: Shown<()>,
     /// The points that are new.
     waves: Waves<DVec2>,
     /// Images that may still be worked out.
@@ -262,16 +250,52 @@ struct Orbit<'a> {
     without: &'a [Field],
 }
 
-impl Orbit<'_> {
+impl<'a> Orbit<'a> {
+    /// No points yet of sets and layers, of a number of cells to a unit of length each.
+    fn new(
+        set: &'a LimitCells<'_>,
+        search: &'a Search<'a>,
+        scales: impl Iterator<Item = f64> + Clone,
+        left: u64,
+        without: &'a [Field],
+    ) -> Self {
+        let sets = set.net.nodes.len() - set.layers;
+        Self {
+            net: &set.net,
+            search,
+            fields: scales.clone().take(sets).map(Field::new).collect(),
+            shown: Shown::new(scales.skip(sets), search.threads.get()),
+            waves: Waves::of(&set.net),
+            left,
+            without,
+        }
+    }
+
+    /// The cells of all sets, and of every layer after these.
+    fn into_fields(self) -> Result<Vec<Field>, TooFar> {
+        let mut fields = self.fields;
+        fields.extend(self.shown.into_fields()?);
+        Ok(fields)
+    }
+
     /// Adds a point that so many maps lead to from those of the last wave.
     fn add(&mut self, node: usize, point: DVec2, maps: usize) -> Result<(), TooFar> {
         if self.leaves_out(node, point) {
             return Ok(());
         }
-        if self.fields[node].add(point)? && !self.net.nodes[node].images.is_empty() {
+        let Some(field) = self.fields.get_mut(node) else {
+            return self.shown.push(node - self.fields.len(), point, ());
+        };
+        if field.add(point)? && !self.net.nodes[node].images.is_empty() {
             self.waves.push(maps, node, point);
         }
         Ok(())
+    }
+
+    /// Cells of a set or a layer to a unit of length.
+    fn scale_of(&self, node: usize) -> f64 {
+        let field = self.fields.get(node);
+        field.map_or_else(|| self.shown.scale(node - self.fields.len()), Field::scale)
     }
 
     fn leaves_out(&self, node: usize, point: DVec2) -> bool {
@@ -291,8 +315,8 @@ impl Orbit<'_> {
             if node.stretch == 0.0 {
                 continue;
             }
-            let scale = self.fields[number].scale();
             if let Some(graph) = outlines {
+                let scale = self.scale_of(number);
                 let points = outlined(graph, node, scale, self.left)?;
                 self.take(points.len())?;
                 for point in points {
@@ -326,7 +350,8 @@ impl Orbit<'_> {
                 }
                 let this = &*self;
                 let is_new = |whole: usize, image: DVec2| {
-                    !this.fields[whole].holds(image) && !this.leaves_out(whole, image)
+                    let is_known = this.fields.get(whole).is_some_and(|it| it.holds(image));
+                    !is_known && !this.leaves_out(whole, image)
                 };
                 let found = looked_for(block, threads, |point, found| {
                     let images = edges.iter();

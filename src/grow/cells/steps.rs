@@ -13,6 +13,7 @@ use std::collections::VecDeque;
 
 use super::field::{Field, TooFar};
 use super::net::Edge;
+use super::shown::Shown;
 use super::waves::Waves;
 use super::{Found, LimitCells, Search, Stopped};
 use super::{finished, looked_for, outlined};
@@ -178,16 +179,17 @@ impl Steps<'_> {
         sizes[image.size.min(sizes.len() - 1)].holds(image.drawn.at)
     }
 
-    /// Goes on from an image, unless that has been met.
+    /// Goes on from an image, unless one like it has been met; whether none had.
     #[inline]
-    fn follow(&mut self, image: &Image<'_>) -> Result<(), TooFar> {
+    fn follow(&mut self, image: &Image<'_>) -> Result<bool, TooFar> {
         let Edge { whole, maps, .. } = *image.edge;
         let sizes = &mut self.met[maps - 1][whole];
         let last = sizes.len() - 1;
-        if sizes[image.size.min(last)].add(image.drawn.at)? {
+        let is_new = sizes[image.size.min(last)].add(image.drawn.at)?;
+        if is_new {
             self.waves.push(maps, whole, image.drawn);
         }
-        Ok(())
+        Ok(is_new)
     }
 
     /// Works out the images of the points of the next wave that are kept, and adds each.
@@ -260,7 +262,9 @@ impl Steps<'_> {
         // One point of a cell of this size leads on, and so labels all of it.
         let grain = |set: usize| if set < first_layer { grain } else { 1.0 };
         let scales: Vec<f64> = cores.map(|(set, core)| core.scale() / grain(set)).collect();
-        self.last = scales.iter().map(|&scale| Field::new(scale)).collect();
+        let (sets, layers) = scales.split_at(first_layer);
+        self.last = sets.iter().map(|&scale| Field::new(scale)).collect();
+        let mut shown = Shown::new(layers.iter().copied(), self.search.threads.get());
         self.begin(|set| {
             let sizes = std::iter::successors(Some(scales[set]), |scale| Some(scale / 2.0));
             sizes.take(MOST_SIZES).map(Field::new).collect()
@@ -273,21 +277,23 @@ impl Steps<'_> {
         }
         while !self.waves.are_over() {
             let is_kept = |this: &Self, image: &Image<'_>| {
-                let last = &this.last[image.edge.whole];
-                let is_known = |known: u16| known >= image.step;
-                image.is_last && !last.label_of(image.drawn.at).is_some_and(is_known)
-                    || image.edge.whole < first_layer && !this.has_met(image)
+                if image.edge.whole < first_layer {
+                    !this.has_met(image)
+                } else {
+                    image.is_last
+                }
             };
             self.go_on(is_kept, |this, image| {
-                if image.is_last {
-                    this.last[image.edge.whole].label(image.drawn.at, image.step)?;
-                }
-                if image.edge.whole < first_layer {
-                    this.follow(&image)?;
+                let (whole, at) = (image.edge.whole, image.drawn.at);
+                if whole >= first_layer {
+                    shown.push(whole - first_layer, at, image.step)?;
+                } else if this.follow(&image)? && image.is_last {
+                    this.last[whole].label(at, image.step)?;
                 }
                 Ok(())
             })?;
         }
+        self.last.extend(shown.into_fields()?);
         Ok(self.step)
     }
 

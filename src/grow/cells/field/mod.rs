@@ -152,6 +152,32 @@ impl Field {
             .map(u16::from_le_bytes)
     }
 
+    /// The number of the share that a point is of, of so many into which the tiles are divided.
+    #[inline]
+    pub(super) fn share_of(&self, point: DVec2, count: usize) -> usize {
+        let [column, row] = tile_of(cell_of(point * self.scale));
+        let along = column.wrapping_add(row).cast_unsigned();
+        #[expect(clippy::cast_possible_truncation, reason = "it is below `count`")]
+        {
+            (along % count as u64) as usize
+        }
+    }
+
+    /// Takes the tiles of another field of this scale, of which this one has none.
+    pub(super) fn take_over(&mut self, other: Self) -> Result<(), TooFar> {
+        let corners: Vec<[i64; 2]> = (0..other.directory.len())
+            .map(|slot| other.corner_of(slot))
+            .collect();
+        let mut tiles: Vec<Option<Tile>> = other.tiles.into_iter().map(Some).collect();
+        for (number, [column, row]) in other.directory.into_iter().zip(corners) {
+            if let Some(tile) = tiles.get_mut(number as usize).and_then(Option::take) {
+                *self.make_tile([column, row.div_euclid(SIDE)])? = tile;
+            }
+        }
+        self.bounds.add_all(&other.bounds);
+        Ok(())
+    }
+
     /// Forgets all points.
     pub(super) fn clear(&mut self) {
         if !self.bounds.is_empty() {

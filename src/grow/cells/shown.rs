@@ -1,0 +1,164 @@
+//! Points of layers, which lead no further.
+
+use std::thread;
+
+use super::field::{Field, TooFar};
+use crate::geometry::DVec2;
+
+/// Points that are put into cells together.
+const MANY: usize = 1 << 17;
+
+/// Points that are worth other threads.
+const WORTH_THREADS: usize = 1 << 14;
+
+/// What comes with a point that is put into its cell.
+pub(super) trait Mark: Copy + Send + Sync {
+    /// Puts a point into its cell.
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar>;
+}
+
+/// Nothing: the first point of a cell stays.
+impl Mark for () {
+    #[inline]
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
+        field.add(point).map(drop)
+    }
+}
+
+/// A label: the greatest one of a cell stays.
+impl Mark for u16 {
+    #[inline]
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
+        field.label(point, self)
+    }
+}
+
+/// The cells of layers, in parts of the plane of which every thread has its own.
+///
+/// The points of a cell come in their order, whatever number of threads there is.
+pub(super) struct Shown<M> {
+    /// By thread and by layer.
+    parts: Vec<Vec<Field>>,
+    /// Points of layers that are not in their cells yet.
+    open: Vec<(usize, DVec2, M)>,
+}
+
+impl<M: Mark> Shown<M> {
+    /// Layers without points, of numbers of cells to a unit of length.
+    pub(super) fn new(scales: impl Iterator<Item = f64> + Clone, threads: usize) -> Self {
+        let layers = || scales.clone().map(Field::new).collect();
+        Self {
+            parts: (0..threads.max(1)).map(|_| layers()).collect(),
+            open: Vec::new(),
+        }
+    }
+
+    /// Cells of a layer to a unit of length.
+    pub(super) fn scale(&self, layer: usize) -> f64 {
+        self.parts
+            .first()
+            .map_or(0.0, |layers| layers[layer].scale())
+    }
+
+    /// Adds a point of a layer.
+    #[inline]
+    pub(super) fn push(&mut self, layer: usize, point: DVec2, mark: M) -> Result<(), TooFar> {
+        if let [only] = &mut self.parts[..] {
+            return mark.put(&mut only[layer], point);
+        }
+        self.open.push((layer, point, mark));
+        if self.open.len() >= MANY {
+            self.put_open()?;
+        }
+        Ok(())
+    }
+
+    /// Puts all points into their cells.
+    fn put_open(&mut self) -> Result<(), TooFar> {
+        let Self { parts, open } = self;
+        let count = parts.len();
+        let put_part = |number: usize, layers: &mut Vec<Field>| {
+            open.iter().try_for_each(|&(layer, point, mark)| {
+                let field = &mut layers[layer];
+                if field.share_of(point, count) == number {
+                    mark.put(field, point)?;
+                }
+                Ok(())
+            })
+        };
+        if open.len() < WORTH_THREADS {
+            let mut parts = parts.iter_mut().enumerate();
+            let outcome = parts.try_for_each(|(number, layers)| put_part(number, layers));
+            open.clear();
+            return outcome;
+        }
+        let outcome = thread::scope(|scope| {
+            let mut parts = parts.iter_mut().enumerate();
+            let first = parts.next();
+            let others: Vec<_> = parts
+                .map(|(number, layers)| scope.spawn(move || put_part(number, layers)))
+                .collect();
+            let own = first.map_or(Ok(()), |(number, layers)| put_part(number, layers));
+            let others = others.into_iter().map(|other| {
+                let outcome = other.join();
+                outcome.unwrap_or_else(|cause| std::panic::resume_unwind(cause))
+            });
+            others.fold(own, Result::and)
+        });
+        self.open.clear();
+        outcome
+    }
+
+    /// The cells of every layer.
+    pub(super) fn into_fields(mut self) -> Result<Vec<Field>, TooFar> {
+        self.put_open()?;
+        let mut parts = self.parts.into_iter();
+        let mut fields = parts.next().unwrap_or_default();
+        for part in parts {
+            for (field, other) in fields.iter_mut().zip(part) {
+                field.take_over(other)?;
+            }
+        }
+        Ok(fields)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first point of a cell stays, and the greatest label, whatever number of threads there is.
+    #[test]
+    fn threads_do_not_show_in_layers() {
+        let points = || {
+            (0..300_000_u32).map(|number| {
+                let turn = f64::from(number) * 2.399_963;
+                DVec2::from_angle(turn) * f64::from(number % 977)
+            })
+        };
+        let shown = |threads: usize| {
+            let scales = [0.3, 0.7].into_iter();
+            let mut places = Shown::new(scales.clone(), threads);
+            let mut labels = Shown::new(scales, threads);
+            for (point, number) in points().zip(0_u32..) {
+                let label = u16::try_from(number % 5_000).unwrap();
+                places.push(number as usize % 2, point, ()).unwrap();
+                labels.push(number as usize % 2, point, label).unwrap();
+            }
+            let fields = [places.into_fields(), labels.into_fields()];
+            fields
+                .into_iter()
+                .flat_map(Result::unwrap)
+                .collect::<Vec<_>>()
+        };
+        let expected = shown(1);
+        for threads in [2, 3, 8] {
+            for (field, expected) in shown(threads).iter().zip(&expected) {
+                assert_eq!(field.bounds(), expected.bounds());
+                for point in points() {
+                    assert_eq!(field.label_of(point), expected.label_of(point), "{point}");
+                }
+            }
+        }
+    }
+}
