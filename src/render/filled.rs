@@ -101,7 +101,9 @@ impl Filled {
             let most = self.size[axis] as f64;
             let end = |place: f64| whole(place.clamp(0.0, most));
             let [from, to] = [middle[axis] - reach[axis], middle[axis] + reach[axis]];
-            end(from.floor()) + self.margin..end(to.floor() + 1.0) + self.margin
+            // Casts round down what is not negative.
+            let past = end(to) + usize::from(to >= 0.0);
+            end(from) + self.margin..past.min(self.size[axis]) + self.margin
         });
         let is_full = rows.into_iter().all(|row| {
             let start = row * self.stride;

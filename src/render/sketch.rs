@@ -504,13 +504,25 @@ impl Visitor for Sketcher<'_> {
         };
         let one_width = matches!(self.scene.style.width, Width::Pixels(_));
         let line = run.line().filter(|_| one_width);
-        match (share, line, run.sticks(), run.first(), run.last()) {
+        match (share, line, run.sticks()) {
             // Of what is not painted only the end matters, where the next line may begin.
-            (Share::None, _, _, _, Some(last)) => self.see(&last),
+            (Share::None, ..) => {
+                if let Some(last) = run.last() {
+                    self.see(&last);
+                }
+            }
             (Share::All, ..) if self.stamp(run, Painted::All) => {}
-            (Share::All, _, Some(sticks), ..) if self.tufts(run, sticks) => {}
-            (Share::All, Some(ends), _, Some(first), _) => self.lines(run, ends, &first),
-            (Share::All, _, Some(sticks), Some(first), _) => self.sticks(run, sticks, &first),
+            (Share::All, _, Some(sticks)) if self.tufts(run, sticks) => {}
+            (Share::All, Some(ends), _) => {
+                if let Some(first) = run.first() {
+                    self.lines(run, ends, &first);
+                }
+            }
+            (Share::All, _, Some(sticks)) => {
+                if let Some(first) = run.first() {
+                    self.sticks(run, sticks, &first);
+                }
+            }
             _ => match (self.pass, self.means.aim.steps.clone()) {
                 (_, Some(steps))
                     if self.stamp(run, Painted::Steps(*steps.start(), *steps.end())) => {}
