@@ -260,11 +260,11 @@ fn an_svg_is_light_unless_more_is_asked_for() {
         "initiator: segment\ngenerator: [[0, 0], [0.3, 0.3], [0.5, 0], [1, 0]]\nsteps: 14\n";
     fs::write(folder.path().join("uneven.yaml"), uneven).unwrap();
     for (arguments, note) in [
-        (&["grow", "koch9.yaml"][..], "step 7 is drawn and not 9"),
+        (&["grow", "koch9.yaml"][..], "step 7 is drawn instead of 9"),
         (&["grow", "uneven.yaml"], "pixels are not replaced"),
         (
             &["sheet", "koch9.yaml"],
-            "steps 0..7 are drawn and not 0..9",
+            "steps 0..7 are drawn instead of 0..9",
         ),
     ] {
         let name = arguments[1];

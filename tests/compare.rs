@@ -254,7 +254,7 @@ fn the_command_says_what_it_found() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(
         said.starts_with(
-            "compared    step 3 of koch and koch\nverdict     the same, as far as can be told\n"
+            "compared    step 3 of koch and koch\nverdict     the same, within the error\n"
         ),
         "{said}"
     );
@@ -273,8 +273,7 @@ fn a_tolerance_that_is_not_reached_is_told() {
     let found: serde_json::Value = serde_json::from_str(&found).unwrap();
     assert_eq!(found["reached"], false);
     assert!(found["error"].as_f64().unwrap() > 0.011, "{found}");
-    let line =
-        "\nerror       not the 1.00e-2 that --tolerance asks for: --max-points allows more\n";
+    let line = "\nerror       above the 1.00e-2 that --tolerance requests: --max-points allows more points\n";
     let said = compared(&["--max-points", "400"]);
     assert!(said.contains(line), "{said}");
     let said = compared(&[]);
@@ -356,7 +355,7 @@ fn what_cannot_be_compared_is_told() {
         (
             &["compare", "koch", "koch", "--tolerance", "0"],
             2,
-            "this is a number from 1e-9 to 1",
+            "expected a number from 1e-9 to 1",
         ),
         (
             &["compare", "dragon", "dragon", "--max-points", "10"],

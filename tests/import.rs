@@ -73,7 +73,7 @@ fn files_that_are_there_are_kept() {
     let (_, errors) = said(&output);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        errors.contains("'./a.yaml' is there already: a is not written"),
+        errors.contains("'./a.yaml' exists: a is not written"),
         "{errors}"
     );
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();

@@ -343,9 +343,9 @@ fn what_cannot_be_played_is_said() {
         (
             "gasket --points 5",
             2,
-            "--points is of random iteration: add --method chaos",
+            "--points applies to random iteration: add --method chaos",
         ),
-        ("gasket --color-by hits", 2, "--method chaos has them"),
+        ("gasket --color-by hits", 2, "use kfrac grow --method chaos"),
         (
             "gasket --method chaos --points 0",
             2,
@@ -359,17 +359,13 @@ fn what_cannot_be_played_is_said() {
         (
             "gasket --method chaos --points 2000G",
             2,
-            "no more than 1000G",
+            "the limit is 1000G",
         ),
-        (
-            "gasket --method chaos --start 1",
-            2,
-            "a start is a point X,Y",
-        ),
+        ("gasket --method chaos --start 1", 2, "expected a point X,Y"),
         (
             "gasket --method chaos --start 1,NaN",
             2,
-            "a start is a point X,Y",
+            "expected a point X,Y",
         ),
         ("gasket --method chaos --walk 3", 2, "--start"),
         (
@@ -381,19 +377,23 @@ fn what_cannot_be_played_is_said() {
         (
             "gasket --method chaos --detail 1",
             2,
-            "--detail is of elements",
+            "--detail applies to elements",
         ),
         (
             "gasket --method chaos --steps 3",
             2,
-            "--points says how much",
+            "--points is the number of points",
         ),
         (
             "gasket --method chaos --color-by age",
             2,
-            "hits, last-map and first-map",
+            "hits, last-map or first-map",
         ),
-        ("gasket --method chaos --cap butt", 2, "--cap is of lines"),
+        (
+            "gasket --method chaos --cap butt",
+            2,
+            "--cap applies to lines",
+        ),
         (
             "gasket --method dice",
             2,
@@ -418,8 +418,8 @@ fn what_cannot_be_played_is_said() {
         (
             "gasket --method chaos --size 20000",
             1,
-            "take more than 268435456 counters, with one for each class (1); a smaller --size works, and \
-             --method deterministic draws large pictures in bands",
+            "take more than 268435456 counters, with one for each class (1); use a smaller --size, or \
+             --method deterministic, which draws large pictures in bands",
         ),
     ] {
         let output = kfrac(folder.path(), &format!("grow {arguments}"));

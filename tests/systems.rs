@@ -548,7 +548,7 @@ fn the_command_line_sweeps_parameters_and_leaves_maps_out() {
     let (code, same, said) = kfrac(&[&pair[..], &line].concat());
     assert!(code == Some(0) && same == sheet, "{said}");
     let (code, _, said) = kfrac(&[&pair[..], &parts[..5], &["3"]].concat());
-    assert!(code == Some(2) && said.contains("do not go with"), "{said}");
+    assert!(code == Some(2) && said.contains("do not match"), "{said}");
     let (code, _, said) = kfrac(&["info", "pythagoras", "--set", "angle=20,40"]);
     assert!(code == Some(2) && said.contains("kfrac sheet"), "{said}");
     let (code, table, said) = kfrac(&[

@@ -1,4 +1,4 @@
-//! `kfrac cat`: the rule file itself.
+//! `kfrac cat`: prints a rule file.
 
 use std::path::PathBuf;
 
@@ -8,16 +8,16 @@ use crate::document::Document;
 use super::component::Component;
 use super::{Failure, help, output, rule};
 
-/// Prints a rule file, or a component, to start from
+/// Prints a rule file or a component
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// A rule file, the name of a rule or a component in the library, or - for standard input
+    /// Rule file, name of a rule or component in the library, or - for standard input
     ///
-    /// Where a rule has the name of a component, the folder tells them apart: generators/koch.
+    /// If a rule and a component share a name, the folder selects the component: generators/koch.
     #[arg(value_name = "RULE")]
     rule: PathBuf,
-    /// With the components and rules that it names put into it
+    /// Inserts the components and rules that the file names
     #[arg(long)]
     inline: bool,
 }
@@ -25,9 +25,9 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac cat dragon > mine.yaml
-      Copies a rule of the library, to change it and grow it
+      Copies a rule of the library, to modify and grow it
   kfrac cat --inline pythagoras-30
-      Shows all of a rule that others are part of
+      Prints a rule together with the rules and components that it is based on
   kfrac cat swaying-roof > generators/mine.yaml
       Copies a component
 ";
@@ -45,8 +45,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(output::print(&text)?)
 }
 
-/// The text without the line in which a file of the library names its schema: the path would lead
-/// nowhere from where the text is put.
+/// Returns the text without the line in which a file of the library names its schema: that path is valid in
+/// the library only.
 fn without_modeline(text: &str) -> &str {
     match text.split_once('\n') {
         Some((first, rest)) if is_modeline(first.trim_end()) => rest,

@@ -1,4 +1,4 @@
-//! `kfrac grow --method chaos`: systems of maps by random iteration.
+//! `kfrac grow --method chaos`: random iteration of iterated function systems.
 
 use std::io::Write;
 use std::num::NonZero;
@@ -23,31 +23,31 @@ use super::picture::{self, PictureArguments};
 use super::rule::Loaded;
 use super::{Failure, number};
 
-/// How systems of maps are iterated, and the options of random iteration.
+/// Options of random iteration, and the choice of the method.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Random iteration")]
 pub(super) struct ChaosArguments {
-    /// How a system of maps is iterated: all compositions of maps, or one walk by chance
+    /// Method of iteration of a system of maps: all compositions of maps, or a random walk
     ///
-    /// Random iteration, the chaos game, moves a point by one map after the other, picked by their
-    /// weights, and draws where it comes. It makes PNGs, and tables of points.
+    /// Random iteration (the chaos game) moves a point by one map after the other, chosen at random by their
+    /// weights, and draws every point that it reaches. It produces PNGs, and tables of points.
     #[arg(long, value_parser = picture::named::<Method>(), default_value = "deterministic")]
     method: Method,
-    /// How many points are drawn: 500k, 10M, 2G [default: 10M, of tables 100k]
+    /// Number of points to draw: 500k, 10M, 2G [default: 10M; 100k for tables]
     #[arg(long, value_name = "N", value_parser = points, allow_negative_numbers = true)]
     points: Option<u64>,
-    /// How numbers of hits become tones [default: log]
+    /// Mapping of the number of hits to a tone [default: log]
     #[arg(long, value_parser = picture::named::<Tone>())]
     tone: Option<Tone>,
-    /// Where walks start, if not on the attractor: their way there is drawn; it may be given several times
+    /// Start of the walks, if not on the attractor; the way there is drawn; may be given several times
     #[arg(long, value_name = "X,Y", value_parser = start, allow_hyphen_values = true)]
     start: Vec<DVec2>,
-    /// The points of a walk from a start, before the next one begins [default: 256]
+    /// Number of points of a walk from a start, before the next walk begins [default: 256]
     #[arg(long, value_name = "N", requires = "start", value_parser = number::whole("a number of steps", 1..=u32::MAX))]
     walk: Option<u32>,
 }
 
-/// How a system of maps is iterated.
+/// Method of iteration of a system of maps.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Method {
     Deterministic,
@@ -61,10 +61,10 @@ impl Named for Method {
     ];
 }
 
-/// The most points that can be asked for.
+/// Largest number of points that can be requested.
 const MOST_POINTS: u64 = 1_000_000_000_000;
 
-/// Reads a number of points.
+/// Parses a number of points with an optional suffix k, M or G.
 fn points(text: &str) -> Result<u64, String> {
     let (number, factor) = match text.char_indices().next_back() {
         Some((end, 'k')) => (&text[..end], 1e3),
@@ -76,7 +76,7 @@ fn points(text: &str) -> Result<u64, String> {
     match points {
         #[expect(clippy::cast_precision_loss, reason = "the limit is exact")]
         Ok(points) if points > MOST_POINTS as f64 && points.is_finite() => {
-            Err("this takes too long: there are no more than 1000G points".into())
+            Err("too many points: the limit is 1000G".into())
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -88,22 +88,22 @@ fn points(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Reads a point.
+/// Parses a point `X,Y`.
 fn start(text: &str) -> Result<DVec2, String> {
     let coordinates = text.split_once(',').and_then(|(x, y)| {
         let point = DVec2::new(x.trim().parse().ok()?, y.trim().parse().ok()?);
         point.is_finite().then_some(point)
     });
-    coordinates.ok_or_else(|| "a start is a point X,Y".into())
+    coordinates.ok_or_else(|| "expected a point X,Y".into())
 }
 
 impl ChaosArguments {
-    /// Whether random iteration is asked for.
+    /// Returns whether random iteration is requested.
     pub(super) fn is_asked(&self) -> bool {
         self.method == Method::Chaos
     }
 
-    /// Refuses options of random iteration where it is not asked for.
+    /// Returns an error if an option of random iteration is given without `--method chaos`.
     pub(super) fn refuse_alone(&self) -> Result<(), Failure> {
         let asked = [
             ("--points", self.points.is_some()),
@@ -112,13 +112,13 @@ impl ChaosArguments {
         ];
         match asked.into_iter().find(|(_, is_asked)| *is_asked) {
             Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} is of random iteration: add --method chaos"
+                "{option} applies to random iteration: add --method chaos"
             ))),
             None => Ok(()),
         }
     }
 
-    /// The game that is asked for.
+    /// Returns the game that the options request.
     pub(super) fn game<'a>(
         &'a self,
         loaded: &'a Loaded,
@@ -146,8 +146,8 @@ impl ChaosArguments {
         })?;
         let color_by = color_by(picture, &source)?;
         if steps.is_some() && color_by != ColorBy::FirstMap {
-            let message = "--steps is of deterministic iteration; with --method chaos, --points says \
-                           how much is drawn";
+            let message = "--steps applies to deterministic iteration; with --method chaos, \
+                           --points is the number of points";
             return Err(Failure::Usage(message.into()));
         }
         let walks = NonZero::new(self.walk.unwrap_or(256)).unwrap_or(NonZero::<u32>::MIN);
@@ -175,42 +175,42 @@ impl ChaosArguments {
     }
 }
 
-/// What colours tell: as asked for, or as the file says where points can be told apart by it. What
-/// a file colours by steps, which points have none of, is coloured by hits.
+/// Returns the property that colours points: as requested, or as in the file where points have it. A file
+/// that colours by step is coloured by hits, because points have no step.
 fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy, Failure> {
     let color_by = picture.style(system.heading()).color_by;
     match (color_by, picture.asked_color_by()) {
         (ColorBy::None | ColorBy::Hits | ColorBy::FirstMap | ColorBy::LastMap, _) => Ok(color_by),
         (_, None) => Ok(ColorBy::Hits),
         (_, Some(asked)) => Err(Failure::Usage(format!(
-            "--color-by {} is of elements, and --method chaos draws points: they have hits, \
-             last-map and first-map",
+            "--color-by {} applies to elements, and --method chaos draws points: use hits, \
+             last-map or first-map",
             asked.name()
         ))),
     }
 }
 
-/// A game that is ready to be played.
+/// Game that is ready to be played.
 pub(super) struct ChaosGame<'a> {
     arguments: &'a ChaosArguments,
     loaded: &'a Loaded,
-    /// The system in the coordinates from which the place leads to those of its file.
+    /// System in the coordinates that `place` maps to those of its file.
     source: Arc<ifs::System>,
     place: Homothety,
     system: System,
     start: Start,
     color_by: ColorBy,
-    /// Whether hits stand for steps, whose palette the file has.
+    /// Whether hits replace steps, for which the file has a palette.
     is_by_steps: bool,
-    /// The step whose first maps are told apart.
+    /// Number of steps for which first maps are distinguished.
     steps: u32,
 }
 
-/// Why there is no file.
+/// Reason for which no file is written.
 pub(super) enum Stopped {
-    /// Something about points or pictures.
+    /// Failure of random iteration, ready to be reported.
     Said(Failure),
-    /// What may happen to any picture.
+    /// Error of drawing, as for any picture.
     Render(RenderError),
 }
 
@@ -220,14 +220,14 @@ impl From<RenderError> for Stopped {
     }
 }
 
-/// Points that tell how far walks lead.
+/// Number of points from which the extent of walks is estimated.
 const PILOT: usize = 20_000;
 
-/// Pixels that keep what lies on the edge of the box inside of the picture.
+/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
 const EDGE: f64 = 1.0 / 32.0;
 
 impl ChaosGame<'_> {
-    /// The canvas that shows the attractor, and the ways to it, or the window.
+    /// Returns the canvas that shows the attractor and the ways to it, or the window.
     fn canvas(&self, picture: &PictureArguments, size: Size) -> Result<Canvas, RenderError> {
         let view = picture.view(self.source.heading()).within(&self.place);
         if let Some(window) = view.window {
@@ -243,7 +243,7 @@ impl ChaosGame<'_> {
         Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
     }
 
-    /// Plays and draws; tells what has been drawn.
+    /// Plays the game, draws it and returns a summary.
     pub(super) fn draw(
         &self,
         size: Size,
@@ -270,7 +270,7 @@ impl ChaosGame<'_> {
         let histogram = play(&self.system, &window, &game).map_err(|error| {
             Stopped::Said(match error {
                 error @ GameError::TooManyBins { .. } => anyhow::anyhow!(
-                    "{error}; a smaller --size works, and --method deterministic draws large pictures \
+                    "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
                      in bands"
                 )
                 .into(),
@@ -302,7 +302,7 @@ impl ChaosGame<'_> {
         ))
     }
 
-    /// Lists points; tells what has been listed.
+    /// Lists the points and returns a summary.
     pub(super) fn list(
         &self,
         format: export::Format,
@@ -333,26 +333,26 @@ impl ChaosGame<'_> {
         Ok(format!("{}, {described}", self.loaded.name))
     }
 
-    /// What points are told apart by.
+    /// Returns the property by which points are classified.
     fn classes(&self) -> ClassBy {
         let ago = match self.color_by {
             ColorBy::LastMap => 0,
-            // The maps of a walk are known no further back.
+            // Walks record no more maps than that.
             ColorBy::FirstMap => u8::try_from(self.steps.clamp(1, 200) - 1).unwrap_or(u8::MAX),
             _ => return ClassBy::One,
         };
         ClassBy::Map { ago }
     }
 
-    /// The colours that a style gives to hits, maps or all points.
+    /// Returns the colours of hits, maps or all points in a style.
     fn shades(&self, style: &Style, ink: Option<Colour>) -> Shades {
         let maps = self.source.ifs().maps().len();
         match self.color_by {
-            // What a file colours by steps begins with what is large, and so is hit most.
+            // A palette by steps begins with the largest elements, which are hit most.
             ColorBy::Hits if self.is_by_steps => Shades::Palette(style.palette.clone().reversed()),
             ColorBy::Hits => Shades::Palette(style.palette.clone()),
             ColorBy::FirstMap | ColorBy::LastMap => {
-                // As of approximants, where condensation sets come first, if there are any.
+                // As in approximants, the palette begins with condensation sets, if there are any.
                 let before = usize::from(self.system.classes() > maps);
                 let last = (maps + before).saturating_sub(1).max(1);
                 let place = |class: usize| {
@@ -366,7 +366,7 @@ impl ChaosGame<'_> {
         }
     }
 
-    /// The options of the game as the command line has them.
+    /// Returns the options of the game that are given, with their values.
     fn options(&self, points: u64) -> Vec<(&'static str, String)> {
         let mut options = vec![("method", Method::Chaos.name().into())];
         options.push(("points", points.to_string()));

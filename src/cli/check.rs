@@ -1,4 +1,4 @@
-//! `kfrac check`: everything that is wrong with rule files.
+//! `kfrac check`: reports all errors in rule files.
 
 use std::path::{Path, PathBuf};
 
@@ -11,16 +11,16 @@ use crate::document::Document;
 use super::component::Component;
 use super::{Failure, help, output, rule, text};
 
-/// Says everything that is wrong with rule files
+/// Reports all errors in rule files
 ///
-/// The exit status is 1 if any of them has an error; warnings alone leave it at 0.
+/// The exit status is 1 if any of the files has an error; warnings alone leave it at 0.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Rule files, names of rules and components in the library, or - for standard input
+    /// Rule files, names of rules or components in the library, or - for standard input
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// As JSON
+    /// Prints the errors and warnings as JSON
     #[arg(long)]
     json: bool,
 }
@@ -28,12 +28,12 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac check mine.yaml
-      Says what is wrong with a rule, where, and what would be right
+      Reports each error with its place and a correction
   kfrac check rules/*.yaml --json
-      The same of many, for an editor
+      Checks several files, with JSON output for an editor
 ";
 
-/// A mistake as programs read it.
+/// Diagnostic as it is printed in JSON.
 #[derive(Serialize)]
 pub(super) struct Row<'a> {
     file: &'a str,

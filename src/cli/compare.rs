@@ -1,4 +1,4 @@
-//! `kfrac compare`: whether two fractals are the same.
+//! `kfrac compare`: Hausdorff distance of two fractals.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -25,53 +25,53 @@ use super::labels::labels_of_two;
 use super::rule::{self, Loaded, RuleArguments};
 use super::{Failure, format, help, input, length, number, output, picture, steps, text};
 
-/// Says whether two fractals are the same: how far apart their limit sets are
+/// Computes the Hausdorff distance of the limit sets of two fractals
 ///
-/// The Hausdorff distance is the farthest that a point of one set is from the other. It is told with a
-/// bound of its error; two sets are the same, as far as can be told, if it is not more than that.
-/// Closed outlines count with what they enclose. The exit status is 0 whether or not they are.
+/// The Hausdorff distance is the largest distance of a point of one set from the other set. It is reported
+/// with a bound of its error; the sets are considered the same if the distance does not exceed that bound.
+/// Closed outlines include their interior. The exit status is 0 in either case.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// A rule file, the name of a rule in the library, or - for standard input
+    /// Rule file, name of a rule in the library, or - for standard input
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// What to compare it with, likewise
+    /// Rule to compare with A, in the same notation
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Sets a parameter of A and of B, of whichever has it; it may be given several times
+    /// Sets a parameter of A, of B, or of both, whichever has it; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<Assignment>,
-    /// Compares what this step draws, not the limit sets
+    /// Compares the approximants of this step instead of the limit sets
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
-    /// The error of the distance, as a multiple of the size of the larger set
+    /// Target error of the distance, relative to the size of the larger set
     #[arg(long, value_name = "E", default_value = "0.001", value_parser = tolerance)]
     tolerance: f64,
-    /// The most points that may stand for each set; with too few, the error is larger
+    /// Largest number of points that represent each set; too few increase the error
     #[arg(long, value_name = "N", default_value_t = 4_000_000, value_parser = number::whole("a number of points", 0..=usize::MAX))]
     max_points: usize,
-    /// A picture of the difference: A alone is orange, B alone blue, both grey
+    /// Writes a picture of the difference: A alone in orange, B alone in blue, both in grey
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// The format of the picture [default: from the extension of the file]
+    /// Format of the picture [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
-    /// The long side of the picture in pixels, or WIDTHxHEIGHT
+    /// Long side of the picture in pixels, or WIDTHxHEIGHT
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::size)]
     size: Size,
-    /// The colour behind the picture
+    /// Background colour of the picture
     #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
     background: Option<picture::Ink>,
-    /// As JSON
+    /// Prints the result as JSON
     ///
-    /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension
-    /// (similarity, note); steps is null for limit sets; distance, a_to_b and b_to_a (the farthest that
-    /// a point of one set is from the other) are right to within error; reached tells whether that is
-    /// what --tolerance asks for; same tells whether distance is no more than error.
+    /// a and b have name, kind, bounds (min and max, of the set that is compared) and dimension (similarity,
+    /// note). steps is null for limit sets. distance, a_to_b and b_to_a (the largest distance of a point of
+    /// one set from the other) are correct within error. reached is true if error is at most what --tolerance
+    /// requests. same is true if distance is at most error.
     #[arg(long)]
     json: bool,
-    /// Says nothing but the result and what is wrong
+    /// Prints only the result and errors
     #[arg(long, short)]
     quiet: bool,
 }
@@ -79,17 +79,17 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac compare dragon twindragon --tolerance 0.01
-      Says how far apart two dragons are, to a hundredth of their size
+      Computes the distance of two dragons, to a hundredth of their size
   kfrac compare koch koch-quadratic -o difference.png
-      Draws as well what is in one of them only
+      Also draws the parts that only one of the two has
   kfrac compare koch koch-snowflake --steps 4 --json
-      Compares approximants, for another program
+      Compares approximants, with JSON output
 ";
 
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(tolerance) if (1e-9..=1.0).contains(&tolerance) => Ok(tolerance),
-        _ => Err("this is a number from 1e-9 to 1".into()),
+        _ => Err("expected a number from 1e-9 to 1".into()),
     }
 }
 
@@ -120,7 +120,7 @@ struct Dimension {
     note: Option<String>,
 }
 
-/// One of the two.
+/// One of the two fractals.
 struct One {
     loaded: Loaded,
     graph: Graph,
@@ -175,7 +175,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         b_to_a: distance.back,
         same: distance.may_be_same(),
     };
-    // A picture that cannot be made leaves no result behind that looks as if all were well.
+    // The picture is written first, so that a failure leaves no result that looks complete.
     if let Some(path) = &arguments.output {
         arguments.draw(path, format, &both, &subjects)?;
     }
@@ -189,7 +189,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
-    /// Reads both; every setting is for whichever has the parameter.
+    /// Reads both fractals and applies every setting to whichever has the parameter.
     fn load(&self, catalogue: &Catalogue) -> Result<[One; 2], Failure> {
         let paths = [&self.a, &self.b];
         if paths.iter().all(|path| *path == Path::new("-")) {
@@ -217,10 +217,10 @@ impl Arguments {
                 set: Vec::new(),
                 omit: Vec::new(),
             };
-            // What is no parameter of either is told as that of the first.
+            // A parameter that neither has is reported for the first.
             let settings = own.chain(&lost).cloned().collect();
             let loaded = arguments.resolve(document, settings, self.quiet || self.json)?;
-            // Both in coordinates that suit the first.
+            // Both are compiled in coordinates that suit the first.
             let loaded = match both.first() {
                 Some(One { graph, .. }) => loaded.within(*graph.place()),
                 None => {
@@ -256,8 +256,8 @@ impl Arguments {
             let visited = subjects[which].visit(pixels.radius(), most, &mut |it| pixels.add(it));
             visited.map_err(|error| match error {
                 NoCover::TooMany(_) => anyhow!(
-                    "{} cannot be drawn: its pixels take too many points; a smaller --size \
-                     takes fewer",
+                    "{} cannot be drawn: its pixels need too many points; a smaller --size \
+                     needs fewer",
                     both[which].loaded.name
                 )
                 .into(),
@@ -296,11 +296,10 @@ impl Arguments {
     }
 }
 
-/// The most points that are looked for in a picture, as a multiple of its pixels: more than discs of
-/// half a pixel take.
+/// Largest number of points per pixel of a picture: more than a cover by discs of half a pixel needs.
 const MOST_POINTS_A_PIXEL: usize = 16;
 
-/// Steps that graphs are compiled for where the limit is asked for.
+/// Number of steps for which graphs are compiled if limit sets are compared.
 const STEPS: u32 = 64;
 
 fn explain(error: NoCover, loaded: &Loaded) -> Failure {
@@ -320,7 +319,7 @@ fn explain(error: NoCover, loaded: &Loaded) -> Failure {
     }
 }
 
-/// For people.
+/// Describes the result in text.
 fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
     let mut text = String::new();
     let Comparison { a, b, .. } = comparison;
@@ -329,7 +328,7 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
         Some(steps) => format!("step {steps}"),
     };
     let verdict = if comparison.same {
-        "the same, as far as can be told"
+        "the same, within the error"
     } else {
         "different"
     };
@@ -348,7 +347,9 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
         let wanted = distance.wanted;
         line(
             "error",
-            &format!("not the {wanted:.2e} that --tolerance asks for: --max-points allows more"),
+            &format!(
+                "above the {wanted:.2e} that --tolerance requests: --max-points allows more points"
+            ),
         );
     }
     for (label, one, other, way) in [
@@ -377,7 +378,7 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
     text
 }
 
-/// A figure to the digits that its error leaves.
+/// Formats a value with the digits that its error leaves.
 fn told(value: f64, error: f64) -> String {
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! `kfrac completions`: what shells need to complete command lines.
+//! `kfrac completions`: scripts that complete command lines.
 
 mod parameters;
 
@@ -13,24 +13,24 @@ use crate::catalogue::{Catalogue, Entry, Shelf};
 
 use super::{Failure, help, output};
 
-/// Prints a script that completes command lines of kfrac
+/// Prints a shell completion script
 ///
-/// The script knows commands, options, their values, and the rules and components that the library has
-/// when it is made, and it asks kfrac for the parameters of a rule behind --set (bash, fish, zsh).
+/// The script completes commands, options, their values, and the rules and components that are in the library
+/// when the script is generated. For the parameters of a rule after --set, it runs kfrac (bash, fish, zsh).
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// The shell
+    /// Shell
     #[arg(
         value_name = "SHELL",
         value_enum,
         required_unless_present = "parameters"
     )]
     shell: Option<Shell>,
-    /// Lists the parameters of the rules on a command line; for the scripts
+    /// Lists the parameters of the rules on a command line, for the scripts
     #[arg(long, hide = true, conflicts_with = "shell")]
     parameters: bool,
-    /// The command line
+    /// Command line
     #[arg(last = true, hide = true, requires = "parameters")]
     words: Vec<OsString>,
 }
@@ -38,16 +38,16 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac completions bash > ~/.local/share/bash-completion/completions/kfrac
-      For bash with bash-completion; without it, put source <(kfrac completions bash) into ~/.bashrc
+      For bash with bash-completion; without it, add source <(kfrac completions bash) to ~/.bashrc
   kfrac completions zsh > ~/.zfunc/_kfrac
-      For zsh, where ~/.zfunc is in fpath before compinit is run
+      For zsh, if ~/.zfunc is in fpath before compinit runs
   kfrac completions fish > ~/.config/fish/completions/kfrac.fish
       For fish
   kfrac completions powershell >> $PROFILE
       For PowerShell
 ";
 
-/// The commands that take a rule, and the argument that is it.
+/// Commands that take a rule, with the name of that argument.
 const OF_RULES: [(&str, &str); 11] = [
     ("grow", "rule"),
     ("sheet", "rule"),
@@ -62,25 +62,25 @@ const OF_RULES: [(&str, &str); 11] = [
     ("compare", "b"),
 ];
 
-/// The commands that take a component as well.
+/// Commands that also take a component.
 const OF_COMPONENTS: [&str; 3] = ["show", "cat", "check"];
 
-/// The commands that have `--set`.
+/// Commands that have `--set`.
 const OF_PARAMETERS: [&str; 8] = [
     "grow", "sheet", "show", "info", "count", "dim", "convert", "compare",
 ];
 
-/// The names that a library has.
+/// Names in a library.
 #[derive(Default)]
 struct Names {
     rules: Vec<String>,
-    /// Those of components that no rule has, and those with their folders that a rule has.
+    /// Names of components; those that are also names of rules are preceded by their folder.
     components: Vec<String>,
 }
 
 impl Names {
     fn of(catalogue: &Catalogue) -> Self {
-        // A script is no place for names that a shell would take apart.
+        // Names that a shell would split are left out of the script.
         let is_word = |name: &str| {
             name.chars()
                 .all(|c| c.is_alphanumeric() || "-_.".contains(c))
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let names = Names::of(catalogue);
     let script = match shell {
-        // Where no rule matches, bash goes on to files.
+        // bash falls back to files if no rule matches.
         Shell::Bash => with_parameters_for_bash(&script(Shell::Bash, Some(&names))),
         Shell::Fish => with_rules_for_fish(script(Shell::Fish, None), &names),
         Shell::Zsh => with_rules_for_zsh(&script(Shell::Zsh, None), &names),
@@ -125,8 +125,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(output::print(&script)?)
 }
 
-/// The script for a shell that completes these rules and nothing else where a rule is wanted, or,
-/// where there are none, files.
+/// Returns the generated script. With `names`, arguments that take a rule complete these names only, and
+/// otherwise files.
 fn script(shell: Shell, names: Option<&Names>) -> String {
     let command = super::command();
     let commands = command
@@ -150,7 +150,7 @@ fn with_values(command: Command, name: &str, argument: &str, values: Vec<String>
     })
 }
 
-/// With the parameters of the rule behind `--set`.
+/// Adds the parameters of the rule after `--set`.
 fn with_parameters_for_bash(script: &str) -> String {
     const FILES: &str = "                --set)
                     COMPREPLY=($(compgen -f \"${cur}\"))
@@ -163,7 +163,7 @@ fn with_parameters_for_bash(script: &str) -> String {
     script.replace(FILES, PARAMETERS)
 }
 
-/// With rules, and with the parameters of the one that is named, beside files.
+/// Adds rules, and the parameters of the given rule, besides files.
 fn with_rules_for_fish(mut script: String, names: &Names) -> String {
     let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
     commands.dedup();
@@ -184,7 +184,7 @@ fn with_rules_for_fish(mut script: String, names: &Names) -> String {
     script
 }
 
-/// With rules beside files, and parameters: by functions, before the lines that start the completion.
+/// Adds rules besides files, and parameters, by functions in front of the lines that start the completion.
 fn with_rules_for_zsh(script: &str, names: &Names) -> String {
     const PARAMETERS: &str = r#"(( $+functions[_kfrac_parameters] )) ||
 _kfrac_parameters() {
@@ -195,7 +195,7 @@ _kfrac_parameters() {
 
 "#;
     let mut with_rules = String::new();
-    // The command whose arguments are listed.
+    // Command whose arguments are listed.
     let mut command = "";
     for line in script.lines() {
         if line.starts_with("if [ \"$funcstack[1]\"") {
@@ -229,6 +229,6 @@ _kfrac_parameters() {
     with_rules
 }
 
-/// The functions of zsh that complete rules, and rules and components.
+/// Functions of the zsh script that complete rules, and rules and components.
 const RULES: &str = "_kfrac_rules";
 const COMPONENTS: &str = "_kfrac_components";

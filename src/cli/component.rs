@@ -1,4 +1,4 @@
-//! Components by themselves, for commands that know what to do with one.
+//! Components named on the command line, for commands that accept them in place of a rule.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,14 +10,14 @@ use crate::document::node::{Node, Value};
 
 use super::Failure;
 
-/// A component that the command line names.
+/// Component that the command line names.
 pub(super) struct Component {
     entry: Entry,
     source: Arc<Source>,
 }
 
 impl Component {
-    /// The component that an argument stands for, if it stands for one and not for a rule.
+    /// Returns the component that an argument names, or `None` if it names a rule or nothing.
     pub(super) fn find(argument: &Path, catalogue: &Catalogue) -> Result<Option<Self>, Failure> {
         let Some(entry) = catalogue.component_named(argument) else {
             return Ok(None);
@@ -26,18 +26,18 @@ impl Component {
         Ok(Some(Self { entry, source }))
     }
 
-    /// What it is.
+    /// Returns the kind of the component.
     pub(super) fn shelf(&self) -> Shelf {
         self.entry.shelf
     }
 
-    /// The text of its file.
+    /// Returns the text of its file.
     pub(super) fn text(&self) -> &str {
         self.source.text()
     }
 
-    /// The shortest rule that uses it, with its title and source: what is to be known of a component
-    /// shows in a rule.
+    /// Returns a minimal rule that uses the component, with its title, description and source: components are
+    /// drawn and checked in a rule.
     pub(super) fn in_a_rule(&self) -> Arc<Source> {
         let chain =
             |ends: &[f64]| sequence(ends.iter().map(|&x| sequence([x, 0.0].map(Value::Number))));

@@ -1,4 +1,4 @@
-//! `kfrac convert`: a fractal written in another way.
+//! `kfrac convert`: converts a fractal to another kind of file.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,24 +13,24 @@ use crate::model::Kind;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output};
 
-/// Writes a fractal in another way: as a system of maps, objects, a rule or an L-system
+/// Converts a fractal to a system of maps, objects, a rule or an L-system
 ///
-/// The file that is written has the same limit set: where steps without end lead to, with all that
-/// stays as it is on the way. Fertile elements become maps, visible infertile ones condensation
-/// sets. Weights, tints and the order of elements are left behind where the other kind has nothing
-/// like them, and parameters become numbers. Where the other kind has no way to write it, kfrac says why.
+/// The new file has the same limit set: the limit of infinitely many steps, together with all elements that
+/// are kept on the way. Fertile elements become maps, visible infertile ones become condensation sets.
+/// Weights, tints and the order of elements are dropped where the new kind has no equivalent, and parameters
+/// are replaced by their values. If the fractal has no equivalent in the new kind, the error states why.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// The kind of file to write
+    /// Kind of the new file
     #[arg(long, value_name = "KIND", value_parser = kind())]
     to: Kind,
-    /// Keeps what every step draws, not only the limit set
+    /// Preserves every approximant, not only the limit set
     #[arg(long)]
     approximants: bool,
-    /// The file to write, or - for standard output
+    /// Output file, or - for standard output
     #[arg(long, short, value_name = "FILE", default_value = "-", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 }
@@ -38,18 +38,18 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac convert koch --to ifs
-      Shows the four maps of the Koch curve
+      Prints the Koch curve as a system of four maps
   kfrac convert pythagoras --set angle=30 --to instancing -o tree.yaml
-      Writes a tree as objects that instance each other, into a file to grow
+      Writes a tree as objects that instance each other, to tree.yaml
   kfrac convert koch --to ifs --approximants > maps.yaml
-      Writes a system of which kfrac grow draws the same at every step
+      Writes a system with the same approximants at every step
 ";
 
 fn kind() -> impl TypedValueParser<Value = Kind> {
     let kinds = Kind::ALL.map(|kind| {
         PossibleValue::new(kind.name()).help(match kind {
             Kind::Rule => "A production rule; all maps must be similarities",
-            Kind::Ifs => "An iterated function system, recurrent where it has to be",
+            Kind::Ifs => "An iterated function system, recurrent where necessary",
             Kind::Instancing => "Objects that instance each other",
             Kind::LSystem => "An L-system, whose symbols draw lines",
         })

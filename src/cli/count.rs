@@ -1,4 +1,4 @@
-//! `kfrac count`: what a step has, by growing it.
+//! `kfrac count`: counts the elements of a step by growing it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,27 +15,27 @@ use super::info::{Corners, corners};
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output, progress, steps};
 
-/// Grows a rule and counts what there is, without writing it
+/// Grows a rule and counts its elements, without drawing
 ///
-/// Every element is put in its place: what is told are the numbers of elements, of those that are
-/// fertile and of fractals, the sum of the lengths, and the box of what is drawn, without strokes. It
-/// is what `kfrac info` tells without growing anything, found in another way.
+/// Places every element and reports the number of elements, of fertile elements and of fractals, the sum of
+/// the lengths, and the bounding box of what is drawn, without strokes. `kfrac info` computes the same
+/// numbers without growing the rule; `count` is an independent check.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// How often fertile elements are replaced [default: what the rule says]
+    /// Number of steps: how often fertile elements are replaced [default: from the rule]
     ///
-    /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
+    /// If the rule gives no number, the default is the deepest step up to 12 with no more than 20,000
     /// elements.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
     #[command(flatten)]
     growth: GrowthArguments,
-    /// As JSON
+    /// Prints the result as JSON
     ///
-    /// Counts are decimal strings; bounds are null where nothing is visible.
+    /// Counts are decimal strings; bounds are null if nothing is visible.
     #[arg(long)]
     json: bool,
 }
@@ -43,11 +43,11 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac count koch --steps 12
-      Counts the elements of twelve steps, all 16,777,216 of them
+      Counts the 16,777,216 elements of step 12
   kfrac count random-tree --seed 7 --json
-      For another program
+      Prints the counts of a random tree as JSON
   kfrac count dragon --steps 30 --max-elements 2000000000
-      Takes a second or two
+      Counts up to two billion elements, in a second or two
 ";
 
 #[derive(Serialize)]
@@ -57,7 +57,7 @@ struct Found<'a> {
     elements: String,
     fertile: String,
     fractals: String,
-    /// Null where it is beyond a double's range.
+    /// `null` in JSON if it exceeds the range of doubles.
     length: f64,
     bounds: Option<Corners>,
 }

@@ -1,4 +1,4 @@
-//! `kfrac dim`: the dimension of a rule, a picture or a table of points.
+//! `kfrac dim`: dimensions of a rule, a picture or a table of points.
 
 mod input;
 mod report;
@@ -24,53 +24,52 @@ use super::{Failure, format, growth, help, number, output, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
 ///
-/// Boxes are counted at many sizes, on grids that are moved and turned, and the least cover is kept.
-/// The dimension is the slope of the logarithms, with its standard error and its evidence; where local
-/// slopes drift, this is said, and the estimate goes on with them. Of a picture, the mean counts over all
-/// grids tell the slope, with the width of a pen and the boxes of rims allowed for. Of a rule,
-/// the limit set of what stays fertile is measured, straight from the rule: boxes that are too many to
-/// be counted are told by a sample of them. Beside it stands what is
-/// exact: its similarity dimension, how its copies lie, the dimension that follows for the set itself
-/// and for its boundary.
+/// Boxes of many sizes are counted on shifted and rotated grids, and the smallest cover of each size is kept.
+/// The dimension is the slope of the logarithms, reported with its standard error and all counts. If the
+/// local slopes drift, a remark reports it, and the estimate extrapolates the drift. For a picture, the slope
+/// is fitted to the mean counts over all grids, corrected for the width of the pen and for boxes at the rims.
+/// For a rule, the limit set of the fertile elements is measured directly on its graph; where the boxes are
+/// too many to count, their number is estimated from a sample. Exact results are listed as well: the
+/// similarity dimension, the overlap of the copies, and the resulting dimensions of the set and of its
+/// boundary.
 ///
-/// The spectrum of dimensions D_q is that of a measure on the limit set: the one that the weights of a
-/// system give, or else the natural one, under which copies have the masses that their sizes call for, and
-/// copies that coincide count once. It is exact where copies are similar and do not overlap, and measured
-/// by the masses of boxes about points of the set, which the graph tells.
+/// The spectrum of dimensions D_q is that of a measure on the limit set: the measure given by the weights of
+/// a system, or else the natural measure, under which the mass of a copy follows from its size and coinciding
+/// copies count once. Exact values are given where the copies are similar and do not overlap; measured values
+/// come from the masses of boxes around points of the set, computed on the graph.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// A rule (a file or a name in the library), a picture (PNG, JPEG), a table of points (CSV), or -
-    /// for any of them on standard input
+    /// Rule (a file or a name in the library), picture (PNG, JPEG), table of points (CSV), or - for any of
+    /// them on standard input
     #[arg(value_name = "RULE|IMAGE|POINTS")]
     rule: PathBuf,
-    /// Sets a parameter of the rule; it may be given several times
+    /// Sets a parameter of the rule; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<Assignment>,
-    /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
+    /// Omits maps of a system, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     omit: Vec<u32>,
-    /// So many values of a parameter that is set to a range: --set ratio=0.5..0.7
+    /// Number of values of a parameter that is set to a range: --set ratio=0.5..0.7
     ///
-    /// Of several values of a parameter, the exact dimensions are told, and drawn.
+    /// For several values of a parameter, only the exact dimensions are listed and plotted.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = number::whole("a number of values", 2..=1000_u32))]
     samples: u32,
-    /// As JSON, with every count
+    /// Prints the result as JSON, with all counts
     #[arg(long)]
     json: bool,
-    /// Draws counts, fit and local slopes into a file (SVG or PNG)
+    /// Plots counts, fit and local slopes into a file (SVG or PNG)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
-    /// By what number boxes get smaller [default: the least whole number that is a power of the ratio
-    /// that a rule repeats itself by, or that fits a picture, or 2; a whole number for pictures and
-    /// points]
+    /// Factor between the sizes of boxes [default: the least whole number that is a power of the ratio at
+    /// which a rule repeats itself, or that fits a picture, or 2]; a whole number for pictures and points
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
-    /// How many grids are tried
+    /// Number of grids
     #[arg(long, value_name = "N", default_value = "8")]
     grids: NonZero<usize>,
-    /// The orders q of the spectrum of dimensions D_q; 1 is the information dimension, 2 the
-    /// correlation dimension
+    /// Orders q of the spectrum of dimensions D_q; 1 is the information dimension, 2 the correlation
+    /// dimension
     #[arg(
         long,
         value_name = "Q,...",
@@ -79,26 +78,26 @@ pub(super) struct Arguments {
     )]
     #[arg(value_parser = order, allow_hyphen_values = true)]
     orders: Vec<f64>,
-    /// What random draws of a rule depend on: another seed makes another individual
+    /// Seed of the random draws of a rule
     #[arg(long, value_name = "S", default_value_t = 0)]
     #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
-    /// The number of threads [default: as many as the machine has cores]
+    /// Number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = growth::threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
-    /// What of a pixel tells whether it belongs to the set [default: its opacity, if any pixel is
-    /// transparent, or else its darkness]
+    /// Property of a pixel that decides whether it belongs to the set [default: opacity, if any pixel is
+    /// transparent, or else darkness]
     #[arg(long, help_heading = "Pictures", value_parser = channel())]
     channel: Option<crate::import::Channel>,
-    /// From which darkness or opacity on a pixel belongs to the set, from 1 to 255 [default: what
-    /// parts the pixels best (Otsu 1979)]
+    /// Least darkness or opacity, from 1 to 255, of a pixel of the set [default: the best separation of the
+    /// pixels (Otsu 1979)]
     #[arg(long, value_name = "T", help_heading = "Pictures")]
     #[arg(value_parser = clap::value_parser!(u8).range(1..))]
     threshold: Option<u8>,
-    /// Measures what is light, or transparent
+    /// Measures the light or transparent pixels instead
     #[arg(long, help_heading = "Pictures")]
     invert: bool,
-    /// The two columns of a table that are coordinates, by name or number
+    /// Columns of a table that hold the coordinates, by name or number
     #[arg(long, value_name = "X,Y", help_heading = "Tables", value_parser = columns)]
     columns: Option<[String; 2]>,
 }
@@ -117,28 +116,28 @@ Examples:
       Measures a picture
 ";
 
-/// What has been measured, of whatever kind.
+/// Result of a measurement of any kind.
 struct Measured {
-    /// What messages call it.
+    /// Name in messages.
     name: String,
     title: String,
-    /// What exactly was measured.
+    /// Description of the set that was measured.
     set: String,
     unit: Option<&'static str>,
-    /// What is known without measuring, of a rule.
+    /// Exact results for a rule.
     exact: Option<exact::Grown>,
     counting: BoxCounting,
     spectrum: Vec<Generalised>,
-    /// The spectrum that is known without measuring.
+    /// Exact spectrum.
     spectrum_known: Option<exact::Spectrum>,
-    /// The measure on the limit set whose spectrum is given.
+    /// Measure on the limit set to which the spectrum belongs.
     measure: Option<&'static str>,
     lacunarity: Vec<Lacunarity>,
     warnings: Vec<String>,
 }
 
 impl Measured {
-    /// With the reason why there is nothing to be told.
+    /// Adds a warning with the reason for which nothing could be measured.
     fn without(mut self, reason: &dyn std::error::Error) -> Self {
         self.warnings.push(format!("nothing is measured: {reason}"));
         self
@@ -222,7 +221,7 @@ impl Arguments {
 fn base(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(base) if (1.1..=16.0).contains(&base) => Ok(base),
-        _ => Err("this is a number from 1.1 to 16".into()),
+        _ => Err("expected a number from 1.1 to 16".into()),
     }
 }
 
@@ -243,8 +242,8 @@ fn columns(text: &str) -> Result<[String; 2], String> {
 fn channel() -> impl clap::builder::TypedValueParser<Value = crate::import::Channel> {
     use clap::builder::{PossibleValuesParser, TypedValueParser};
     let values = [
-        PossibleValue::new("darkness").help("How dark it is, on white"),
-        PossibleValue::new("alpha").help("How opaque it is"),
+        PossibleValue::new("darkness").help("The darkness of the pixel on white"),
+        PossibleValue::new("alpha").help("The opacity of the pixel"),
     ];
     PossibleValuesParser::new(values).map(|name| match name.as_str() {
         "alpha" => crate::import::Channel::Alpha,

@@ -1,24 +1,24 @@
-//! Values of parameters as the command line has them: one, or several that make a family.
+//! Values of parameters on the command line: one, or several that form a family.
 
 use crate::document::Setting;
 use crate::expression::{Expression, PARTS, Scope};
 
 use super::Failure;
 
-/// A parameter with the values that it is to have; of a complex one, the real and the imaginary parts.
+/// Parameter with its values. A complex parameter has one part each for the real and the imaginary values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Assignment {
-    /// How the parameter is called.
+    /// Name of the parameter.
     name: String,
     parts: Vec<Part>,
 }
 
-/// A number with the values that it is to have.
+/// Real parameter, or one of the two parts of a complex one, with its values.
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     name: String,
     values: Values,
-    /// How it is written, if it is one.
+    /// Source expression, if there is a single value.
     written: Option<Expression>,
 }
 
@@ -26,11 +26,11 @@ struct Part {
 enum Values {
     One(f64),
     Several(Vec<f64>),
-    /// From one to another.
+    /// First and last value of a range.
     Range([f64; 2]),
 }
 
-/// Reads `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`; a value is a number or `[RE,IM]`.
+/// Parses `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`; a value is a number or `[RE,IM]`.
 pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     let (name, written) = text.split_once('=').ok_or("write NAME=VALUE")?;
     let (name, written) = (name.trim().to_owned(), written.trim());
@@ -59,7 +59,7 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     Ok(Assignment { name, parts })
 }
 
-/// The parts of complex values: `[RE,IM]`, several with commas between them, or two with `..`.
+/// Parses complex values: `[RE,IM]`, several separated by commas, or two with `..` between them.
 fn complex(name: &str, written: &str) -> Result<Vec<Part>, String> {
     const FORMS: &str =
         "a complex value is written [RE,IM], several are [RE,IM],[RE,IM] or [RE,IM]..[RE,IM]";
@@ -124,7 +124,7 @@ fn value(text: &str) -> Result<f64, String> {
 }
 
 impl Assignment {
-    /// The one value; of a complex parameter, its parts.
+    /// Returns the settings of a parameter that has a single value.
     pub(super) fn settings(&self) -> Result<Vec<Setting>, Failure> {
         let settings: Option<Vec<_>> = self.parts.iter().map(Part::setting).collect();
         settings.ok_or_else(|| {
@@ -157,7 +157,7 @@ impl Part {
         }
     }
 
-    /// The values that make a family, so many of a range.
+    /// Returns one setting for each value of a family, `samples` for a range, and `None` for a single value.
     fn several(&self, samples: u32) -> Option<Vec<Setting>> {
         let values = match &self.values {
             Values::One(_) => return None,
@@ -176,13 +176,13 @@ impl Part {
     }
 }
 
-/// A value without the last digits, which are rounding: 0.56, not 0.5599999999999999.
+/// Rounds away the last digits, which are rounding errors: 0.56, not 0.5599999999999999.
 fn plain(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 
-/// The settings that are the same for all members, and for every member those of the parameters that are
-/// swept: two or more together, such as the parts of a complex number, with as many values each.
+/// Splits assignments into the settings that all members share and the settings of each member. Several swept
+/// parameters, such as the parts of a complex one, must have the same number of values.
 pub(super) fn split(
     assignments: &[Assignment],
     samples: u32,
@@ -198,7 +198,7 @@ pub(super) fn split(
             swept = vec![Vec::new(); several.len()];
         } else if swept.len() != several.len() {
             let message = format!(
-                "--set {}: {} values do not go with the {} of {}",
+                "--set {}: {} values do not match the {} of {}",
                 assignment.name,
                 several.len(),
                 swept.len(),

@@ -1,4 +1,4 @@
-//! The format of a file: as asked for, or by its extension.
+//! Formats of output files: as requested, or from the extension.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::style::Named;
 
 use super::Failure;
 
-/// The format that was asked for, or that of the path's extension, or the first one.
+/// Returns the requested format, or that of the extension of the path, or the first one.
 pub(super) fn choose<F: Named>(asked: Option<F>, output: Option<&Path>) -> Result<F, Failure> {
     let extension = output
         .filter(|path| *path != Path::new("-"))
@@ -27,7 +27,7 @@ pub(super) fn choose<F: Named>(asked: Option<F>, output: Option<&Path>) -> Resul
             _ => format!("{} is", known.concat()),
         };
         Failure::Usage(format!(
-            "the format '.{extension}' is not known here: {known} (or say --format)"
+            "the format '.{extension}' is not known here: {known} (or use --format)"
         ))
     })
 }

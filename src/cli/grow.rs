@@ -1,4 +1,4 @@
-//! `kfrac grow`: from a rule to a picture or a table.
+//! `kfrac grow`: draws a rule as a picture or lists its elements as a table.
 
 mod pictured;
 
@@ -31,42 +31,42 @@ use pictured::{Pictured, Wrote};
 
 /// Grows a rule and draws it, or lists its elements
 ///
-/// Fertile elements are replaced so many times, and what stands then, the approximant, is written as
-/// a picture or as a table. The file appears whole or not at all.
+/// Replaces the fertile elements for a number of steps and writes the result, the approximant, as a picture
+/// or a table. The output file appears complete or not at all.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// How often fertile elements are replaced [default: what the rule says]
+    /// Number of steps: how often fertile elements are replaced [default: from the rule]
     ///
-    /// Where the rule says nothing, it is the deepest step up to 12 that has no more than 20,000
-    /// elements. Without --steps, --detail and --max-elements, an SVG has no more than 50,000 elements and
-    /// 2 MB: where that would be more, it has fewer steps or a coarser detail, and says so.
+    /// If the rule gives no number, the default is the deepest step up to 12 with no more than 20,000
+    /// elements. Without --steps, --detail and --max-elements, an SVG is limited to 50,000 elements and 2 MB:
+    /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
-    /// Elements smaller than so many pixels are not replaced
+    /// Stops replacing elements that are smaller than this number of pixels
     ///
-    /// Without --steps, growth goes on until all are smaller, but for L-systems that start anew at
-    /// every step: those are grown by the file's steps. Only of pictures.
+    /// Without --steps, growth continues until all elements are smaller. L-systems that start anew at every
+    /// step are the exception: they are grown by the number of steps in their file. Applies to pictures only.
     #[arg(long, value_name = "PX", value_parser = picture::pixels, allow_negative_numbers = true)]
     detail: Option<f64>,
-    /// The file to write, or - for standard output [default: NAME.svg]
+    /// Output file, or - for standard output [default: NAME.svg]
     ///
-    /// A file that is there is replaced.
+    /// An existing file is replaced.
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// The format [default: from the extension of the file]
+    /// Output format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<Format>())]
     format: Option<Format>,
     #[command(flatten)]
     growth: GrowthArguments,
-    /// The picture's long side in pixels or millimetres, or WIDTHxHEIGHT
+    /// Long side of the picture in pixels or millimetres, or WIDTHxHEIGHT
     ///
-    /// The other side follows from the shape; where both are given, the shape is fitted into them.
-    /// A PNG of more than 17 million pixels is drawn in bands, with less than 300 MB of memory.
-    /// 200mm and 210mmx297mm are sizes in millimetres, which a PNG does not have; a pixel is then,
-    /// and in PDF and DXF always, 1/96 inch.
+    /// The other side follows from the shape. If both sides are given, the shape is fitted into them. A PNG
+    /// of more than 17 million pixels is drawn in bands, in less than 300 MB of memory. 200mm and 210mmx297mm
+    /// are sizes in millimetres, which PNG does not support. With such a size, and in PDF and DXF always, a
+    /// pixel is 1/96 inch.
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
     #[arg(help_heading = "Picture")]
     size: Paper,
@@ -89,41 +89,41 @@ Examples:
   kfrac grow pythagoras --set angle=30 -o oblique.svg
       Sets a parameter of the rule (kfrac info pythagoras lists them) and names the file
   kfrac grow mine.yaml --stroke teal --stroke-width 2 --background white
-      Draws a rule of your own in your own colours
+      Draws a rule from a file in the given colours
   kfrac grow koch --steps 7 --size 3000 -o koch.png
-      Draws pixels instead, 3000 of them from left to right
+      Writes a PNG, 3000 pixels wide
   kfrac grow dragon --color-by index --palette sunset
-      Lets colours run along the curve
+      Colours the elements along the curve
   kfrac grow koch --view 0,0,0.4,0.2 --size 800x400
-      Draws what lies in a window of the plane
+      Draws a window of the plane
   kfrac grow koch-snowflake --detail 0.5 -o koch.png
-      Goes on until nothing more can be seen
+      Replaces elements until they are smaller than half a pixel
   kfrac grow koch-snowflake --detail 1 --size 60000 -o wall.png
-      Draws a picture that is larger than memory
+      Draws a picture that is larger than the memory
   kfrac grow koch --view 0.499999,0.288673,2e-6,2e-6 --detail 1
-      Does so in a small window; what lies outside is not grown
+      Draws a small window; elements outside of it are not grown
   kfrac grow koch --zoom 1e1000 --at '0.1.(2)' -o deep.png
-      Draws what lies about a point as much larger; positions lead to the point, from that of an
-      element in the initiator to those in the generator, the last ones repeated for ever
+      Magnifies the neighbourhood of a point by a factor of 1e1000; the address of the point is
+      a position in the initiator, then positions in the generator, those in brackets repeated
+      without end
   kfrac grow random-tree --seed 7
-      Draws another tree of the same kind
+      Draws another random tree of the same rule
   kfrac grow levy --steps 10 --plot --size 200mm --stroke-width 0.3mm
-      Draws it for a pen plotter, 200 mm wide and no line twice
+      Draws single strokes for a pen plotter, 200 mm wide, with no line drawn twice
   kfrac grow koch-snowflake --size 100mm -o flake.dxf
-      Writes outlines that a cutter reads; .pdf is for paper
+      Writes outlines for a cutter; for paper, write a .pdf
   kfrac grow koch --steps 200 --svg instanced -o koch.svg
-      Writes a small file of nested instances, of 4^200 elements
+      Writes 4^200 elements as a small file of nested instances
   kfrac grow koch --steps 4 --format csv -o - | head
-      Lists the elements
+      Lists the first elements as CSV
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
-      Draws a system of maps by random iteration, into barnsley-fern.png
+      Draws an iterated function system by random iteration, into barnsley-fern.png
 ";
 
-/// What drawing a pixel in a band takes one processor of 2026, in seconds, within a factor of
-/// some 3.
+/// Seconds that one core of 2026 takes to draw a pixel in a band, within a factor of about 3.
 const SECONDS_A_PIXEL: f64 = 1.3e-8;
 
-/// What may come of a rule.
+/// Output format of `grow`: a picture or a table.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
     Picture(render::Format),
@@ -159,7 +159,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     arguments.refuse_instances(format)?;
     let look = arguments.zoom.look(arguments.picture.has_view())?;
     if look.is_some() && !matches!(format, Format::Picture(_)) {
-        let message = "--zoom is of pictures: write a .png, .svg, .pdf or .dxf";
+        let message = "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf";
         return Err(Failure::Usage(message.into()));
     }
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
@@ -167,7 +167,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = match look {
         Some(_) => {
             zoom::check_model(&loaded.model).map_err(anyhow::Error::from)?;
-            // Windows of any size are found in numbers as long as that takes, in the file's coordinates.
+            // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates of
+            // the file.
             loaded.within(Homothety::IDENTITY)
         }
         None => loaded,
@@ -189,7 +190,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         && !arguments.growth.quiet
         && arguments.is_of_numbers(&arguments.picture.style(loaded.model.heading()))
     {
-        text::say("note: drawn in one colour, for elements far from the window are not counted");
+        text::say(
+            "note: drawn in one colour, because elements far from the window are not counted",
+        );
     }
     arguments.tell_of_bands(&loaded, goal, format, &graph);
     arguments.tell_of_no_lines(&loaded, format, &graph);
@@ -245,7 +248,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
-    /// Refuses what a format has nothing for.
+    /// Returns an error if the format does not support an option: plots, or sizes in millimetres.
     fn refuse_paper(&self, format: Format) -> Result<(), Failure> {
         self.plot.refuse(match format {
             Format::Picture(picture) => Some(picture),
@@ -253,16 +256,16 @@ impl Arguments {
         })?;
         let message = match format {
             Format::Picture(picture) if self.size.unit != Unit::Pixel && !picture.has_lengths() => {
-                "a PNG has pixels and no millimetres: --size 2000 is 2000 pixels; an SVG, a PDF and a \
-                 DXF have both"
+                "a PNG is sized in pixels, not in millimetres: --size 2000 is 2000 pixels; SVG, PDF \
+                 and DXF support both"
             }
             _ => return Ok(()),
         };
         Err(Failure::Usage(message.into()))
     }
 
-    /// How it is drawn. What is zoomed into is drawn in one colour rather than not at all where the
-    /// rule, and nobody else, wants numbers told by colours.
+    /// Returns the style of the picture. A zoom counts no elements: a rule that colours by index or fractal
+    /// is drawn in one colour, unless the command line asks for that `color_by`.
     fn style(&self, loaded: &Loaded) -> Style {
         let style = self
             .picture
@@ -273,41 +276,43 @@ impl Arguments {
         style
     }
 
-    /// Whether colours tell numbers of elements, and nobody has asked for it.
+    /// Returns whether the file colours by index or fractal, which requires counting elements, and the
+    /// command line does not ask for a `color_by`.
     fn is_of_numbers(&self, style: &Style) -> bool {
         let numbers = matches!(style.color_by, ColorBy::Index | ColorBy::Fractal);
         numbers && self.picture.asked_color_by().is_none()
     }
 
-    /// Whether nobody says how far growth goes, and a browser is to show what comes of it.
+    /// Returns whether the picture is limited to a size that browsers show at once: an SVG for which no depth
+    /// of growth is given.
     fn stays_light(&self, format: Format) -> bool {
         let is_asked =
             self.steps.is_some() || self.detail.is_some() || self.growth.says_most_elements();
         format == Format::Picture(render::Format::Svg) && !is_asked && !self.svg.is_instanced()
     }
 
-    /// Refuses what nested instances cannot be.
+    /// Returns an error if an option cannot be combined with nested instances.
     fn refuse_instances(&self, format: Format) -> Result<(), Failure> {
         if !self.svg.is_instanced() {
             return Ok(());
         }
         let message = if format != Format::Picture(render::Format::Svg) {
-            "--svg instanced is of SVG: write a .svg"
+            "--svg instanced applies to SVG only: write a .svg"
         } else if self.plot.is_asked() {
-            "--plot draws every line, and --svg instanced none by itself: give one of them"
+            "--plot draws every single line, and --svg instanced draws none by itself: give only one of them"
         } else if self.detail.is_some() {
-            "--detail leaves out what is small, and --svg instanced draws all of a step, in a file that \
-             is no larger for it: give --steps"
+            "--detail leaves out small elements, and --svg instanced draws all elements of a step \
+             without a larger file: give --steps instead"
         } else if self.zoom.is_asked() {
-            "--zoom draws what lies about a point, and --svg instanced all of a step: give one of them"
+            "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them"
         } else {
             return Ok(());
         };
         Err(Failure::Usage(message.into()))
     }
 
-    /// Refuses what is too much, as far as that can be told before: where only what can be seen is
-    /// grown, it cannot.
+    /// Returns an error if the step has more elements than are allowed, where the number is known in advance.
+    /// With a window, a zoom or a detail, only the visible elements are grown, and the number is not known.
     fn check(
         &self,
         goal: Goal,
@@ -332,7 +337,7 @@ impl Arguments {
         }
     }
 
-    /// Says that widths, ends and corners of lines are asked for where there are none.
+    /// Prints a note if options for lines are given but no lines are drawn.
     fn tell_of_no_lines(&self, loaded: &Loaded, format: Format, graph: &Graph) {
         let is_filled = |object: &Object| graph.base_elements()[object.base_element].is_closed();
         let mut drawn = graph.objects().iter().filter(|object| object.visible);
@@ -344,13 +349,13 @@ impl Arguments {
             return;
         }
         text::say(&format!(
-            "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join are of lines; \
-             --stroke and --fill together give shapes outlines",
+            "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join apply to lines only; \
+             --stroke and --fill together outline the shapes",
             loaded.name
         ));
     }
 
-    /// Says how long a picture takes that is larger than memory, and how large its file is.
+    /// Prints a note with the estimated time and file size of a picture that is drawn in bands.
     fn tell_of_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
         let Format::Picture(render::Format::Png) = format else {
             return;
@@ -385,8 +390,8 @@ impl Arguments {
         }
     }
 
-    /// How the picture is drawn, and what its file says of itself. The graph's coordinates are those from
-    /// which `place` leads to the rule's.
+    /// Returns the options of the picture, with the labels that describe it in its file. `place` maps the
+    /// coordinates of the graph to those of the rule.
     fn options(
         &self,
         loaded: &Loaded,
@@ -427,7 +432,7 @@ impl Arguments {
     /// Draws or lists the points of random iteration.
     fn play(&self, catalogue: &Catalogue, start: Instant) -> Result<(), Failure> {
         if self.detail.is_some() {
-            let message = "--detail is of elements, and --method chaos draws points";
+            let message = "--detail applies to elements, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
         self.picture.refuse_lines()?;
@@ -455,11 +460,11 @@ impl Arguments {
             )));
         }
         if self.plot.is_asked() {
-            let message = "--plot is of lines, and --method chaos draws points";
+            let message = "--plot applies to lines, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
         if self.svg.is_instanced() {
-            let message = "--svg instanced is of lines, and --method chaos draws points";
+            let message = "--svg instanced applies to lines, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
         self.refuse_paper(format)?;

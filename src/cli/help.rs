@@ -1,18 +1,18 @@
-//! What the help of a command says beside its options: examples and the like.
+//! Texts that follow the options in the help of a command: examples and further sections.
 //!
-//! It is written once, as it is read on a terminal, and the manual pages are made from it: headings
-//! with a colon at the end, terms that are indented by two, and what they mean, indented by six.
+//! Each text is written once, in the layout of a terminal, and the manual pages are made from it: headings
+//! end in a colon, terms are indented by two spaces and their explanations by six.
 
 use clap::builder::{StyledStr, Styles};
 
-/// A line of such a text.
+/// Line of a help text.
 pub(super) enum Line<'t> {
     Heading(&'t str),
     Term(&'t str),
     Meaning(&'t str),
 }
 
-/// The lines of a text, without the empty ones.
+/// Iterates over the lines of a help text, without the empty ones.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let lines = text.lines().filter(|line| !line.is_empty());
     lines.map(|line| match line.strip_prefix("  ") {
@@ -24,7 +24,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// A text in the colours of the rest of the help.
+/// Returns a help text in the colours of the rest of the help.
 pub(super) fn styled(text: &str) -> StyledStr {
     let styles = Styles::styled();
     let (header, literal) = (styles.get_header(), styles.get_literal());

@@ -1,4 +1,4 @@
-//! `kfrac import`: files of other programs, written as files to grow.
+//! `kfrac import`: converts files of Fractint.
 
 use std::collections::BTreeSet;
 use std::io::{Read as _, Write as _};
@@ -15,24 +15,24 @@ use crate::import::{Fractint, Imported, read_fractint};
 use super::check::{Row, row};
 use super::{Failure, help, output, text};
 
-/// Reads files of Fractint and writes each entry as a file to grow
+/// Converts the entries of Fractint files to files that kfrac can grow
 ///
-/// An L-system file (.l) or a file of systems of maps in the plane (.ifs) has many entries: each
-/// becomes a YAML file that is called after it. What is not understood is said, entry by entry, and
-/// nothing is written of an entry that would not be the same. The exit status is 1 if there is one.
+/// An L-system file (.l) or a file of systems of maps in the plane (.ifs) has many entries, each of which
+/// becomes a YAML file of the same name. Unsupported constructs are reported for each entry, and an entry
+/// that cannot be converted faithfully is not written. The exit status is 1 if an entry is not written.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Files of Fractint, whose names end in .l or .ifs
+    /// Fractint files, with the extension .l or .ifs
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     sources: Vec<PathBuf>,
-    /// The folder to write to; it is made if it is not there
+    /// Output folder, which is created if necessary
     #[arg(long, short, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
-    /// Replaces files that are there
+    /// Replaces existing files
     #[arg(long)]
     force: bool,
-    /// Says as JSON what became of every entry
+    /// Prints the result for every entry as JSON
     #[arg(long)]
     json: bool,
 }
@@ -40,12 +40,12 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac import fractint.l -o curves
-      Writes every L-system of a file into a folder, and says what could not be read
+      Converts every L-system of a file, and reports the entries that are not supported
   kfrac import *.ifs
-      Writes the systems of maps of some files into the current folder
+      Converts several files of systems of maps, into the current folder
 ";
 
-/// What became of an entry, or of what stands between entries.
+/// Result for an entry, or for the text between entries.
 #[derive(Serialize)]
 struct Told<'a> {
     entry: Option<&'a str>,
@@ -106,9 +106,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
 
-/// Says what was found in a file, and how many of its entries were written.
+/// Prints the diagnostics of a file and the number of entries that were written.
 fn say(path: &Path, told: &[Entry], folder: &Path) {
-    // Of one list only the first mistakes are shown.
+    // Each entry is reported separately, because a list of diagnostics is abbreviated after its first ones.
     for (_, _, found) in told.iter().filter(|(_, _, found)| !found.is_empty()) {
         text::complain(found);
     }
@@ -133,7 +133,7 @@ fn say(path: &Path, told: &[Entry], folder: &Path) {
     }
 }
 
-/// A file's text, and what its name says it holds.
+/// Returns the text of a file, and its kind by its extension.
 fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let kind = match extension.to_str() {
@@ -149,7 +149,7 @@ fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
         .take(Source::MOST_BYTES as u64 + 1)
         .read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;
-    // Such files are older than UTF-8; what is not is taken byte by byte.
+    // Files of Fractint may be older than UTF-8: other bytes are read as Latin-1.
     if std::str::from_utf8(&bytes).is_err()
         && !bytes.contains(&0)
         && bytes.len() <= Source::MOST_BYTES
@@ -163,7 +163,7 @@ fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
     Ok((Source::read_file(path, bytes)?, kind))
 }
 
-/// The files that are written.
+/// Files that have been written.
 struct Written<'a> {
     folder: &'a Path,
     force: bool,
@@ -171,7 +171,7 @@ struct Written<'a> {
 }
 
 impl Written<'_> {
-    /// Writes an entry's file, unless one is there that is not to be replaced.
+    /// Writes the file of an entry, unless it exists and must not be replaced.
     fn write(
         &mut self,
         entry: &str,
@@ -180,10 +180,7 @@ impl Written<'_> {
     ) -> Result<Option<PathBuf>, Failure> {
         let path = self.folder.join(self.name(entry));
         if path.exists() && !self.force {
-            let message = format!(
-                "'{}' is there already: {entry} is not written",
-                path.display()
-            );
+            let message = format!("'{}' exists: {entry} is not written", path.display());
             found.push(Diagnostic::error(message).hint("--force replaces it"));
             return Ok(None);
         }
@@ -195,7 +192,7 @@ impl Written<'_> {
         Ok(Some(path))
     }
 
-    /// A name for an entry's file that no other has: small letters, digits and dashes.
+    /// Returns a unique name for the file of an entry: lower-case letters, digits and dashes.
     fn name(&mut self, entry: &str) -> String {
         let letters = entry
             .chars()

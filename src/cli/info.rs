@@ -1,4 +1,4 @@
-//! `kfrac info`: what a rule is, and how large its steps are.
+//! `kfrac info`: describes a rule and forecasts the sizes of its steps.
 
 use std::fmt::Write as _;
 
@@ -23,26 +23,26 @@ use super::structure::StructureInfo;
 use super::system::SystemInfo;
 use super::{Failure, help, output, steps};
 
-/// Says what a rule is: parameters, sizes of its steps, bounds, dimension
+/// Describes a rule: parameters, sizes of its steps, bounds, dimension
 ///
-/// The sizes of the steps are told without growing them, wherever the rule allows it: numbers of
-/// elements, of those that are fertile and of fractals, the length, and about how large an SVG is and
-/// how long drawing it takes.
+/// The sizes of the steps are computed without growing them, wherever the rule allows it: the numbers of
+/// elements, fertile elements and fractals, the length, and estimates of the size of an SVG and of the time
+/// to draw it.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// The last step of the forecast [default: what the rule says]
+    /// Last step of the forecast [default: from the rule]
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
-    /// As JSON
+    /// Prints the description as JSON
     ///
-    /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two
-    /// digits, by step: of the SVG in the rule's own style, 1024 pixels large, and of the time to
-    /// draw it; null where the rule or a double does not hold them. instanced_svg_bytes is the size of
-    /// the last step with --svg instanced; null where that is not possible. limit_bounds is the box of the
-    /// limit set, which an L-system has where its approximants are all drawn as large as the first.
+    /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two digits for
+    /// each step: the size of an SVG in the rule's own style, 1024 pixels large, and the time to draw it;
+    /// null where the rule does not determine them or they exceed a double. instanced_svg_bytes is the size
+    /// of the last step with --svg instanced; null if that is not possible. limit_bounds is the bounding box
+    /// of the limit set; an L-system has one if all its approximants are drawn as large as the first.
     #[arg(long)]
     json: bool,
 }
@@ -50,14 +50,14 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac info dragon
-      Says what the rule is
+      Describes the rule
   kfrac info koch --steps 40
-      Tells the size of steps that nobody could grow
+      Forecasts the sizes of steps that are far too large to grow
   kfrac info pythagoras --set angle=30 --json
-      For another program
+      Describes a member of the family, as JSON
 ";
 
-/// Beyond this, the numbers alone would fill a disk.
+/// Largest number of steps: beyond, the numbers alone would fill a disk.
 const MOST_STEPS: u32 = 10_000;
 
 #[derive(Serialize)]
@@ -102,7 +102,7 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// To twelve decimals of a unit.
+    /// Formats the corners to twelve decimals of `unit`.
     pub(super) fn told(&self, unit: f64) -> String {
         let told = |corner: [f64; 2]| corner.map(|value| decimal(value, unit));
         let [[a, b], [c, d]] = [self.min, self.max].map(told);
@@ -114,14 +114,14 @@ impl Corners {
 struct Dimension {
     similarity: Option<f64>,
     note: Option<String>,
-    /// That of the set itself, or what bounds it, as `dim` has it.
+    /// Dimension of the set itself, or its bound, as `kfrac dim` reports it.
     hausdorff: serde_json::Value,
     #[serde(skip)]
     exact: Option<exact::Hausdorff>,
 }
 
 impl Dimension {
-    /// The similarity dimension, and that of the set itself.
+    /// Returns the lines for the similarity dimension and for the dimension of the set itself.
     fn lines(&self) -> [Option<String>; 2] {
         let similarity = self.similarity.map(|value| {
             let note = self.note.as_ref();
@@ -146,7 +146,7 @@ impl Dimension {
     }
 }
 
-/// Decimal strings: the numbers may be larger than those of JSON's readers.
+/// Serializes counts as decimal strings, because they may exceed the numbers that readers of JSON support.
 fn decimals<S: serde::Serializer>(
     counts: &Option<Vec<Count>>,
     serializer: S,
@@ -165,7 +165,7 @@ impl Serialize for Decimal<'_> {
     }
 }
 
-/// Estimates to the two digits that they are good for.
+/// Serializes estimates rounded to two digits, which is their precision.
 fn rounded<S: serde::Serializer>(
     estimates: &Option<Vec<Option<f64>>>,
     serializer: S,
@@ -178,12 +178,12 @@ fn rounded<S: serde::Serializer>(
     estimates.serialize(serializer)
 }
 
-/// An estimate that is known to two digits already.
+/// Serializes an estimate that is rounded already.
 fn whole<S: serde::Serializer>(bytes: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     bytes.map(number).serialize(serializer)
 }
 
-/// Whole numbers without a fraction, as in the tables.
+/// Serializes coordinates; whole numbers have no fraction, as in the tables.
 fn coordinates<S: serde::Serializer>(point: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
     point.map(|value| number(value + 0.0)).serialize(serializer)
 }
@@ -201,7 +201,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
     let steps = steps::choose(arguments.steps, &loaded)?;
     if steps > MOST_STEPS {
-        let message = format!("info tells the sizes of no more than {MOST_STEPS} steps");
+        let message = format!("info forecasts no more than {MOST_STEPS} steps");
         return Err(Failure::Usage(message));
     }
     let graph = loaded.compile(steps)?;
@@ -215,7 +215,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(())
 }
 
-/// `limit` is the graph that has the limit set.
+/// Collects the description. `limit` is the graph that has the limit set.
 fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Info<'a> {
     let bounds = bounds(graph, steps);
     let rows = rows(
@@ -224,7 +224,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
         steps,
         bounds.or_else(|| rough_bounds(graph, steps)),
     );
-    // A measure that one step does not have, none has; a step beyond a double's range has none.
+    // A measure is absent if one step lacks it; for a single step it is `None` beyond the range of doubles.
     let measures = |measure: fn(&Level) -> Option<f64>| {
         let rows = rows.as_ref()?;
         let all: Option<Vec<_>> = rows.iter().map(|row| measure(&row.level)).collect();
@@ -256,7 +256,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
         counts.map(Some)
     });
     let similarity = similarity_dimension(limit);
-    // What is drawn by chance may take many integrals.
+    // Exact dimensions of random rules may need many integrals.
     let exact = (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
     let exact = exact.and_then(|known| known.dimensions);
     let heading = loaded.model.heading();
@@ -299,7 +299,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     }
 }
 
-/// Measures in units that are some factors as large; what leaves the range of doubles is not told.
+/// Multiplies measures by all factors; a result beyond the range of doubles becomes `None`.
 fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<Option<f64>>> {
     let told = |value: f64| {
         let value = factors.iter().fold(value, |value, factor| value * factor);
@@ -308,14 +308,14 @@ fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<O
     Some(measures?.into_iter().map(|it| it.and_then(told)).collect())
 }
 
-/// An approximant before it is grown.
+/// Forecast of an approximant.
 struct Row {
     level: Level,
     estimate: Option<Estimate>,
 }
 
 fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Option<Vec<Row>> {
-    /// Boxes change little from here on.
+    /// Step after which bounding boxes change little.
     const SETTLED: u32 = 12;
     let options = Options::of(loaded.model.heading());
     let estimator = Estimator::new(graph, &options);
@@ -328,7 +328,7 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
         }
         let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
         let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
-        // What follows a number that is beyond a double's range is as well.
+        // Every estimate after one that exceeds the range of doubles exceeds it too.
         let may_be = rows.last().is_none_or(|row: &Row| row.estimate.is_some());
         let bounds = bounds.filter(|_| may_be);
         rows.push(Row {
@@ -346,7 +346,7 @@ pub(super) fn corners(bounds: &Bounds) -> Corners {
     }
 }
 
-/// For people.
+/// Describes the rule in text.
 fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     let mut text = String::new();
     let heading = loaded.model.heading();
@@ -417,7 +417,7 @@ fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     text.push('\n');
     match &info.elements {
         Some(elements) => text.push_str(&table(info, elements, unit)),
-        None => text.push_str("How large its steps are is not known before they are grown.\n"),
+        None => text.push_str("The sizes of the steps are not known before they are grown.\n"),
     }
     text
 }
@@ -436,7 +436,7 @@ fn parameter_line(parameter: &Parameter) -> String {
     line
 }
 
-/// The forecast, a row a step; long numbers are given by their size.
+/// Formats the forecast, one row per step. Long numbers are abbreviated to their magnitude.
 fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
     let mut rows = vec![
         [

@@ -1,4 +1,4 @@
-//! Files that are read, and so are not replaced by what is made of them.
+//! Input files of a process, which its output must not replace.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,23 +9,23 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 
-/// The files that have been read, by paths without links.
+/// Canonical paths of the files that have been read.
 static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Notes that a file is read; `-` is the one that standard input comes from, where that is known.
+/// Records that a file is read; `-` is the file that standard input is redirected from, where that is known.
 pub(super) fn note(path: &Path) {
     let path = match path == Path::new("-") {
         true => Path::new("/dev/stdin"),
         false => path,
     };
-    // What has no path cannot be replaced.
+    // A file without a path cannot be replaced.
     if let Ok(path) = fs::canonicalize(path) {
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
         read.insert(path);
     }
 }
 
-/// Reads a rule from a text, and notes all files that it comes from.
+/// Reads a document from a text, and records all files that it consists of.
 pub(super) fn document(
     source: &Arc<Source>,
     catalogue: &Catalogue,
@@ -35,12 +35,12 @@ pub(super) fn document(
     Ok(document)
 }
 
-/// Refuses to replace a file that has been read.
+/// Returns an error if the file at `path` has been read.
 pub(super) fn check_is_not_read(path: &Path) -> anyhow::Result<()> {
     let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     if fs::canonicalize(path).is_ok_and(|path| read.contains(&path)) {
         anyhow::bail!(
-            "'{}' is read here, and would be replaced by what is made of it: write to another file",
+            "'{}' is an input file and would be overwritten by the output: write to another file",
             path.display()
         );
     }

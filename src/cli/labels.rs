@@ -1,11 +1,11 @@
-//! What a picture's file says of itself: enough to make it again.
+//! Labels in the files of pictures: title, description and provenance, enough to reproduce the picture.
 
 use crate::render;
 
 use super::rule::Loaded;
 
-/// Title, description, and provenance: the program's version, the command that makes the picture
-/// from what follows, the values of the parameters, and the rule with all its components.
+/// Returns title, description, and provenance: the version of the program, the command that reproduces the
+/// picture from the text that follows, the values of the parameters, and the rule with all its components.
 pub(super) fn labels(
     loaded: &Loaded,
     shown: &str,
@@ -34,7 +34,8 @@ pub(super) fn labels(
     }
 }
 
-/// The same of a picture of two: the values of the parameters and the rules with all their components.
+/// Returns the labels of a comparison: the values of the parameters, and both rules with all their
+/// components.
 pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
     let mut provenance = format!("# kfrac {}\n", env!("CARGO_PKG_VERSION"));
     for loaded in [a, b] {
@@ -54,7 +55,7 @@ pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
     }
 }
 
-/// The command that makes the picture again from the rule as resolved.
+/// Returns the command that reproduces the picture from the resolved rule.
 fn command(
     loaded: &Loaded,
     subcommand: &str,
@@ -68,7 +69,7 @@ fn command(
     let omitted = (!omitted.is_empty()).then(|| ("omit", omitted.join(",")));
     for (name, value) in settings.chain(omitted).chain(options) {
         command.push_str(&format!(" --{name}"));
-        // Joined by a sign of equality, so that a value may begin with a minus; flags have none.
+        // An equals sign allows values that begin with a minus; flags have no value.
         if !value.is_empty() {
             command.push_str(&format!("={}", quoted(&value)));
         }
@@ -76,7 +77,7 @@ fn command(
     command
 }
 
-/// A word as a shell takes it, on one line.
+/// Quotes a word for a shell, on one line.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
     if word.chars().all(plain) {

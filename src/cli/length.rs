@@ -1,14 +1,14 @@
-//! Lengths on pictures and the sizes of these, in pixels or in millimetres.
+//! Lengths on pictures and sizes of pictures, in pixels or millimetres.
 
 use std::fmt;
 
 use crate::render::{Size, Unit};
 use crate::style::Width;
 
-/// Millimetres to a pixel, as CSS has it.
+/// Length of a CSS pixel in millimetres.
 const PIXEL: f64 = 25.4 / 96.0;
 
-/// A length.
+/// Length in pixels or millimetres.
 #[derive(Clone, Copy)]
 pub(super) enum Length {
     Pixels(f64),
@@ -16,7 +16,7 @@ pub(super) enum Length {
 }
 
 impl Length {
-    /// Reads a length that is not negative.
+    /// Parses a length that is not negative.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let (number, of): (_, fn(f64) -> Self) = match text.strip_suffix("mm") {
             Some(number) => (number.trim_end(), Self::Millimetres),
@@ -25,14 +25,14 @@ impl Length {
         match number.parse::<f64>() {
             Ok(length) if length.is_finite() && length >= 0.0 => Ok(of(length)),
             _ => Err(
-                "this is a number that is not negative, of pixels or, as 0.3mm, of \
-                      millimetres"
+                "expected a number of pixels, or of millimetres such as 0.3mm, that is not \
+                      negative"
                     .into(),
             ),
         }
     }
 
-    /// How many units of a picture it is.
+    /// Returns the length in units of a picture.
     pub(super) fn count(self, unit: Unit) -> f64 {
         match (self, unit) {
             (Self::Pixels(pixels), Unit::Pixel) => pixels,
@@ -52,11 +52,11 @@ impl fmt::Display for Length {
     }
 }
 
-/// The width of strokes.
+/// Width of strokes.
 #[derive(Clone, Copy)]
 pub(super) enum StrokeWidth {
     Length(Length),
-    /// As a multiple of the element's length.
+    /// Multiple of the length of the element.
     Relative(f64),
 }
 
@@ -64,7 +64,7 @@ impl StrokeWidth {
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         match text.strip_suffix('%').map(Length::parse) {
             Some(Ok(Length::Pixels(percent))) => Ok(Self::Relative(percent / 100.0)),
-            Some(_) => Err("this is a percentage of the element's length".into()),
+            Some(_) => Err("expected a percentage of the element's length".into()),
             None => Length::parse(text).map(Self::Length),
         }
     }
@@ -76,7 +76,7 @@ impl StrokeWidth {
         }
     }
 
-    /// As a style has it.
+    /// Returns the width as it is stored in a style.
     pub(super) fn width(self, unit: Unit) -> Width {
         match self {
             Self::Length(length) => Width::Pixels(length.count(unit)),
@@ -94,7 +94,7 @@ impl fmt::Display for StrokeWidth {
     }
 }
 
-/// The size of a picture that may be put on paper.
+/// Size of a picture, in pixels or millimetres.
 #[derive(Clone, Copy)]
 pub(super) struct Paper {
     pub(super) size: Size,
@@ -103,7 +103,7 @@ pub(super) struct Paper {
 
 const MOST_UNITS: u32 = 1_000_000;
 
-/// Reads the size of a picture in pixels.
+/// Parses the size of a picture in pixels.
 pub(super) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| match text.parse::<u32>() {
         Ok(side) if (1..=MOST_UNITS).contains(&side) => Ok(side),
@@ -114,7 +114,7 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     sides(text, side)
 }
 
-/// Reads the size of a picture in pixels or millimetres.
+/// Parses the size of a picture in pixels or millimetres.
 pub(super) fn paper(text: &str) -> Result<Paper, String> {
     if let Ok(size) = size(text) {
         let unit = Unit::Pixel;
@@ -167,7 +167,7 @@ impl fmt::Display for Paper {
     }
 }
 
-/// A picture's width and height, in words.
+/// Formats the width and height of a picture.
 pub(super) fn described([width, height]: [u32; 2], unit: Unit) -> String {
     let noun = match unit {
         Unit::Pixel => "pixels",
@@ -176,7 +176,7 @@ pub(super) fn described([width, height]: [u32; 2], unit: Unit) -> String {
     format!("{} x {} {noun}", length(width, unit), length(height, unit))
 }
 
-/// A side in pixels or millimetres.
+/// Returns a side in pixels or millimetres.
 fn length(side: u32, unit: Unit) -> f64 {
     match unit {
         Unit::Pixel => side.into(),

@@ -1,4 +1,4 @@
-//! Light SVGs, which browsers show at once, where the depth of growth is not given.
+//! Light SVGs, which browsers show at once: the default where the depth of growth is not given.
 
 use std::io::{self, Write};
 
@@ -10,20 +10,20 @@ use crate::wording::{bytes, grouped};
 use super::goal::Goal;
 use super::{Failure, text};
 
-/// The most elements of an SVG, and of the approximants of a sheet together, that nobody has asked for.
+/// Largest number of elements of a light SVG, or of all approximants of a sheet together.
 pub(super) const MOST_ELEMENTS: u64 = 50_000;
 
-/// The most bytes of its file.
+/// Largest size of a light SVG in bytes.
 const MOST_BYTES: u64 = 2_000_000;
 
-/// Sizes of elements in pixels, from the smallest up, of which the first that is light enough is taken.
+/// Details in pixels, in ascending order, of which the first that is light enough is taken.
 const DETAILS: [f64; 36] = [
     0.5, 0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0,
     30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0, 250.0, 300.0, 400.0, 500.0, 600.0,
     800.0, 1000.0, 1200.0, 1500.0,
 ];
 
-/// A file in memory, as long as it is light.
+/// File in memory that may not exceed the size of a light SVG.
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) bytes: Vec<u8>,
@@ -45,9 +45,9 @@ impl Write for Draft {
     }
 }
 
-/// Writes a file that is to be light; `None` if it has more elements or bytes than that.
+/// Writes a file that must be light; returns `None` if it has too many elements or bytes.
 ///
-/// `write` is to grow no more than [`MOST_ELEMENTS`] and returns how many there are.
+/// `write` must grow no more than [`MOST_ELEMENTS`] and returns their number.
 pub(super) fn draft<T>(
     write: impl FnOnce(&mut Draft) -> Result<(T, u64), RenderError>,
 ) -> Result<Option<(T, Draft)>, RenderError> {
@@ -65,8 +65,9 @@ pub(super) fn draft<T>(
 }
 
 /// Returns the goal itself if its picture is light, or else the nearest lighter one: a coarser detail where
-/// elements differ in length, or only a part is shown, or fewer steps. Where colours are by steps
-/// (`by_steps`), it is fewer steps if the goal gives their number. `None` if not even the initiator is light.
+/// elements differ in length or only a part is shown, or fewer steps. Where colours are by steps
+/// (`by_steps`), it is fewer steps if the goal gives their number. Returns `None` if not even the initiator
+/// is light.
 pub(super) fn nearest<T>(
     goal: Goal,
     graph: &Graph,
@@ -77,7 +78,7 @@ pub(super) fn nearest<T>(
     if let Some(drafted) = draft(goal)? {
         return Ok(Some((goal, drafted)));
     }
-    // A lighter goal that cannot be drawn is none.
+    // Lighter goals that cannot be drawn are skipped.
     let mut attempt = |goal: Goal| {
         let drafted = draft(goal).ok().flatten();
         Ok(drafted.map(|drafted| (goal, drafted)))
@@ -107,15 +108,14 @@ pub(super) fn nearest<T>(
     })
 }
 
-/// The first of some drafts, each lighter than the one before, that is light enough; the first one is taken
-/// if it is.
+/// Returns the first draft that is light enough, of drafts that become lighter and lighter, by bisection.
 pub(super) fn first_that_is_light<T>(
     count: usize,
     mut draft: impl FnMut(usize) -> Result<Option<T>, Failure>,
 ) -> Result<Option<T>, Failure> {
     let (mut heavy, mut light) = (0, count);
     let mut lightest = None;
-    // Most are light as they are.
+    // Most pictures are light as they are.
     let mut middle = 0;
     while heavy < light {
         match draft(middle)? {
@@ -133,14 +133,14 @@ pub(super) fn first_that_is_light<T>(
 /// Reports the lighter picture that is drawn, and the option for the heavier one.
 pub(super) fn tell(drawn: &str, more: &str) {
     text::say(&format!(
-        "note: {drawn}, so that the SVG has no more than {} elements and {}; {more}",
+        "note: {drawn}, to limit the SVG to {} elements and {}; {more}",
         grouped(&MOST_ELEMENTS.into()),
         bytes(MOST_BYTES),
     ));
 }
 
 impl Goal {
-    /// Whether it has elements of less than so many pixels replaced.
+    /// Returns whether the goal replaces elements that are smaller than `pixels`.
     fn is_finer_than(self, pixels: f64) -> bool {
         match self {
             Self::Steps(_, None) => true,
@@ -155,11 +155,11 @@ impl Goal {
         }
     }
 
-    /// Says that something lighter is drawn in its place.
+    /// Prints a note about the lighter goal that is drawn instead.
     pub(super) fn tell_of_lighter(self, lighter: Self) {
         let drawn = match (self, lighter) {
             (Self::Steps(own, _), Self::Steps(steps, None)) => {
-                format!("step {steps} is drawn and not {own}")
+                format!("step {steps} is drawn instead of {own}")
             }
             (_, Self::Steps(steps, None)) => format!("step {steps} is drawn"),
             (_, Self::Steps(_, Some(pixels)) | Self::Detail(pixels)) => {
@@ -167,9 +167,9 @@ impl Goal {
             }
         };
         let more = match self {
-            Self::Steps(steps, _) => format!("--steps {steps} draws all of the step"),
-            Self::Detail(pixels) => format!("--detail {pixels} draws all that can be seen"),
+            Self::Steps(steps, _) => format!("--steps {steps} draws the whole step"),
+            Self::Detail(pixels) => format!("--detail {pixels} draws everything that is visible"),
         };
-        tell(&drawn, &format!("{more}, and so does a .png"));
+        tell(&drawn, &format!("{more}, as does a .png"));
     }
 }

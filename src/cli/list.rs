@@ -1,4 +1,4 @@
-//! `kfrac list`: what is in the library.
+//! `kfrac list`: lists the library.
 
 use serde::Serialize;
 
@@ -12,10 +12,10 @@ use super::{Failure, help, output};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Only what has this in its name, title or tags
+    /// Lists only entries whose name, title or tags contain this text
     #[arg(value_name = "PATTERN")]
     pattern: Option<String>,
-    /// As JSON
+    /// Prints the list as JSON
     #[arg(long)]
     json: bool,
 }
@@ -25,9 +25,9 @@ Examples:
   kfrac list
       Lists everything
   kfrac list tree
-      Lists what has a tree in its name, title or tags
+      Lists the entries with tree in their name, title or tags
   kfrac list --library rules --json
-      With the files of a folder, for another program
+      Lists the library with the files of a folder, as JSON
 ";
 
 #[derive(Serialize)]
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let names = entries.iter().map(|entry| entry.name.as_str());
         let hint = did_you_mean(asked, names);
         return Err(Diagnostic::error(message)
-            .hint(hint.unwrap_or_else(|| "`kfrac list` shows what there is".into()))
+            .hint(hint.unwrap_or_else(|| "`kfrac list` lists all entries".into()))
             .into());
     }
     let wide = rows
@@ -87,7 +87,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     Ok(output::print(&text)?)
 }
 
-/// A file that cannot be read is listed by its name alone; `kfrac check` says what is wrong.
+/// Returns the row of an entry. A file that cannot be read has its name only; `kfrac check` reports its
+/// errors.
 fn row(entry: &Entry, catalogue: &Catalogue) -> Row {
     let node = catalogue
         .open(entry)

@@ -1,4 +1,4 @@
-//! `kfrac man`: manual pages, made from the help.
+//! `kfrac man`: manual pages, generated from the help.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -18,10 +18,10 @@ use super::output::{self, Output};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// The command whose page is printed; without it, the page of kfrac itself
+    /// Command whose page is printed [default: the page of kfrac itself]
     #[arg(value_name = "COMMAND", conflicts_with = "dir")]
     command: Option<String>,
-    /// Writes all pages into a folder: kfrac.1, kfrac-grow.1 and so on; it is made if it is not there
+    /// Writes all pages (kfrac.1, kfrac-grow.1 and so on) into a folder, which is created if necessary
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     dir: Option<PathBuf>,
 }
@@ -33,7 +33,7 @@ Examples:
   kfrac man grow | man -l -
       Shows the page of kfrac grow
   kfrac man --dir .
-      Writes all pages into the current folder; ~/.local/share/man/man1 is where man finds them
+      Writes all pages into the current folder; man finds them in ~/.local/share/man/man1
 ";
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -63,14 +63,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(output::print(&String::from_utf8_lossy(&page(asked)?))?)
 }
 
-/// The name of a command's page.
+/// Returns the name of the page of a command.
 fn name(command: &Command) -> &str {
     command.get_display_name().unwrap_or(command.get_name())
 }
 
-/// The page of a command that has been built.
+/// Returns the page of a command that has been built.
 fn page(command: &Command) -> io::Result<Vec<u8>> {
-    // The synopsis of the help, and not all options once more.
+    // The synopsis is that of the help, which does not repeat all options.
     let usage = command.clone().render_usage().to_string();
     let usage = usage.trim_start_matches("Usage: ").to_owned();
     let command = command
@@ -116,7 +116,7 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Values that need no explanation in one sentence, not in a list.
+/// Lists values that need no explanation in one sentence instead of a list.
 fn with_plain_values(argument: Arg) -> Arg {
     let values = argument.get_possible_values();
     let explained = values.iter().any(|value| value.get_help().is_some());

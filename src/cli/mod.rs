@@ -1,4 +1,4 @@
-//! The command line: one file a subcommand.
+//! Command line: one module per subcommand, and helpers that they share.
 
 mod cat;
 mod chaos;
@@ -51,16 +51,16 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// Grows, draws and measures linear fractals
 ///
-/// A production rule replaces the fertile elements of a shape by smaller copies of a generator, step
-/// by step (J. A. Kaandorp, "Interactive generation of fractal objects", CWI report CS-R8706, 1987).
-/// Rules are YAML files. A library of them is built in: `kfrac list` shows it.
+/// A production rule replaces the fertile elements of a shape by smaller copies of a generator, step by step
+/// (J. A. Kaandorp, "Interactive generation of fractal objects", CWI report CS-R8706, 1987). Rules are YAML
+/// files. `kfrac list` lists the built-in library of rules.
 #[derive(Parser)]
 #[command(name = "kfrac", version, max_term_width = 100, after_long_help = help::styled(MORE))]
 struct Arguments {
-    /// A folder with rules and components, to look in first
+    /// Folder of rules and components that is searched first
     ///
-    /// It may be given several times. After these folders come those of KFRAC_LIBRARY, the user's
-    /// own and the built-in library.
+    /// May be given several times. The folders of KFRAC_LIBRARY, the user's data folder and the built-in
+    /// library follow.
     #[arg(long, value_name = "DIR", global = true, display_order = 1000)]
     #[arg(value_hint = ValueHint::DirPath)]
     library: Vec<PathBuf>,
@@ -87,7 +87,7 @@ enum Command {
     Schema(schema::Arguments),
 }
 
-/// The command line, for what is made from it.
+/// Returns the definition of the command line, for manual pages and completions.
 fn command() -> clap::Command {
     Arguments::command()
 }
@@ -97,48 +97,49 @@ Examples:
   kfrac grow pythagoras --steps 8
       Draws the Pythagoras tree after eight steps, into pythagoras.svg
   kfrac list dragon
-      Shows what the library has that is called after a dragon
+      Lists the entries of the library with dragon in their name, title or tags
   kfrac info koch
-      Says what the Koch curve is, and how many elements its steps have
+      Describes the Koch curve and the number of elements at each step
   kfrac cat koch > mine.yaml
-      Copies a rule, to make another of it
+      Copies a rule as a starting point for a new one
   kfrac grow mine.yaml
-      Draws that
+      Draws the new rule
 
 Exit status:
   0
-      Done, also if a reader closes the pipe
+      Success, also if the reader of a pipe closes it
   1
-      The input is wrong, a limit was met, or a file could not be written
+      The input is wrong, a limit was reached, or a file could not be written
   2
       The command line is wrong
   130
-      Interrupted, as by Ctrl-C; what was being written is removed
+      Interrupted, as by Ctrl-C; unfinished files are removed
 
 Environment:
   KFRAC_LIBRARY
       Folders with rules and components, separated as in PATH
   XDG_DATA_HOME
-      Where the user's data are, if not in ~/.local/share
+      The user's data folder [default: ~/.local/share]
   NO_COLOR, CLICOLOR_FORCE
-      Take colours out of all messages, or put them in even where they go to a pipe
+      Disable colours in messages, or force them even where messages go to a pipe
 
 Files:
   ~/.local/share/kfrac
-      The user's own rules and components, in the folders rules, initiators, generators and \
-base_elements; rules may also lie in the folder itself. On Windows it is %APPDATA%\\kfrac
+      The user's own rules and components, in the folders rules, ifs, instancing, lsystems, \
+initiators, generators and base_elements; rules may also lie in the folder itself. On Windows, \
+the folder is %APPDATA%\\kfrac
 ";
 
-/// Why the program ends without having done its work.
+/// Reason for which the program ends without a result.
 #[derive(Debug)]
 enum Failure {
-    /// A file is wrong.
+    /// Errors in a file.
     File(Diagnostics),
-    /// Something else is wrong with the input, or a limit was met.
+    /// Another error in the input, or a limit that was reached.
     Input(anyhow::Error),
-    /// The command line is wrong.
+    /// Error in the command line.
     Usage(String),
-    /// What was to be said has been said.
+    /// Failure that has been reported already.
     Said,
 }
 
@@ -168,9 +169,9 @@ impl From<io::Error> for Failure {
 
 /// Runs the program with the arguments of the process.
 ///
-/// The exit status is 0 if its work is done (also if a reader closes the pipe), 1 if the input is
-/// wrong, a limit was met or a file could not be written, 2 if the command line is wrong. If a signal
-/// interrupts it, the process ends here, with status 130.
+/// Returns exit status 0 on success (also if a reader closes the pipe), 1 if the input is wrong, a limit was
+/// reached or a file could not be written, 2 if the command line is wrong. If a signal interrupts the
+/// program, the process ends here, with status 130.
 #[must_use]
 pub fn run() -> ExitCode {
     stop::listen();

@@ -1,10 +1,11 @@
-//! Whole numbers as the command line has them.
+//! Whole numbers on the command line.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Reads a whole number within bounds; `what` is what messages call it, as `a number of steps`.
+/// Returns a parser for whole numbers within bounds. `what` is the name in messages, such as `a number of
+/// steps`.
 pub(super) fn whole<T>(
     what: &'static str,
     bounds: RangeInclusive<T>,

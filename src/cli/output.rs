@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Output to files that appear complete or not at all, to pipes, devices and standard output.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -12,30 +12,30 @@ use crate::grow::Progress;
 use super::part::Part;
 use super::{Failure, input, progress};
 
-/// Where a command writes.
+/// Destination of the output of a command.
 pub(super) enum Output {
-    /// Standard output, which cannot promise to be whole.
+    /// Standard output, which may be left incomplete.
     Standard(BufWriter<io::StdoutLock<'static>>),
-    /// A file under another name until it is finished.
+    /// File that has a temporary name until it is finished.
     File {
         part: BufWriter<Part>,
         path: PathBuf,
     },
-    /// A pipe or device, written as it is.
+    /// Pipe or device, written directly.
     Device {
         file: BufWriter<File>,
         path: PathBuf,
     },
 }
 
-/// What is said if standard output fails.
+/// Message for a failure to write to standard output.
 pub(super) const NO_STANDARD_OUTPUT: &str = "standard output cannot be written";
 
-/// Bytes that are handed to the system at once.
+/// Size of the write buffer in bytes.
 const BUFFER: usize = 1 << 18;
 
 impl Output {
-    /// Opens `-`, a device or a file that is to be made or replaced.
+    /// Opens an output: standard output for `-`, a pipe or device, or a file that is created or replaced.
     pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
         if path == Path::new("-") {
             return Ok(Self::Standard(BufWriter::with_capacity(
@@ -76,7 +76,7 @@ impl Output {
             anyhow::bail!("there is no folder '{}'", folder.display());
         }
         let part = Part::begin(folder, metadata.map(|metadata| metadata.permissions()))
-            // The name of the temporary file would only confuse.
+            // The name of the temporary file in the error would be confusing.
             .map_err(|error| io::Error::from(error.kind()))
             .with_context(failed)?;
         Ok(Self::File {
@@ -85,12 +85,12 @@ impl Output {
         })
     }
 
-    /// Whether a file is made; what stands behind a pipe or device may be the terminal.
+    /// Returns whether the output is a regular file. A pipe or device may be the terminal.
     fn is_file(&self) -> bool {
         matches!(self, Self::File { .. })
     }
 
-    /// Finishes: the file appears under its name. Without this it is removed.
+    /// Finishes the output: a file appears under its name. A file that is dropped without this is removed.
     pub(super) fn finish(self) -> anyhow::Result<()> {
         match self {
             Self::Standard(mut out) => out.flush().context(NO_STANDARD_OUTPUT)?,
@@ -107,7 +107,7 @@ impl Output {
     }
 }
 
-/// The file that a link leads to, whether it is there or not: the link stays one.
+/// Returns the file that a symbolic link resolves to, which need not exist: the link itself is kept.
 fn behind_links(named: &Path) -> anyhow::Result<PathBuf> {
     const MOST_LINKS: usize = 40;
     let mut path = named.to_path_buf();
@@ -115,13 +115,13 @@ fn behind_links(named: &Path) -> anyhow::Result<PathBuf> {
         let Ok(target) = path.read_link() else {
             return Ok(path);
         };
-        // A relative target starts from the link's folder.
+        // A relative target is relative to the link's folder.
         path = path
             .parent()
             .map_or_else(|| target.clone(), |folder| folder.join(&target));
     }
     anyhow::bail!(
-        "'{}' is a link that leads to no file, but round in a circle",
+        "'{}' is a symbolic link that leads back to itself",
         named.display()
     )
 }
@@ -144,8 +144,8 @@ impl Write for Output {
     }
 }
 
-/// Writes a file as a whole, or nothing; tells the number of bytes. How far the work is, is shown on
-/// a terminal, unless `quiet`.
+/// Writes a file completely or not at all, and returns its size in bytes. Progress is shown on a terminal,
+/// unless `quiet`.
 pub(super) fn write<T>(
     path: &Path,
     quiet: bool,
@@ -161,13 +161,13 @@ pub(super) fn write<T>(
     Ok((told, out.bytes))
 }
 
-/// Makes a folder, and those that it lies in, where they are not there.
+/// Creates a folder and its missing parents.
 pub(super) fn make_folder(folder: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder)
-        .with_context(|| format!("the folder '{}' cannot be made", folder.display()))
+        .with_context(|| format!("the folder '{}' cannot be created", folder.display()))
 }
 
-/// That a path cannot be written.
+/// Returns the failure to write to `path`.
 pub(super) fn failed(error: io::Error, path: &Path) -> Failure {
     let message = if path == Path::new("-") {
         NO_STANDARD_OUTPUT.into()
@@ -177,7 +177,7 @@ pub(super) fn failed(error: io::Error, path: &Path) -> Failure {
     anyhow::Error::new(error).context(message).into()
 }
 
-/// An output, as messages call it.
+/// Returns the name of an output in messages.
 pub(super) fn called(path: &Path) -> String {
     if path == Path::new("-") {
         "standard output".into()
@@ -194,7 +194,7 @@ pub(super) fn print(text: &str) -> anyhow::Result<()> {
         .context(NO_STANDARD_OUTPUT)
 }
 
-/// Prints something as JSON, as it is written: it may be long.
+/// Prints a value as JSON to standard output. The text is streamed, because it may be long.
 pub(super) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     let written = serde_json::to_writer_pretty(&mut out, value).map_err(io::Error::from);
@@ -204,7 +204,7 @@ pub(super) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
         .context(NO_STANDARD_OUTPUT)
 }
 
-/// Counts the bytes that pass.
+/// Writer that counts bytes.
 pub(super) struct Counted<W> {
     inner: W,
     bytes: u64,

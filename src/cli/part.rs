@@ -1,9 +1,9 @@
-//! Files that are being written: in the folder where they will stand, under a name of their own until
-//! they are whole.
+//! Unfinished files: they are written to their final folder under a temporary name, and renamed when
+//! complete.
 //!
-//! A run that is killed cannot remove its file. A file that is being written is locked, and a lock
-//! ends with the process that holds it: files without one are what such runs left, and the next that
-//! writes into the folder removes them.
+//! A process that is killed cannot remove its file. Unfinished files are locked, and a lock ends with the
+//! process that holds it: a file without a lock is abandoned, and the next process that writes to the folder
+//! removes it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
@@ -18,26 +18,26 @@ use super::stop;
 const PREFIX: &str = ".kfrac-";
 const SUFFIX: &str = ".part";
 
-/// A file that is being written. When it is dropped before it is finished, it is removed.
+/// Unfinished file. It is removed if it is dropped before it is finished.
 pub(super) struct Part {
     file: File,
-    /// Its name, until it is finished.
+    /// Temporary name, until the file is finished.
     path: Option<TempPath>,
 }
 
 impl Part {
-    /// Begins a file in a folder, with the permissions of the one that it replaces.
+    /// Creates a file in a folder, with the permissions of the one that it replaces.
     pub(super) fn begin(folder: &Path, permissions: Option<Permissions>) -> io::Result<Self> {
         remove_abandoned(folder);
         let part = loop {
             let part = Self::locked(folder)?;
-            // Between its making and its lock it may have been taken for abandoned.
+            // Between its creation and its lock, another process may have removed it as abandoned.
             if part.is_there() {
                 break part;
             }
         };
         if let Some(permissions) = permissions {
-            // Who could not read the old file cannot read the new one.
+            // Whoever could not read the old file must not be able to read the new one.
             part.file.set_permissions(permissions)?;
         }
         Ok(part)
@@ -49,13 +49,13 @@ impl Part {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // What the user's mask leaves of these, as for any new file.
+            // The mask of the user restricts these permissions, as for any new file.
             builder.permissions(Permissions::from_mode(0o666));
         }
         let mut unfinished = stop::unfinished();
         let (file, path) = builder.tempfile_in(folder)?.into_parts();
         unfinished.begin(&path);
-        // Some file systems have no locks, and then nothing is removed there.
+        // Some file systems have no locks; abandoned files are kept there.
         let _ = file.lock();
         Ok(Self {
             file,
@@ -70,7 +70,7 @@ impl Part {
     /// Finishes the file: it appears under its name, once all of it is on the disk.
     pub(super) fn finish(mut self, path: &Path) -> io::Result<()> {
         match self.file.sync_all() {
-            // Some file systems cannot be asked.
+            // Some file systems do not support syncing.
             Err(error)
                 if !matches!(
                     error.kind(),
@@ -84,7 +84,7 @@ impl Part {
         let mut unfinished = stop::unfinished();
         if let Some(part) = self.path.take() {
             let name = part.to_path_buf();
-            // What cannot be renamed is removed here.
+            // A file that cannot be renamed is removed here.
             let renamed = part.persist(path).map_err(|error| error.error);
             unfinished.end(&name);
             renamed?;
@@ -114,7 +114,7 @@ impl io::Write for Part {
     }
 }
 
-/// Removes what runs have left in a folder that were killed; once, however many files are written.
+/// Removes abandoned files from a folder, once per process.
 fn remove_abandoned(folder: &Path) {
     static TIDIED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let mut tidied = TIDIED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -132,7 +132,7 @@ fn remove_abandoned(folder: &Path) {
         let open = |write| File::options().read(true).write(write).open(entry.path());
         let file = open(true).or_else(|_| open(false));
         if file.is_ok_and(|file| file.try_lock().is_ok()) {
-            // That it is not removed harms nobody.
+            // A failure to remove it has no consequences.
             let _ = fs::remove_file(entry.path());
         }
     }

@@ -1,4 +1,4 @@
-//! How a picture is to be drawn: what the command line says, over what the rule says.
+//! Options of pictures, which override the style and view of a rule.
 
 use std::fmt;
 
@@ -15,52 +15,51 @@ use super::length::{Length, StrokeWidth};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureArguments {
-    /// The window that is shown, in the rule's units: lower left corner, width, height
+    /// Window that is shown, in the rule's units: lower left corner, width, height
     ///
-    /// What lies outside is not grown, unless elements are drawn at random or have to be counted:
-    /// for the rule, or for --color-by index and fractal.
+    /// Elements outside of it are not grown, unless elements are drawn at random or have to be counted: for
+    /// the rule, or for --color-by index and fractal.
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     view: Option<[f64; 4]>,
-    /// The colour of strokes, as CSS writes it: teal, #3b7ea1, rgb(59, 126, 161); or none
+    /// Colour of strokes, in CSS notation: teal, #3b7ea1, rgb(59, 126, 161); or none
     ///
-    /// Closed shapes are filled with it or, where --fill, --color-by or the file fills them with something
-    /// else, outlined.
+    /// Closed shapes are filled with this colour. If --fill, --color-by or the file gives them another fill,
+    /// they are outlined with it.
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     stroke: Option<Ink>,
-    /// The width of strokes in pixels, or in millimetres as 0.3mm, or, with a % sign, relative to
-    /// the element's length
+    /// Width of strokes in pixels, in millimetres (0.3mm), or relative to the element's length (10%)
     #[arg(long, value_name = "W", value_parser = StrokeWidth::parse)]
     pub(super) stroke_width: Option<StrokeWidth>,
-    /// The colour inside closed shapes
+    /// Fill colour of closed shapes
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     fill: Option<Ink>,
-    /// The shape of the ends of lines
+    /// Shape of the ends of lines
     #[arg(long, value_parser = named::<Cap>())]
     cap: Option<Cap>,
-    /// The shape of the corners of lines
+    /// Shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
-    /// Pixels left free around the picture, or millimetres as 10mm
+    /// Margin around the picture in pixels, or in millimetres (10mm)
     #[arg(long, value_name = "PX", value_parser = Length::parse)]
     margin: Option<Length>,
-    /// The colour behind the picture
+    /// Background colour
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     background: Option<Ink>,
-    /// What the colours of the palette tell apart
+    /// Property that the colours of the palette distinguish
     #[arg(long, value_name = "WHAT", value_parser = color_by())]
     color_by: Option<ColorBy>,
-    /// The colours that --color-by takes
+    /// Palette of --color-by
     #[arg(long, value_name = "NAME", value_parser = palette())]
     palette: Option<Palette>,
 }
 
 impl PictureArguments {
-    /// The rule's style with what is asked for.
+    /// Returns the style of the rule with the options applied.
     pub(super) fn style(&self, heading: &Heading) -> Style {
         self.style_in(heading, Unit::Pixel)
     }
 
-    /// The same, with widths in the units of the picture.
+    /// Returns the style of the rule with the options applied, with widths in `unit`.
     pub(super) fn style_in(&self, heading: &Heading, unit: Unit) -> Style {
         let own = &heading.style;
         let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
@@ -73,7 +72,7 @@ impl PictureArguments {
             background: self.background.map_or(own.background, Ink::colour),
             color_by: match self.color_by {
                 Some(color_by) => color_by,
-                // A colour that is asked for is not covered by a palette that is not.
+                // An explicit colour takes precedence over a palette that is not explicit.
                 None if [self.stroke, self.fill]
                     .iter()
                     .flatten()
@@ -87,12 +86,12 @@ impl PictureArguments {
         }
     }
 
-    /// The rule's view with what is asked for.
+    /// Returns the view of the rule with the options applied.
     pub(super) fn view(&self, heading: &Heading) -> View {
         self.view_in(heading, Unit::Pixel)
     }
 
-    /// The same, with the margin in the units of the picture.
+    /// Returns the view of the rule with the options applied, with the margin in `unit`.
     pub(super) fn view_in(&self, heading: &Heading, unit: Unit) -> View {
         let margin = self.margin.unwrap_or(Length::Pixels(heading.view.margin));
         View {
@@ -101,27 +100,27 @@ impl PictureArguments {
         }
     }
 
-    /// Whether a window is asked for.
+    /// Returns whether a window is given.
     pub(super) fn has_view(&self) -> bool {
         self.view.is_some()
     }
 
-    /// What is asked for of the way in which points are coloured.
+    /// Returns the value of `--color-by`.
     pub(super) fn asked_color_by(&self) -> Option<ColorBy> {
         self.color_by
     }
 
-    /// Whether colours that distinguish elements are asked for.
+    /// Returns whether the options ask for colours that distinguish elements.
     pub(super) fn asks_for_colours(&self) -> bool {
         self.color_by.is_some() || self.palette.is_some()
     }
 
-    /// Whether a palette is asked for.
+    /// Returns whether a palette is given.
     pub(super) fn asks_palette(&self) -> bool {
         self.palette.is_some()
     }
 
-    /// The one colour of points: what is asked for comes before what the file has.
+    /// Returns the single colour of points: that of the options, or else that of the file.
     pub(super) fn ink(&self, heading: &Heading) -> Option<Colour> {
         let own = &heading.style;
         let asked = self.fill.and_then(Ink::colour);
@@ -129,24 +128,24 @@ impl PictureArguments {
         asked.or(own.fill).or(own.stroke)
     }
 
-    /// Whether anything is asked for that only lines have.
+    /// Returns whether an option is given that applies to lines only.
     pub(super) fn asks_lines(&self) -> bool {
         self.stroke_width.is_some() || self.cap.is_some() || self.join.is_some()
     }
 
-    /// Refuses colours that only random iteration has.
+    /// Returns an error if colours by hits are asked for, which only random iteration has.
     pub(super) fn refuse_hits(&self) -> Result<(), Failure> {
         match self.color_by {
             Some(ColorBy::Hits) => {
-                let message = "--color-by hits counts points of random iteration: kfrac grow with \
-                               --method chaos has them";
+                let message = "--color-by hits counts the points of random iteration: use kfrac grow \
+                               --method chaos";
                 Err(Failure::Usage(message.into()))
             }
             _ => Ok(()),
         }
     }
 
-    /// Refuses what only lines have.
+    /// Returns an error if an option is given that applies to lines only.
     pub(super) fn refuse_lines(&self) -> Result<(), Failure> {
         let asked = [
             ("--stroke-width", self.stroke_width.is_some()),
@@ -155,13 +154,13 @@ impl PictureArguments {
         ];
         match asked.into_iter().find(|(_, is_asked)| *is_asked) {
             Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} is of lines, and --method chaos draws points"
+                "{option} applies to lines, and --method chaos draws points"
             ))),
             None => Ok(()),
         }
     }
 
-    /// The options as the command line has them, each with its value.
+    /// Returns the options that are given, with their values.
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
         let mut options = Vec::new();
         let mut option = |name: &'static str, value: Option<String>| {
@@ -209,20 +208,20 @@ fn window(text: &str) -> Result<[f64; 4], String> {
     }
 }
 
-/// Reads a number of pixels that is more than none.
+/// Parses a number of pixels greater than 0.
 pub(super) fn pixels(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(pixels) if pixels.is_finite() && pixels > 0.0 => Ok(pixels),
-        _ => Err("this is a number of pixels above 0".into()),
+        _ => Err("expected a number of pixels above 0".into()),
     }
 }
 
-/// A colour, or none, in place of one that a rule's own style has.
+/// Colour, or the absence of one, that replaces a colour of the style.
 #[derive(Clone, Copy)]
 pub(super) struct Ink(Option<Colour>);
 
 impl Ink {
-    /// The colour, if it is one.
+    /// Returns the colour, or `None` for `none`.
     pub(super) fn colour(self) -> Option<Colour> {
         self.0
     }
@@ -241,7 +240,7 @@ impl fmt::Display for Ink {
     }
 }
 
-/// Reads a colour, or `none`, as files have them.
+/// Parses a colour, or `none`, in the notation of rule files.
 pub(super) fn ink(text: &str) -> Result<Ink, String> {
     if text == "none" {
         return Ok(Ink(None));
@@ -252,7 +251,7 @@ pub(super) fn ink(text: &str) -> Result<Ink, String> {
     Ok(Ink(Some(colour)))
 }
 
-/// Reads one of the names of an enumeration.
+/// Returns a parser for the names of an enumeration.
 pub(super) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name))
         .try_map(|name| T::from_name(&name).ok_or("unknown"))
@@ -261,17 +260,17 @@ pub(super) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T
 fn color_by() -> impl TypedValueParser<Value = ColorBy> {
     let values = ColorBy::NAMES.iter().map(|(name, by)| {
         PossibleValue::new(*name).help(match by {
-            ColorBy::None => "Nothing: all is of the colours of --stroke and --fill",
-            ColorBy::Step => "The step in which an element was born",
+            ColorBy::None => "Nothing: --stroke and --fill apply",
+            ColorBy::Step => "The step in which the element was created",
             ColorBy::Age => "The age of the element's fractal, in steps",
-            ColorBy::Fractal => "The element's fractal, in the order of their birth",
-            ColorBy::Index => "The element's place in its fractal",
-            ColorBy::Generator => "The generator that an element comes from",
+            ColorBy::Fractal => "The element's fractal, in order of creation",
+            ColorBy::Index => "The element's index in its fractal",
+            ColorBy::Generator => "The generator that the element comes from",
             ColorBy::Direction => "The element's direction",
-            ColorBy::FirstMap => "The map of a system that is applied first, the innermost one",
-            ColorBy::LastMap => "The map of a system that is applied last: the tiling",
-            ColorBy::Hits => "How often random iteration comes to a pixel",
-            ColorBy::Tint => "What the objects of a structure are tinted with",
+            ColorBy::FirstMap => "The map that is applied first, the innermost",
+            ColorBy::LastMap => "The map that is applied last: the tiling",
+            ColorBy::Hits => "The number of hits of random iteration per pixel",
+            ColorBy::Tint => "The tints of the objects of a structure",
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))

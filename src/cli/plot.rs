@@ -1,4 +1,4 @@
-//! `--plot` and `--pens`: strokes for machines that draw or cut.
+//! `--plot` and `--pens`: single strokes for plotters and cutters.
 
 use std::num::NonZero;
 
@@ -9,45 +9,45 @@ use super::Failure;
 use super::picture::PictureArguments;
 use super::text;
 
-/// How a plot is made.
+/// Options of plots.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PlotArguments {
-    /// Draws single strokes, for a plotter or a cutter; a DXF always is
+    /// Draws single strokes, for a plotter or a cutter; DXF files always have them
     ///
-    /// Nothing is drawn twice, strokes whose ends meet become one, and the pen is carried over short
-    /// ways. Outlines of what is filled are strokes, and each pen is a layer. This takes memory:
-    /// up to some 200 bytes an element, so that --max-elements bounds it.
+    /// No edge is drawn twice, strokes whose ends meet are merged, and the strokes are ordered for short
+    /// pen-up travel. Filled shapes become outlines, and each pen is a layer. All strokes are held in memory,
+    /// up to about 200 bytes per element, which --max-elements limits.
     #[arg(long)]
     plot: bool,
-    /// The most pens of a plot; colours that are alike share one
+    /// Largest number of pens of a plot; similar colours share one
     ///
-    /// Without it, each colour that --color-by or --palette gives has a pen, and so have those of the
-    /// file if they are no more than eight; else there is one pen for all.
+    /// By default, each colour that --color-by or --palette gives has a pen. The colours of the file have a
+    /// pen each if they are no more than eight; otherwise there is one pen for all.
     #[arg(long, value_name = "N", value_parser = pens)]
     pens: Option<NonZero<usize>>,
 }
 
 impl PlotArguments {
-    /// Whether a picture in any format is to be a plot.
+    /// Returns whether a plot is requested, in any format.
     pub(super) fn is_asked(&self) -> bool {
         self.plot
     }
 
-    /// Refuses what is of plots where no plot is made: in no picture, or in one of a format that is
-    /// not always a plot.
+    /// Returns an error if options of plots are given without one: for a table (`format` is `None`), or for a
+    /// format that is not always a plot.
     pub(super) fn refuse(&self, format: Option<Format>) -> Result<(), Failure> {
         let message = if self.plot && format.is_none() {
-            "--plot is of pictures, and a table is none"
+            "--plot applies to pictures, not to tables"
         } else if self.pens.is_some() && !self.plot && format != Some(Format::Dxf) {
-            "--pens is of plots: give --plot too, or write a .dxf"
+            "--pens applies to plots: add --plot, or write a .dxf"
         } else {
             return Ok(());
         };
         Err(Failure::Usage(message.into()))
     }
 
-    /// The pens of a plot: of colours that are asked for each has one.
+    /// Returns the pens of a plot: one for each colour if colours are requested.
     pub(super) fn pens(&self, picture: &PictureArguments) -> Pens {
         match self.pens {
             Some(most) => Pens::AtMost(most),
@@ -56,18 +56,18 @@ impl PlotArguments {
         }
     }
 
-    /// The options as the command line has them.
+    /// Returns the options that are given, with their values.
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
         let plot = self.plot.then(|| ("plot", String::new()));
         let pens = self.pens.map(|pens| ("pens", pens.to_string()));
         plot.into_iter().chain(pens).collect()
     }
 
-    /// Says that colours share a pen, where nobody has asked for that.
+    /// Prints a note if colours share a pen by default.
     pub(super) fn tell_of_pens(&self, plotted: &Plotted) {
         if self.pens.is_none() && plotted.colours > plotted.layers.max(Pens::FEW as u64) {
             text::say(&format!(
-                "note: one pen for all {} colours: --pens {} gives as many, --color-by one for each",
+                "note: one pen for all {} colours: --pens {} gives that many, --color-by one for each colour",
                 plotted.colours,
                 Pens::FEW
             ));
@@ -77,7 +77,7 @@ impl PlotArguments {
 
 fn pens(text: &str) -> Result<NonZero<usize>, String> {
     text.parse()
-        .map_err(|_| "a plot has one pen or more: --pens 3".into())
+        .map_err(|_| "a plot has at least one pen: --pens 3".into())
 }
 
 /// Describes the cost of a plot: strokes, layers and pen-up travel.

@@ -1,4 +1,4 @@
-//! How far long work is, on a terminal.
+//! Progress of long work, shown on a terminal.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -11,13 +11,13 @@ use crate::grow::Progress;
 
 use super::stop;
 
-/// Work that is done sooner shows nothing.
+/// Time before a progress bar appears.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// The time between two looks at how far the work is.
+/// Time between two updates.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Does some work and shows on standard error how far it is, if `wanted` and on a terminal; what is
-/// shown is gone when the work is done.
+/// Runs `work` and shows its progress on standard error, if `wanted` and on a terminal. The progress bar is
+/// cleared when the work ends.
 ///
 /// The work itself must not write to the terminal.
 pub(super) fn watched<T>(wanted: bool, work: impl FnOnce(Option<&Progress>) -> T) -> T {
@@ -28,15 +28,16 @@ pub(super) fn watched<T>(wanted: bool, work: impl FnOnce(Option<&Progress>) -> T
     let (working, done) = mpsc::channel();
     thread::scope(|scope| {
         scope.spawn(|| show(&progress, done));
-        // Moved in here, so that it is dropped, and the scope ends, even if the work panics.
+        // The sender is moved into the scope, so that it is dropped, and the scope ends, even if the work
+        // panics.
         let _working: mpsc::Sender<()> = working;
         work(Some(&progress))
     })
 }
 
-/// Shows a bar until nobody is working any more.
+/// Shows a progress bar until the sender of `done` is dropped.
 fn show(progress: &Progress, done: Receiver<()>) {
-    // From the start, for it measures the time.
+    // The bar is created at the start because it measures the time.
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     bar.set_style(style("{spinner} {human_pos} elements walked, {elapsed}").tick_chars(r"-\|/ "));
     let mut pause = PATIENCE;

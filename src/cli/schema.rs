@@ -1,4 +1,4 @@
-//! `kfrac schema`: what editors want to know of files.
+//! `kfrac schema`: prints the JSON Schema of files, for editors.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
@@ -7,14 +7,14 @@ use crate::document::{schema, schema_of_all};
 
 use super::{Failure, help, output};
 
-/// Prints the JSON Schema of files, for editors
+/// Prints the JSON Schema of rule files, for editors
 ///
-/// Without a kind it is one for all files that kfrac reads: what a file may say depends on its `kind`, and
-/// components are known by their keys.
+/// Without a kind, the schema covers all files that kfrac reads: the allowed keys depend on the `kind` of a
+/// file, and components are recognised by their keys.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// The kind of file [default: all]
+    /// Kind of file [default: all]
     #[arg(value_name = "KIND", value_parser = kind())]
     kind: Option<Shelf>,
 }
@@ -22,13 +22,13 @@ pub(super) struct Arguments {
 const MORE: &str = "\
 Examples:
   kfrac schema > kfrac.schema.json
-      Writes the schema that an editor checks files with and completes them by; a first line \
-# yaml-language-server: $schema=kfrac.schema.json in a file names it
+      Writes the schema for validation and completion in an editor; a file names it in its first line, \
+# yaml-language-server: $schema=kfrac.schema.json
   kfrac schema generator > generator.schema.json
-      Writes that of a generator in a file of its own
+      Writes the schema of generators in files of their own
 ";
 
-/// The kinds as `kfrac list --json` names them; words of the command line are joined by `-` as well.
+/// Returns a parser for the kinds as `kfrac list --json` names them; `-` is accepted for `_`.
 fn kind() -> impl TypedValueParser<Value = Shelf> {
     let kinds = Shelf::ALL.map(|shelf| match shelf {
         Shelf::BaseElements => PossibleValue::new(shelf.kind()).alias("base-element"),

@@ -1,4 +1,4 @@
-//! `kfrac sheet`: approximants side by side.
+//! `kfrac sheet`: approximants or members of a family, side by side.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -25,35 +25,36 @@ use super::{Failure, format, help, length, light, number, output, steps, text};
 
 /// Draws approximants side by side, or a family of fractals
 ///
-/// All are drawn to one scale, each with its step and its number of elements under it. Where --set
-/// gives a parameter several values, as angle=10,20,30 or angle=0..90, it is one step for each of them.
-/// Several parameters that are swept go together, the first values first, and have as many values.
+/// All pictures have the same scale, each with its step and number of elements below. If --set gives a
+/// parameter several values, as in angle=10,20,30 or angle=0..90, the sheet shows one step for each value.
+/// Several parameters with the same number of values are varied together, beginning with the first value of
+/// each.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// Which steps, as 0..6 or 0,2,4 [default: 0 to what the rule says, no more than 12]
+    /// Steps to draw, as 0..6 or 0,2,4 [default: 0 to the number of the rule, at most 12 steps]
     ///
-    /// Without --steps and --max-elements, an SVG has no more than 50,000 elements and 2 MB: where that would
-    /// be more, it shows fewer steps, and says so.
+    /// Without --steps and --max-elements, an SVG is limited to 50,000 elements and 2 MB: beyond that, it
+    /// shows fewer steps, and a note reports it.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
-    /// The file to write, or - for standard output [default: NAME-sheet.svg]
+    /// Output file, or - for standard output [default: NAME-sheet.svg]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// The format [default: from the extension of the file]
+    /// Output format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
-    /// How many pictures stand in a row [default: as many as make the sheet 4 to 3]
+    /// Number of pictures in a row [default: for an aspect ratio of about 4 to 3]
     #[arg(long, value_name = "N", value_parser = number::whole("a number of columns", 1..=u32::MAX))]
     columns: Option<u32>,
-    /// How many values of a range --set NAME=FROM..TO takes
+    /// Number of values in a range --set NAME=FROM..TO
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = number::whole("a number of values", 2..=1000_u32))]
     samples: u32,
     #[command(flatten)]
     growth: GrowthArguments,
-    /// The long side of every single picture in pixels, or WIDTHxHEIGHT
+    /// Long side of every single picture in pixels, or WIDTHxHEIGHT
     #[arg(long, value_name = "SIZE", default_value = "256", value_parser = length::size)]
     #[arg(help_heading = "Picture")]
     size: Size,
@@ -68,9 +69,9 @@ Examples:
   kfrac sheet pythagoras --set angle=20..70 --samples 6
       Draws the tree for six angles
   kfrac sheet complex-pair --set 's=[0.3,0.2]..[0.6,0.5]' --samples 8 --columns 4
-      Draws a fractal for eight values of a complex number: both of its parts at once
+      Draws a fractal for eight values of a complex parameter, both parts at once
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
-      Draws three of them in a row, larger, as pixels
+      Draws three larger pictures in a row, as a PNG
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -131,7 +132,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         })?;
     if !arguments.growth.quiet && drawn != steps {
         light::tell(
-            &format!("steps {drawn} are drawn and not {steps}"),
+            &format!("steps {drawn} are drawn instead of {steps}"),
             &format!("--steps {steps} draws them"),
         );
     }
@@ -151,7 +152,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
-    /// Whether nobody says how far growth goes, and a browser is to show what comes of it.
+    /// Returns whether the sheet is limited to a size that browsers show at once: an SVG for which no depth
+    /// of growth is given.
     fn stays_light(&self, format: render::Format) -> bool {
         let is_asked = self.steps.is_some() || self.growth.says_most_elements();
         format == render::Format::Svg && !is_asked
@@ -161,7 +163,7 @@ impl Arguments {
         loaded.compile_for(steps, self.style(loaded).color_by)
     }
 
-    /// The pictures of some steps, with no more elements each than `most` or those that are allowed.
+    /// Returns the pictures of some steps. `most` replaces the limit on the number of elements of each.
     fn cells<'a>(
         &self,
         graph: &'a Graph,
@@ -183,7 +185,7 @@ impl Arguments {
         cells.collect()
     }
 
-    /// How a sheet of steps is drawn.
+    /// Returns the options of a sheet of steps.
     fn of_steps(
         &self,
         loaded: &Loaded,
@@ -195,7 +197,7 @@ impl Arguments {
         self.options(loaded, &format!("Steps {steps}"), which, format, place)
     }
 
-    /// The rule's style, with strokes that suit small pictures unless their width is asked for.
+    /// Returns the style of the rule, with strokes that suit small pictures unless their width is given.
     fn style(&self, loaded: &Loaded) -> Style {
         let mut style = self.picture.style(loaded.model.heading());
         if let (Width::Pixels(width), None) = (&mut style.width, self.picture.stroke_width) {
@@ -205,14 +207,14 @@ impl Arguments {
         style
     }
 
-    /// Draws one step for every value of a parameter, or of some together.
+    /// Draws one step for every member of a family.
     fn draw_family(
         &self,
         family: Vec<Member>,
         format: render::Format,
         start: Instant,
     ) -> Result<(), Failure> {
-        // All are shown on the same scale.
+        // All pictures have the same scale.
         let place = family[0].1.place()?;
         let within = |(settings, loaded): Member| (settings, loaded.within(place));
         let family: Vec<_> = family.into_iter().map(within).collect();
@@ -276,8 +278,8 @@ impl Arguments {
         })?;
         if !self.growth.quiet && drawn != step {
             light::tell(
-                &format!("step {drawn} is drawn and not {step}"),
-                &format!("--steps {step} draws that"),
+                &format!("step {drawn} is drawn instead of {step}"),
+                &format!("--steps {step} draws it"),
             );
         }
         if !self.growth.quiet {
@@ -295,8 +297,8 @@ impl Arguments {
         Ok(())
     }
 
-    /// The pictures of the members of a family, with no more elements each than `most` or those that are
-    /// allowed.
+    /// Returns the pictures of the members of a family. `most` replaces the limit on the number of elements
+    /// of each.
     fn members<'a>(
         &self,
         family: &[Member],
@@ -347,14 +349,14 @@ impl Arguments {
     }
 }
 
-/// What is under a member of a family.
+/// Returns the caption of a member of a family.
 fn caption(settings: &[Setting]) -> String {
     let all = settings.iter();
     let all = all.map(|setting| format!("{} = {}", setting.name, rounded(setting.value)));
     all.collect::<Vec<_>>().join(", ")
 }
 
-/// A value as a caption has it, to six digits.
+/// Formats a value for a caption, to six digits.
 fn rounded(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').into()

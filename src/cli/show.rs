@@ -1,4 +1,4 @@
-//! `kfrac show`: the production rule as a figure.
+//! `kfrac show`: draws a production rule as a figure.
 
 use std::path::PathBuf;
 
@@ -18,28 +18,29 @@ use super::picture;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, format, help, length, output, text};
 
-/// Draws a production rule as a figure: initiator, generators, base element
+/// Draws a rule as a figure: initiator, generators, base element; maps; objects
 ///
-/// A component of the library is drawn alone. Fertile sides have an asterisk, directions their number; selection and random functions are put
-/// into words (in the manner of Kaandorp 1987, figures 1 to 13).
+/// A component of the library is drawn alone. Fertile elements are marked with an asterisk, directions with
+/// their number; selection and random functions are written out (in the style of Kaandorp 1987, figures 1 to
+/// 13).
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
-    /// The file to write, or - for standard output [default: NAME-rule.svg]
+    /// Output file, or - for standard output [default: NAME-rule.svg]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// The format [default: from the extension of the file]
+    /// Output format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<render::Format>())]
     format: Option<render::Format>,
-    /// The long side in pixels, or WIDTHxHEIGHT [default: as small as can be read]
+    /// Long side in pixels, or WIDTHxHEIGHT [default: the smallest legible size]
     #[arg(long, value_name = "SIZE", value_parser = length::size)]
     size: Option<Size>,
-    /// The colour behind the figure
+    /// Background colour of the figure
     #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
     background: Option<picture::Ink>,
-    /// Says nothing but what is wrong
+    /// Prints errors only
     #[arg(long, short)]
     quiet: bool,
 }
@@ -49,7 +50,7 @@ Examples:
   kfrac show dragon
       Draws the rule of the dragon sweep, into dragon-rule.svg
   kfrac show pythagoras --set angle=30 --background white -o rule.png
-      Draws a rule with a parameter of one's own, as pixels on white
+      Draws a rule with the given parameter, as a PNG on white
   kfrac show generators/dragon
       Draws the generator alone, into dragon-generator.svg
 ";

@@ -1,54 +1,54 @@
-//! Ctrl-C, and what else asks a program to end: it ends at once, and nothing half done is left.
+//! Interruption by Ctrl-C and other signals: the process ends at once and leaves no unfinished files.
 //!
-//! A thread of its own waits for the signals, takes away what is unfinished and ends the process,
-//! whatever the other threads do. No command has to look whether it is to stop, so that all of them
-//! end alike: those that compute, those that wait for input, and those whose reader has gone to sleep.
+//! A separate thread waits for signals, removes unfinished files and ends the process, whatever the other
+//! threads do. Commands need not check for interruption, so that all of them end alike: those that compute,
+//! those that wait for input, and those whose reader has stopped reading.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
 
-/// The exit status of a program that was interrupted.
+/// Exit status of an interrupted process.
 const INTERRUPTED: i32 = 130;
 
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { files: Vec::new() });
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// The files that have not been finished.
+/// Files that have not been finished.
 pub(super) struct Unfinished {
     files: Vec<PathBuf>,
 }
 
 impl Unfinished {
-    /// Names a file that is to be removed if the program ends before it is finished.
+    /// Registers a file that is removed if the process is interrupted before the file is finished.
     pub(super) fn begin(&mut self, path: &Path) {
         self.files.push(path.to_path_buf());
     }
 
-    /// Takes back that a file is unfinished: it has been finished or removed.
+    /// Unregisters a file that has been finished or removed.
     pub(super) fn end(&mut self, path: &Path) {
         self.files.retain(|file| file != path);
     }
 }
 
-/// The files that have not been finished. While this is held, no signal ends the program: what is
-/// made, named or removed meanwhile is never half done.
+/// Locks the list of unfinished files. While the lock is held, no signal ends the process: files are created,
+/// renamed and removed atomically in this respect.
 pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The bar that the terminal shows. It is drawn only while this is held: so that it does not come
-/// back when it has been cleared away for good.
+/// Locks the progress bar that the terminal shows. It is drawn only while the lock is held, so that it does
+/// not reappear after it has been cleared for good.
 pub(super) fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
     SHOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Ends the program. Both locks are held to the end: nothing is begun or drawn any more.
+/// Ends the process. Both locks are held to the end: no file is begun and no progress bar drawn any more.
 fn interrupt() -> ! {
     let unfinished = unfinished();
     for path in &unfinished.files {
-        // There is nobody left to be told that this failed.
+        // A failure cannot be reported any more.
         let _ = std::fs::remove_file(path);
     }
     let bar = shown();
@@ -58,11 +58,11 @@ fn interrupt() -> ! {
     std::process::exit(INTERRUPTED)
 }
 
-/// Listens to signals from now on.
+/// Begins to handle signals.
 ///
-/// A signal that is ignored when the program starts stays ignored: `nohup` wants a program to survive
-/// the end of its terminal, and a shell without job control wants those in its background to survive
-/// the Ctrl-C that is meant for others.
+/// A signal that is ignored when the program starts stays ignored: `nohup` requires a program to survive the
+/// end of its terminal, and a shell without job control requires its background processes to survive a Ctrl-C
+/// that is meant for others.
 #[cfg(unix)]
 pub(super) fn listen() {
     use std::sync::atomic::AtomicBool;
@@ -71,7 +71,7 @@ pub(super) fn listen() {
     use signal_hook::consts::SIGXFSZ;
     use signal_hook::iterator::Signals;
 
-    // Once there is a handler, a file that grows beyond the limit is an error like any other.
+    // With a handler, a file that exceeds the size limit is an error like any other.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
     let (send, receive) = mpsc::channel::<Signals>();
     let listener = std::thread::Builder::new().name("signals".into());
@@ -83,7 +83,7 @@ pub(super) fn listen() {
             interrupt();
         }
     });
-    // Without a thread that listens, signals had better end the program by themselves.
+    // Without a listening thread, signals keep their default effect of ending the process.
     if listener.is_ok()
         && let Ok(signals) = Signals::new(disposition::heard())
     {
@@ -91,17 +91,17 @@ pub(super) fn listen() {
     }
 }
 
-/// Listens to Ctrl-C from now on.
+/// Begins to handle Ctrl-C.
 #[cfg(not(unix))]
 pub(super) fn listen() {
-    // If it cannot be heard, it ends the program by itself.
+    // Without a handler, Ctrl-C ends the process by default.
     let _ = ctrlc::set_handler(|| interrupt());
 }
 
-/// The signals that are heard: those that were not ignored when the program started.
+/// Signals that are handled: those that were not ignored when the program started.
 #[cfg(unix)]
 mod disposition {
-    /// The signals that end the program.
+    /// Returns the signals that end the program.
     #[cfg(any(target_os = "linux", target_os = "android"))]
     pub(super) fn heard() -> Vec<i32> {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -115,7 +115,8 @@ mod disposition {
             .collect()
     }
 
-    /// Returns all but the signal that `nohup` is about, where ignored signals cannot be known.
+    /// Returns all signals except SIGHUP, which `nohup` ignores, because ignored signals cannot be determined
+    /// here.
     #[cfg(not(any(target_os = "linux", target_os = "android")))]
     pub(super) fn heard() -> Vec<i32> {
         use signal_hook::consts::{SIGINT, SIGTERM};
@@ -123,8 +124,8 @@ mod disposition {
         vec![SIGINT, SIGTERM]
     }
 
-    /// The mask of the signals that a process ignores, by its status as proc(5) has it: bit n − 1
-    /// stands for signal n. Nothing is ignored where nothing can be read.
+    /// Returns the mask of the signals that a process ignores, from its status as in proc(5): bit n − 1
+    /// stands for signal n. The mask is 0 if it cannot be read.
     #[cfg(any(target_os = "linux", target_os = "android"))]
     fn ignored(status: &str) -> u64 {
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,22 +1,23 @@
-//! What `kfrac info` says of an instancing structure beside what it says of all files.
+//! Information of `kfrac info` that only instancing structures have.
 
 use serde::Serialize;
 
 use crate::instancing::{Instancing, Master};
 use crate::wording;
 
-/// How large a structure is, and whether it ends.
+/// Size of a structure, and whether it ends.
 #[derive(Serialize)]
 pub(super) struct StructureInfo {
-    /// The canonical objects, each level of one counted.
+    /// Number of canonical objects; each level of an object counts.
     objects: usize,
-    /// The instances of objects, and those of shapes.
+    /// Number of instances of objects.
     instances: usize,
+    /// Number of instances of shapes.
     shapes: usize,
     tints: bool,
-    /// Whether an object leads back to itself.
+    /// Whether an object instances itself, directly or through others.
     recursive: bool,
-    /// The number of steps after which it has ended.
+    /// Number of steps after which the structure has ended.
     ends: Option<u32>,
 }
 
@@ -39,7 +40,7 @@ impl StructureInfo {
         }
     }
 
-    /// The same in lines, each with its label.
+    /// Formats the information in lines, each with its label.
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
         let counted = |count: usize, noun| wording::counted(&(count as u64).into(), noun);
         vec![

@@ -1,4 +1,4 @@
-//! `--svg`: what an SVG is made of.
+//! `--svg`: plain and instanced SVG files.
 
 use crate::render::Instanced;
 use crate::style::Named;
@@ -7,23 +7,23 @@ use crate::wording;
 use super::picture::named;
 use super::text;
 
-/// How an SVG is written.
+/// Option of SVG files.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct SvgArguments {
-    /// What an SVG is made of: every line there is, or nested instances
+    /// Structure of an SVG: every single line, or nested instances
     ///
-    /// With plain, the default, lines are written one by one. With instanced there is a symbol an object
-    /// and number of steps, each made of instances of others, so that the file grows with the steps and
-    /// not with the elements: --max-elements does not count, and --detail is not needed. Who shows it has
-    /// to expand every instance nevertheless: 200,000 of them take a browser some 15 seconds and 2 GB,
-    /// 700,000 a minute and 5 GB, and with millions it gives up. Strokes in pixels do not scale with the
-    /// picture, which some programs do not know (vector-effect); browsers do.
+    /// With plain, the default, lines are written one by one. With instanced, there is a symbol for each
+    /// object and number of steps, which consists of instances of other symbols. The size of the file grows
+    /// with the steps and not with the elements: --max-elements does not apply, and --detail is not needed.
+    /// Viewers still have to expand every instance: 200,000 instances take a browser about 15 seconds and 2
+    /// GB, 700,000 a minute and 5 GB, and millions make it give up. Strokes in pixels do not scale with the
+    /// picture (vector-effect), which browsers support and some programs do not.
     #[arg(long, value_name = "KIND", value_parser = named::<Svg>(), default_value = "plain")]
     svg: Svg,
 }
 
-/// What an SVG is made of.
+/// Structure of an SVG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Svg {
     Plain,
@@ -40,24 +40,25 @@ impl SvgArguments {
         self.svg == Svg::Instanced
     }
 
-    /// The option as the command line has it, where it says anything.
+    /// Returns the option with its value, unless it has the default.
     pub(super) fn options(&self) -> Option<(&'static str, String)> {
         self.is_instanced()
             .then(|| ("svg", self.svg.name().to_string()))
     }
 }
 
-/// Chromium 156 shows so many within ten seconds, and takes 7 kB of memory for each.
+/// Number of instances that Chromium 156 shows within ten seconds, at 7 kB of memory each; [`TOO_MANY`] make
+/// it give up.
 const MANY: f64 = 1e5;
 const TOO_MANY: f64 = 1e6;
 
-/// Says that browsers may not come to an end.
+/// Warns that browsers may not be able to show the picture.
 pub(super) fn warn(instanced: &Instanced) {
     if instanced.expanded > MANY {
         let outcome = if instanced.expanded > TOO_MANY {
-            "and give up with millions"
+            "and give up on millions"
         } else {
-            "which takes them long"
+            "which takes a long time"
         };
         text::say(&format!(
             "warning: browsers expand every instance, {} of them, {outcome}",
@@ -66,7 +67,7 @@ pub(super) fn warn(instanced: &Instanced) {
     }
 }
 
-/// What a picture is made of, in words.
+/// Formats the numbers of symbols and instances.
 pub(super) fn described(instanced: &Instanced) -> String {
     format!(
         "{}, {} when expanded",
@@ -75,7 +76,7 @@ pub(super) fn described(instanced: &Instanced) -> String {
     )
 }
 
-/// A number of any size, to two digits where it is large.
+/// Formats a number of any size, with two digits if it is large.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! What `kfrac info` says of an iterated function system beside what it says of all files.
+//! Information of `kfrac info` that only iterated function systems have.
 
 use serde::Serialize;
 
@@ -7,24 +7,24 @@ use crate::ifs::{System, Verdict};
 use crate::model::Model;
 use crate::wording::decimal;
 
-/// The maps, whether they contract, and the measure that random iteration draws.
+/// Maps of a system, their contraction, and the measure of random iteration.
 #[derive(Serialize)]
 pub(super) struct SystemInfo {
     maps: Vec<MapInfo>,
-    /// Whether the file gives the maps no weights.
+    /// Whether the file gives no weights.
     default_weights: bool,
-    /// What they are in proportion to, then.
+    /// Property that default weights are proportional to.
     weights_by: Option<Weights>,
     contraction: ContractionInfo,
     measure: Option<MeasureInfo>,
 }
 
-/// Where the weights of maps come from that the file gives none.
+/// Property that default weights are proportional to.
 #[derive(Clone, Copy, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Weights {
     Determinants,
-    /// Those of the pieces of a curve through points.
+    /// Widths of the pieces of a curve through points.
     Widths,
 }
 
@@ -50,8 +50,8 @@ struct MeasureInfo {
 }
 
 impl SystemInfo {
-    /// `place` leads to the coordinates of the system from such in which it is near the unit box around the
-    /// origin, in which all is worked out.
+    /// Collects the information. `place` maps coordinates near the unit box around the origin, in which
+    /// everything is computed, to those of the system.
     pub(super) fn of(system: &System, place: &Homothety) -> Self {
         let within = Model::Ifs(system.clone().into()).within(place);
         let ifs = match &within {
@@ -94,7 +94,7 @@ impl SystemInfo {
         }
     }
 
-    /// The same in lines, each with its label.
+    /// Formats the information in lines, each with its label.
     pub(super) fn lines(&self, unit: f64) -> Vec<(&'static str, String)> {
         let mut lines = Vec::new();
         for (number, map) in self.maps.iter().enumerate() {

@@ -1,13 +1,13 @@
-//! What people read.
+//! Messages to the user, on standard error.
 
 use std::io::Write;
 
 use crate::diagnostic::Diagnostics;
 
-/// Writes diagnostics to standard error, coloured where the terminal and the environment
-/// (`NO_COLOR`, `CLICOLOR_FORCE`, `TERM`) want it: colours that are not wanted are taken out there.
+/// Writes diagnostics to standard error, with colours if the terminal and the environment (`NO_COLOR`,
+/// `CLICOLOR_FORCE`, `TERM`) allow them: `anstream` strips unwanted colours.
 pub(super) fn complain(diagnostics: &Diagnostics) {
-    // Nobody is left to be told that standard error is closed.
+    // A failure of standard error cannot be reported.
     let _ = writeln!(
         anstream::stderr().lock(),
         "{}",
@@ -15,8 +15,7 @@ pub(super) fn complain(diagnostics: &Diagnostics) {
     );
 }
 
-/// Writes a line to standard error; a name in it may hold anything, but is kept from the terminal's
-/// controls.
+/// Writes a line to standard error. Control characters, which names may contain, are replaced.
 pub(super) fn say(line: &str) {
     let line = line.replace(char::is_control, "\u{fffd}");
     let _ = writeln!(anstream::stderr().lock(), "{line}");

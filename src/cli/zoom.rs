@@ -1,4 +1,4 @@
-//! `--zoom` and `--at`: small parts of a rule, drawn large.
+//! `--zoom` and `--at`: magnified parts of a rule.
 
 use std::fmt::Write as _;
 
@@ -9,40 +9,40 @@ use crate::zoom::{Address, Factor, Source};
 use super::Failure;
 use super::rule::Loaded;
 
-/// What of a rule is drawn, and how large.
+/// Options of zooms.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct ZoomArguments {
-    /// Draws what lies about the point of --at so much larger: 250, 1e1000, 3^5000
+    /// Magnifies the neighbourhood of the point given by --at: 250, 1e1000, 3^5000
     ///
-    /// Everything that can be seen is grown, as with --detail, which says down to what size (1 pixel
-    /// unless given). A zoom of 1 is as large as the whole picture, or as the window that the rule
-    /// proposes; there is no largest one but for the time that it takes.
+    /// All visible elements are grown, as with --detail, which sets their smallest size (1 pixel by default).
+    /// A zoom of 1 shows the whole picture, or the window of the rule. The zoom is limited only by the time
+    /// that it takes.
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     zoom: Option<Factor>,
-    /// The point in the middle: positions on the way to it, such as 0.2.(1), or X,Y
+    /// Centre of the zoom: an address, that is a list of positions, such as 0.2.(1), or X,Y
     ///
-    /// The first position is that of an element in the initiator, or of an object in a scene; for a
-    /// system of maps it is 0. Each of the others is the position, in what replaces the element, as
-    /// listed and from 0 across all parts, or the map's, or the line's in the word of an L-system. What stands in brackets is
-    /// repeated for ever; shells want such an address in quotes.
+    /// The first position is that of an element in the initiator or of an object in a scene; for a system of
+    /// maps, it is 0. Each further position is that of an element in the generator (in the order of the file,
+    /// from 0, across all parts), of a map, or of a line in the word of an L-system. Positions in brackets
+    /// are repeated without end; shells require such an address in quotes.
     #[arg(long, value_name = "ADDRESS", allow_hyphen_values = true)]
     at: Option<Address>,
 }
 
 impl ZoomArguments {
-    /// Whether a part is to be drawn.
+    /// Returns whether a zoom is requested.
     pub(super) fn is_asked(&self) -> bool {
         self.zoom.is_some() || self.at.is_some()
     }
 
-    /// What is to be looked at, if that is asked for.
+    /// Returns the requested zoom, if any.
     pub(super) fn look(&self, has_view: bool) -> Result<Option<Look>, Failure> {
         let usage = |message: &str| Err(Failure::Usage(message.into()));
         let look = match (&self.zoom, &self.at) {
             (None, None) => return Ok(None),
             (Some(_), None) => {
-                return usage("--zoom needs --at: the point in the middle, such as 0.(1) or 0.5,0");
+                return usage("--zoom needs --at: the centre, such as 0.(1) or 0.5,0");
             }
             (factor, Some(at)) => Look {
                 factor: factor.clone().unwrap_or_else(Factor::one),
@@ -51,13 +51,13 @@ impl ZoomArguments {
         };
         if has_view {
             return usage(
-                "--zoom and --at say what is shown, and so does --view: give one of them",
+                "--zoom and --at cannot be combined with --view: each selects what is shown",
             );
         }
         Ok(Some(look))
     }
 
-    /// The options as the command line has them.
+    /// Returns the options that are given, with their values.
     pub(super) fn options(&self) -> impl Iterator<Item = (&'static str, String)> {
         let zoom = self.zoom.as_ref().map(|zoom| ("zoom", zoom.to_string()));
         let at = self.at.as_ref().map(|at| ("at", at.to_string()));
@@ -66,7 +66,7 @@ impl ZoomArguments {
 }
 
 impl Loaded {
-    /// The model with the file that says its numbers.
+    /// Returns the model with its document, which holds the exact numbers.
     pub(super) fn source(&self) -> Source<'_> {
         Source {
             document: &self.document,
@@ -77,7 +77,7 @@ impl Loaded {
     }
 }
 
-/// What is said of a picture that shows nothing.
+/// Returns the note for a picture that shows nothing.
 pub(super) fn nothing(name: &str, empty: &Empty) -> String {
     let short = |value: f64| {
         let value = wording::two_digits(value);
@@ -87,17 +87,17 @@ pub(super) fn nothing(name: &str, empty: &Empty) -> String {
             format!("{value:e}")
         }
     };
-    let mut text = format!("note: nothing of {name} lies within the window");
+    let mut text = format!("note: no part of {name} lies within the window");
     if let Some(Nearest { distance, factor }) = empty.nearest {
         let _ = write!(
             text,
-            "; the nearest of it is about {} from the middle",
+            "; the nearest part is about {} from the centre",
             short(distance)
         );
-        // Two digits are not to lead back past the edge.
+        // Rounding to two digits must not move the nearest part out of the window.
         let factor = 0.95 * factor;
         if factor >= Factor::LEAST {
-            let _ = write!(text, ", and --zoom {} shows that", short(factor));
+            let _ = write!(text, ", and --zoom {} shows it", short(factor));
         }
     }
     text

@@ -224,7 +224,7 @@ fn the_program_tells_what_is_exact_beside_what_is_measured() {
     assert!((value - exact).abs() < 0.01, "{value}");
     let text = run(&["dim", "weighted.yaml", "--grids", "2", "--orders", "1"]);
     assert!(
-        text.contains("of the measure that the weights give"),
+        text.contains("of the measure given by the weights"),
         "{text}"
     );
     assert!(text.contains("0.295903"), "{text}");

@@ -17,28 +17,28 @@ fn what_does_not_go_together_is_refused() {
         (
             &["koch", "-o", "koch.png"][..],
             2,
-            "--svg instanced is of SVG: write a .svg",
+            "--svg instanced applies to SVG only: write a .svg",
         ),
         (
             &["koch", "--format", "csv"],
             2,
-            "--svg instanced is of SVG: write a .svg",
+            "--svg instanced applies to SVG only: write a .svg",
         ),
-        (&["koch", "--plot"], 2, "--plot draws every line"),
+        (&["koch", "--plot"], 2, "--plot draws every single line"),
         (
             &["koch", "--detail", "1"],
             2,
-            "--detail leaves out what is small",
+            "--detail leaves out small elements",
         ),
         (
             &["koch", "--zoom", "10", "--at", "0.(1)"],
             2,
-            "--zoom draws what lies about a point",
+            "--zoom draws the neighbourhood of a point",
         ),
         (
             &["gasket", "--method", "chaos", "-o", "gasket.png"],
             2,
-            "--svg instanced is of lines",
+            "--svg instanced applies to lines",
         ),
         (&["random-tree"], 1, "drawn at random, each in its own way"),
         (

@@ -78,7 +78,7 @@ fn what_is_read_is_not_replaced() {
         assert_eq!(
             said,
             format!(
-                "error: '{target}' is read here, and would be replaced by what is made of it: \
+                "error: '{target}' is an input file and would be overwritten by the output: \
                  write to another file\n"
             ),
             "{arguments:?}"
@@ -108,7 +108,7 @@ fn a_circle_of_links_is_no_file() {
     let path = folder.path();
     std::os::unix::fs::symlink("loop.svg", path.join("loop.svg")).unwrap();
     let said = run(path, &["grow", "koch", "-o", "loop.svg"]);
-    let message = "error: 'loop.svg' is a link that leads to no file, but round in a circle\n";
+    let message = "error: 'loop.svg' is a symbolic link that leads back to itself\n";
     assert_eq!(said, (Some(1), message.into()));
     assert!(path.join("loop.svg").is_symlink());
     let (status, said) = run(path, &["grow", "./loop.svg"]);

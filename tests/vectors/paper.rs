@@ -141,14 +141,14 @@ fn the_command_line_has_millimetres() {
     let refused: [(&[&str], &str); 7] = [
         (
             &["--size", "200mm", "-o", "a.png"],
-            "a PNG has pixels and no millimetres",
+            "a PNG is sized in pixels, not in millimetres",
         ),
         (&["--size", "20cm"], "a side is a whole number of pixels"),
         (&["--size", "1.23mm"], "one decimal at most"),
         (&["--stroke-width", "3mm%"], "a percentage"),
-        (&["--plot", "-o", "a.csv"], "--plot is of pictures"),
-        (&["--pens", "3", "-o", "a.svg"], "--pens is of plots"),
-        (&["--pens", "0", "--plot"], "a plot has one pen or more"),
+        (&["--plot", "-o", "a.csv"], "--plot applies to pictures"),
+        (&["--pens", "3", "-o", "a.svg"], "--pens applies to plots"),
+        (&["--pens", "0", "--plot"], "a plot has at least one pen"),
     ];
     for (options, message) in refused {
         let (code, said) = run(&[&["grow", "koch"], options].concat());

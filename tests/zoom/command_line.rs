@@ -55,12 +55,12 @@ fn mistakes_are_told() {
         (
             &["koch", "--zoom", "10", "--at", "0.(1)", "--view", "0,0,1,1"],
             2,
-            "give one of them",
+            "--zoom and --at cannot be combined with --view",
         ),
         (
             &["koch", "--zoom", "10", "--at", "0.(1)", "-o", "x.csv"],
             2,
-            "--zoom is of pictures",
+            "--zoom applies to pictures only",
         ),
         (
             &["koch", "--zoom", "10", "--at", "0.(7)"],
@@ -120,15 +120,14 @@ fn a_zoom_writes_pictures_of_both_formats() {
 /// A window off the set gives an empty picture, which is reported with the distance of the set.
 #[test]
 fn a_window_beside_the_set_is_said_to_be_empty() {
-    let note = "note: nothing of koch lies within the window";
+    let note = "note: no part of koch lies within the window";
     let beside = ["koch", "--zoom", "1000", "--at", "0.5,0.1", "-o"];
     for file in ["beside.png", "beside.svg"] {
         let (code, text) = said(&[&beside[..], &[file]].concat());
         assert_eq!(code, Some(0), "{text}");
         let (first, _) = text.split_once('\n').unwrap();
         // From the nearest corners, which lie at (4/9, √3/9) and its mirror image.
-        let nearest =
-            "; the nearest of it is about 0.11 from the middle, and --zoom 1.3 shows that";
+        let nearest = "; the nearest part is about 0.11 from the centre, and --zoom 1.3 shows it";
         assert_eq!(first, format!("{note}{nearest}"), "{text}");
         let (_, text) = said(&[&beside[..], &[file, "--quiet"]].concat());
         assert_eq!(text, "");

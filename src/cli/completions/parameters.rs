@@ -1,4 +1,4 @@
-//! The parameters that `--set` may be given on an unfinished command line.
+//! Completion of the parameters that `--set` accepts on an unfinished command line.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -11,16 +11,16 @@ use crate::cli::{command, input, rule};
 
 use super::OF_RULES;
 
-/// The parameters of the rules on a command line, a line each: `NAME=`, a tab, and what it is about.
+/// Lists the parameters of the rules on a command line, one per line: `NAME=`, a tab, and the description.
 ///
-/// Nothing is said of what is wrong: somebody is typing.
+/// Errors are ignored, because the command line is unfinished.
 pub(super) fn listed(words: &[OsString]) -> String {
     let Typed { folders, rules } = Typed::read(words);
     let mut parameters = BTreeMap::new();
     let catalogue = rule::catalogue(&folders);
     for rule in rules {
         let known = catalogue.as_ref().ok().and_then(|catalogue| {
-            // What waits for somebody who writes is not waited for here.
+            // Pipes and devices could block, and are not read.
             let is_special = rule.metadata().is_ok_and(|metadata| !metadata.is_file());
             if is_special || rule.as_os_str() == "-" {
                 return None;
@@ -32,7 +32,7 @@ pub(super) fn listed(words: &[OsString]) -> String {
         for parameter in known {
             let name = &parameter.called().value;
             let mut about = parameter.about.as_deref().unwrap_or_default();
-            // Of a complex one, what is said of both of its parts.
+            // For a complex parameter, the description of both parts.
             if let (Some(_), Some((_, of_both))) = (&parameter.whole, about.split_once(": ")) {
                 about = of_both;
             }
@@ -48,7 +48,7 @@ pub(super) fn listed(words: &[OsString]) -> String {
     text
 }
 
-/// The rules and options that an unfinished command line names.
+/// Rules and options on an unfinished command line.
 #[derive(Default)]
 struct Typed {
     folders: Vec<PathBuf>,
@@ -56,8 +56,8 @@ struct Typed {
 }
 
 impl Typed {
-    /// Reads the words of a command line, with the name of the program or without. An option that is not known is
-    /// taken for one without a value.
+    /// Parses the words of a command line, with or without the name of the program. Unknown options are
+    /// assumed to take no value.
     fn read(words: &[OsString]) -> Self {
         let mut typed = Self::default();
         let program = command();
@@ -81,7 +81,7 @@ impl Typed {
                 }
             } else if let Some(command) = inside {
                 let takes = OF_RULES.iter().filter(|(of, _)| *of == command.get_name());
-                // A shell may name the command twice.
+                // A shell may repeat the command.
                 let is_command = typed.rules.is_empty() && text == command.get_name();
                 if typed.rules.len() < takes.count() && !is_command {
                     typed.rules.push(word.into());
@@ -94,7 +94,7 @@ impl Typed {
     }
 }
 
-/// The option of a name, with its dashes.
+/// Returns the option with a name, which includes its dashes.
 fn find<'a>(command: &'a Command, name: &str) -> Option<&'a Arg> {
     command.get_arguments().find(|argument| {
         let long = argument.get_long().map(|long| format!("--{long}"));
@@ -103,7 +103,7 @@ fn find<'a>(command: &'a Command, name: &str) -> Option<&'a Arg> {
     })
 }
 
-/// The words, with those put together again that bash parts at a `=`.
+/// Joins words that bash splits at `=`.
 fn joined(words: &[OsString]) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::new();
     let mut is_open = false;

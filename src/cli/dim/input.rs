@@ -1,4 +1,4 @@
-//! What is to be measured: found, read and measured.
+//! Input of `kfrac dim`: recognises, reads and measures rules, pictures and tables.
 
 use std::io::{self, Cursor, Read};
 use std::num::NonZero;
@@ -23,11 +23,11 @@ use super::super::input;
 use super::super::rule::Loaded;
 use super::{Arguments, Measured};
 
-/// Graphs whose number of objects does not settle are resolved for so many steps, or for fewer where
-/// that is too many.
+/// Largest number of steps for which graphs without a fixed number of objects are compiled; fewer where the
+/// graph would be too large.
 const STEPS: [u32; 4] = [64, 20, 12, 6];
 
-/// The graph of a rule, and for how many steps it is resolved.
+/// Returns the graph of a rule and the number of steps for which it is compiled.
 pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
     let at = |steps: u32| Ok((loaded.compile_limit(steps)?, steps));
     let [most, fewer @ ..] = STEPS;
@@ -35,7 +35,7 @@ pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
     fewer.fold(at(most), |tried, steps| tried.or_else(|_| at(steps)))
 }
 
-/// Files of pictures are no longer than this.
+/// Largest size of a picture file in bytes.
 const MOST_BYTES: u64 = 1 << 31;
 
 pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Measured, Failure> {
@@ -43,7 +43,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     let rules = || arguments.rules();
     let is_standard = path == Path::new("-");
     if !is_standard && !path.metadata().is_ok_and(|metadata| !metadata.is_dir()) {
-        // A name of the library, or nothing.
+        // The argument may be a name in the library, or nothing.
         return of_rule(arguments, &rules().load(catalogue, arguments.json)?);
     }
     let name = if is_standard {
@@ -99,7 +99,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     }
 }
 
-/// What a file holds.
+/// Kind of an input file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Rule,
@@ -108,7 +108,8 @@ enum Kind {
 }
 
 impl Kind {
-    /// By how a file begins, or else by its name: a table's first line has a comma and is no YAML.
+    /// Recognises a file by its first bytes, or else by its name: the first line of a table has a comma and
+    /// is no YAML.
     fn of(path: &Path, head: &[u8]) -> Self {
         let extension = path
             .extension()
@@ -138,7 +139,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     let mut measured = Measured {
         name: loaded.name.clone(),
         title: title.unwrap_or_else(|| loaded.name.clone()),
-        set: "the limit set of what stays fertile".into(),
+        set: "the limit set of the fertile elements".into(),
         unit: None,
         exact: Some(dimensions_of_graph(&graph)),
         counting: BoxCounting::default(),
@@ -159,7 +160,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     measured.counting = BoxCounting::of_limit(&set, arguments.base, &grids, threads);
     if measured.counting.boxes.is_empty() {
         if measured.counting.estimate.is_none() {
-            let reason = "nothing is measured: too many copies lie over each other";
+            let reason = "nothing is measured: too many copies overlap";
             measured.warnings.push(reason.into());
         }
         return Ok(measured);
@@ -171,7 +172,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     Ok(measured.enlarged(graph.place().ratio()))
 }
 
-/// What has to be grown to be known, by the draws of a seed.
+/// Measures a rule whose limit set is known only by growing it, with the random draws of a seed.
 fn of_growth(
     arguments: &Arguments,
     graph: &Graph,
@@ -188,7 +189,7 @@ fn of_growth(
         Err(error) => return Ok(measured.without(&error)),
     };
     measured.set = format!(
-        "{} fertile elements of lengths below {:.3e}, grown with seed {}",
+        "{} fertile elements shorter than {:.3e}, grown with seed {}",
         grown.points.len(),
         grown.detail * graph.place().ratio(),
         arguments.seed
@@ -262,7 +263,7 @@ fn part(some: u64, all: u64) -> f64 {
     100.0 * some as f64 / all as f64
 }
 
-/// The base of boxes that fold: a whole number.
+/// Returns the base as a whole number, which boxes that are merged need.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -271,7 +272,7 @@ fn part(some: u64, all: u64) -> f64 {
 fn whole(base: Option<f64>, of: &str) -> Result<NonZero<usize>, Failure> {
     let base = base.unwrap_or(2.0);
     let whole = NonZero::new(base as usize).filter(|whole| base.fract() == 0.0 && whole.get() > 1);
-    let message = || format!("--base: boxes of {of} grow by a whole number from 2 on");
+    let message = || format!("--base: for {of}, the base is a whole number of at least 2");
     whole.ok_or_else(|| Failure::Usage(message()))
 }
 
@@ -314,7 +315,7 @@ impl Measured {
         self
     }
 
-    /// Tells a spectrum; of order 0, what boxes have told.
+    /// Sets the spectrum. For order 0, the result of box counting is used.
     fn tell(&mut self, spectrum: Vec<Generalised>) {
         let told = |it: Generalised| match it.order {
             0.0 => Generalised::of_boxes(&self.counting),
@@ -324,8 +325,8 @@ impl Measured {
         Generalised::fall(&mut self.spectrum);
     }
 
-    /// Tells the spectrum of the measure that a rule's limit set has: that of its weights, if a system
-    /// gives any, or the natural one.
+    /// Sets the spectrum of the measure on the limit set of a rule: the measure given by the weights of a
+    /// system, or else the natural one.
     fn tell_measure(&mut self, arguments: &Arguments, loaded: &Loaded, graph: &Graph) {
         let weighted = match &loaded.model {
             Model::Ifs(system) if system.ifs().has_weights() => Some(system.ifs()),
@@ -333,8 +334,8 @@ impl Measured {
         };
         let by_weights = weighted.and_then(|ifs| Some((ifs, Cascade::of_weights(ifs)?)));
         if weighted.is_some() && by_weights.is_none() {
-            let reason = "the weights have no one measure: where random iteration ends depends on where \
-                          it starts; the spectrum is that of the natural measure";
+            let reason = "the weights do not determine a unique measure: the limit of random iteration depends on its \
+                          start; the spectrum is that of the natural measure";
             self.warnings.push(reason.into());
         }
         let cascade = match by_weights {

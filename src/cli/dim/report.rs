@@ -1,4 +1,4 @@
-//! What has been measured, for people and for programs.
+//! Output of `kfrac dim`, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::measure::{BoxCounting, Estimate, Trend};
 use super::super::Failure;
 use super::Measured;
 
-/// Below so many decades, a slope says little of a dimension.
+/// Number of decades below which a slope is weak evidence of a dimension.
 const FEW_DECADES: f64 = 2.0;
 
 #[derive(Serialize)]
@@ -51,7 +51,7 @@ struct Boxes {
     used: bool,
 }
 
-/// An estimate, or nulls.
+/// Estimate, or nulls.
 #[derive(Serialize, Default)]
 struct Fields {
     value: Option<f64>,
@@ -71,7 +71,7 @@ impl Fields {
     }
 }
 
-/// As JSON.
+/// Formats the result as JSON.
 pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
     let exact = measured.exact.as_ref();
     let known = exact.and_then(|exact| exact.dimensions.as_ref());
@@ -123,7 +123,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// How local slopes drift.
+/// Drift of the local slopes.
 fn trend(trend: &Trend) -> Value {
     json!({
         "per_decade": trend.per_decade,
@@ -132,7 +132,7 @@ fn trend(trend: &Trend) -> Value {
     })
 }
 
-/// The similarity dimension, and how it is found.
+/// Similarity dimension with its equation and closed form.
 fn similarity(known: Option<&Dimensions>) -> Value {
     let similar = known.and_then(|known| known.similarity.as_ref());
     json!({
@@ -142,7 +142,7 @@ fn similarity(known: Option<&Dimensions>) -> Value {
     })
 }
 
-/// Falconer's affinity dimension, where maps are no similarities: an upper bound.
+/// Falconer's affinity dimension, an upper bound where maps are not similarities.
 fn affinity(known: &Dimensions) -> Option<Value> {
     let affinity = known.affinity.as_ref()?;
     Some(json!({
@@ -152,7 +152,7 @@ fn affinity(known: &Dimensions) -> Option<Value> {
     }))
 }
 
-/// The dimension of the set itself, where copies may overlap.
+/// Hausdorff dimension of the set, whose copies may overlap.
 pub(in crate::cli) fn hausdorff(known: Option<&Dimensions>) -> Value {
     known.map_or_else(
         || json!({"value": null, "overlap": "unknown", "method": null}),
@@ -169,7 +169,7 @@ pub(in crate::cli) fn hausdorff(known: Option<&Dimensions>) -> Value {
     )
 }
 
-/// The dimension of the boundary of a set with inside.
+/// Dimension of the boundary of a set with interior.
 fn boundary(known: &Dimensions) -> Option<Value> {
     let boundary = known.boundary.as_ref()?;
     Some(json!({
@@ -179,11 +179,11 @@ fn boundary(known: &Dimensions) -> Option<Value> {
     }))
 }
 
-/// Adds what is to be said against the measurement.
+/// Adds warnings about the reliability of the measurement.
 pub(super) fn warn(measured: &mut Measured) {
     let few = |what: &str, decades: f64| {
         format!(
-            "{what} {decades:.1} decades only: below {FEW_DECADES} a slope says little of a dimension"
+            "{what} only {decades:.1} decades: below {FEW_DECADES}, a slope is weak evidence of a dimension"
         )
     };
     let decades = |estimate: &Estimate| (estimate.sizes > 0).then(|| estimate.decades());
@@ -192,11 +192,10 @@ pub(super) fn warn(measured: &mut Measured) {
     if let Some(decades) = counted_decades.filter(|decades| *decades < FEW_DECADES) {
         measured.warnings.push(few("the range spans", decades));
     } else if counted.is_none() && !measured.counting.boxes.is_empty() {
-        let warning =
-            "there are fewer than three sizes of boxes that tell anything: nothing is fitted";
+        let warning = "fewer than three sizes of boxes are usable: nothing is fitted";
         measured.warnings.push(warning.into());
     }
-    // Of order 0, points and pictures have been told of already.
+    // The warning for order 0 of points and pictures is that of box counting.
     let spectrum = measured.spectrum.iter();
     let spectrum = spectrum.filter(|it| measured.measure.is_some() || it.order != 0.0);
     let spectrum = spectrum.filter_map(|it| it.estimate.as_ref().and_then(decades));
@@ -208,10 +207,10 @@ pub(super) fn warn(measured: &mut Measured) {
     }
 }
 
-/// The result in a sentence.
+/// Returns the result in one sentence.
 pub(super) fn sentence(measured: &Measured) -> String {
     let Some(estimate) = &measured.counting.estimate else {
-        return "There is no box-counting dimension to be told.".into();
+        return "The box-counting dimension could not be measured.".into();
     };
     let Estimate {
         value, std_error, ..
@@ -236,7 +235,7 @@ pub(super) fn sentence(measured: &Measured) -> String {
     )
 }
 
-/// As many decimals as tell two digits of an error.
+/// Returns the number of decimals that shows two digits of an error.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -251,7 +250,7 @@ fn decimals(error: f64) -> usize {
     (first + 1.0).clamp(2.0, 6.0) as usize
 }
 
-/// A size in four digits.
+/// Formats a size with four digits.
 fn short(size: f64) -> String {
     let exponent = libm::log10(size).floor();
     if (-4.0..6.0).contains(&exponent) {
@@ -271,7 +270,7 @@ fn short(size: f64) -> String {
     }
 }
 
-/// For people.
+/// Describes the result in text.
 pub(super) fn described(measured: &Measured) -> String {
     let mut text = format!("{}: {}\n\n", measured.name, measured.set);
     if let Some(exact) = &measured.exact {
@@ -299,13 +298,13 @@ fn remarks(counting: &BoxCounting) -> Vec<String> {
     if let (Some(base), Some(fitting)) = (counting.base, counting.fitting_base) {
         if base != fitting {
             remarks.push(format!(
-                "Boxes that grow by {fitting} fit this picture better than those that grow by {base}: \
-                 all their local slopes are the same (--base {fitting})."
+                "The base {fitting} fits this picture better than {base}: \
+                 all its local slopes are equal (--base {fitting})."
             ));
         } else if base != USUAL {
             remarks.push(format!(
-                "Boxes that grow by {base} fit this picture better than those that grow by {USUAL}: \
-                 all their local slopes are the same."
+                "The base {base} fits this picture better than {USUAL}: \
+                 all its local slopes are equal."
             ));
         }
     }
@@ -316,8 +315,8 @@ fn remarks(counting: &BoxCounting) -> Vec<String> {
             "fall"
         };
         remarks.push(format!(
-            "Local slopes {way} by {:.4} ± {:.4} with every decade of smaller boxes: the estimate goes on \
-             with them beyond the sizes, and its error allows for that.",
+            "Local slopes {way} by {:.4} ± {:.4} per decade of smaller boxes: the estimate extrapolates \
+             this drift beyond the measured sizes, and its error accounts for that.",
             trend.per_decade.abs(),
             2.0 * trend.std_error,
         ));
@@ -326,20 +325,20 @@ fn remarks(counting: &BoxCounting) -> Vec<String> {
 }
 
 impl Measured {
-    /// The dimension of an order, where it is known without measuring.
+    /// Returns the exact dimension of an order, if it is known and finite.
     fn known(&self, order: f64) -> Option<f64> {
         let known = self.spectrum_known.as_ref()?;
         Some(known.at(order)).filter(|value| value.is_finite())
     }
 }
 
-/// The dimensions of all orders.
+/// Writes the spectrum of dimensions.
 fn spectrum(text: &mut String, measured: &Measured) {
     if measured.spectrum.is_empty() {
         return;
     }
     let of = match measured.measure {
-        Some("weights") => "\nof the measure that the weights give",
+        Some("weights") => "\nof the measure given by the weights",
         Some(_) => "\nof the natural measure",
         None => "",
     };
@@ -380,7 +379,7 @@ fn spectrum(text: &mut String, measured: &Measured) {
     }
 }
 
-/// What is known without measuring.
+/// Writes the exact results.
 fn known(text: &mut String, exact: &Grown) {
     let mut line = |label: &str, value: &str| {
         let _ = writeln!(text, "{label:<22}{value}");
@@ -428,7 +427,7 @@ fn known(text: &mut String, exact: &Grown) {
     text.push('\n');
 }
 
-/// The boxes of every size; a star marks those that are used.
+/// Writes the counts for every size of boxes; a star marks those that the fit uses.
 fn table(text: &mut String, counting: &BoxCounting, unit: Option<&str>) {
     if counting.boxes.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Dimensions over the values of a parameter.
+//! Exact dimensions over the values of a parameter.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::super::rule::Member;
 use super::super::{Failure, output};
 use super::input::compiled;
 
-/// Rules that differ in one parameter, and what is known of them.
+/// Members of a family with their exact results.
 pub(super) struct Series {
     name: String,
     title: String,
@@ -25,7 +25,7 @@ impl Series {
     pub(super) fn of(family: &[Member]) -> Result<Self, Failure> {
         let (settings, first) = &family[0];
         let [setting] = settings.as_slice() else {
-            let message = "dimensions are told along one parameter, not along several together";
+            let message = "dimensions are listed along one parameter, not along several together";
             return Err(Failure::Usage(message.into()));
         };
         let title = first.model.heading().description.title.clone();
@@ -85,7 +85,7 @@ impl Series {
         text
     }
 
-    /// Draws the similarity dimension.
+    /// Plots the similarity dimension.
     pub(super) fn draw(&self, path: &Path, format: render::Format) -> Result<(), Failure> {
         let points: Vec<_> = self
             .samples

@@ -1,4 +1,4 @@
-//! A picture from its goal to the file, and the numbers that are reported of it.
+//! Drawing of a picture to a goal, and the summary that is printed for it.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ use super::super::rule::Loaded;
 use super::super::{Failure, length, light, output, plot, svg};
 use super::Arguments;
 
-/// A picture to be drawn, with its options.
+/// Picture to be drawn, with its options.
 pub(super) struct Pictured<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) loaded: &'a Loaded,
@@ -24,7 +24,7 @@ pub(super) struct Pictured<'a> {
 }
 
 impl Pictured<'_> {
-    /// Draws to a goal, with no more elements than `most` or those that are allowed.
+    /// Draws to a goal. `most` replaces the limit on the number of elements.
     pub(super) fn draw(
         &self,
         goal: Goal,
@@ -51,7 +51,7 @@ impl Pictured<'_> {
         })
     }
 
-    /// Draws what is light and comes nearest to a goal; returns the goal that it is drawn to.
+    /// Draws the light picture that comes nearest to a goal, and returns the goal that was reached.
     pub(super) fn draw_light(
         &self,
         goal: Goal,
@@ -97,19 +97,19 @@ impl Pictured<'_> {
     }
 }
 
-/// The size of a file that has been written, and its contents in numbers.
+/// Size and contents of a file that has been written.
 pub(super) struct Wrote {
     pub(super) steps: u32,
     pub(super) elements: u64,
-    /// Whether there are more.
+    /// Whether the number of elements is a lower bound.
     pub(super) has_more: bool,
     pub(super) fractals: u64,
     pub(super) pixels: Option<[u32; 2]>,
     pub(super) plotted: Option<Plotted>,
     pub(super) instanced: Option<Instanced>,
-    /// Whether the limit set is drawn, and not its elements.
+    /// Whether the limit set is drawn instead of its elements.
     pub(super) is_limit: bool,
-    /// Whether elements outside a window may not be among them.
+    /// Whether elements outside the window may be missing from the count.
     pub(super) is_part: bool,
     pub(super) empty: Option<Empty>,
 }
