@@ -107,11 +107,11 @@ Examples:
   kfrac dim koch
       Measures the Koch curve
   kfrac dim koch --plot koch-dimension.svg
-      Draws the counts, the fit and the local slopes as well
+      Also plots the counts, the fit and the local slopes
   kfrac dim cesaro --set angle=60..89 --samples 7
-      Tells the dimension as a function of a parameter
+      Computes the dimension as a function of a parameter
   kfrac grow koch --steps 6 --format csv -o - | kfrac dim - --columns x0,y0 --json
-      Measures points of an approximant, for another program
+      Measures the points of an approximant, with JSON output
   kfrac grow dragon --size 2048 --format png -o - | kfrac dim -
       Measures a picture
 ";

@@ -1,4 +1,4 @@
-//! What commands that grow a rule have in common.
+//! Options and messages of all commands that grow a rule.
 
 use std::num::NonZero;
 use std::path::Path;
@@ -19,50 +19,50 @@ use super::goal::Goal;
 use super::rule::Loaded;
 use super::{Failure, number, output};
 
-/// The most elements that are grown unless said otherwise, where a detail in pixels bounds them and all
-/// of them come to no more than pixels.
+/// Default limit of the number of elements, where a detail in pixels bounds them: at most as many are drawn
+/// as there are pixels.
 const MOST_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
 
-/// The most where all of them are in memory: with some 200 bytes each, a gigabyte.
+/// Default limit where all elements are held in memory: a gigabyte, at about 200 bytes each.
 const MOST_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
 
-/// How a rule is grown, and how far at most.
+/// Options of growth and its limits.
 #[derive(clap::Args)]
 pub(super) struct GrowthArguments {
-    /// What random draws depend on: another seed makes another individual
+    /// Seed of random draws: each seed gives another individual
     #[arg(long, value_name = "S", default_value_t = 0)]
     #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
     pub(super) seed: u64,
-    /// The most elements that are grown [default: 50 million; 500 million to a PNG's detail, 5 million
-    /// of a plot]
+    /// Limit of the number of elements [default: 50 million; 500 million to the detail of a PNG, 5 million
+    /// for a plot]
     ///
-    /// Where the number is known before, a step that has more is refused before the work starts.
+    /// If the number is known in advance, a step that exceeds the limit is refused before the work starts.
     #[arg(long, value_name = "N")]
     #[arg(value_parser = number::whole("a number of elements", 0..=u64::MAX), allow_negative_numbers = true)]
     max_elements: Option<u64>,
-    /// How many threads work [default: as many as there are cores]
+    /// Number of threads [default: the number of cores]
     ///
-    /// What they make does not depend on how many they are.
+    /// The output does not depend on it.
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
-    /// Says nothing but what is wrong
+    /// Suppresses all messages except errors
     #[arg(long, short)]
     pub(super) quiet: bool,
 }
 
-/// Reads a number of threads.
+/// Parses a number of threads.
 pub(super) fn threads(text: &str) -> Result<NonZero<usize>, String> {
     let threads = number::whole("a number of threads", 1..=1024)(text)?;
-    NonZero::new(threads).ok_or_else(|| "one thread at least works".into())
+    NonZero::new(threads).ok_or_else(|| "at least one thread is needed".into())
 }
 
 impl GrowthArguments {
-    /// The number of threads.
+    /// Returns the number of threads.
     pub(super) fn threads(&self) -> NonZero<usize> {
         self.threads.unwrap_or_else(all_cores)
     }
 
-    /// Whether the most elements are said on the command line.
+    /// Returns whether the limit of the number of elements is given.
     pub(super) fn says_most_elements(&self) -> bool {
         self.max_elements.is_some()
     }
@@ -71,7 +71,7 @@ impl GrowthArguments {
         self.max_elements.unwrap_or(Model::MOST_ELEMENTS)
     }
 
-    /// The most elements of a picture.
+    /// Returns the limit of the number of elements of a picture.
     fn most_elements_of(&self, picture: &render::Options) -> u64 {
         let default = match picture {
             render::Options { plot: true, .. }
@@ -79,7 +79,7 @@ impl GrowthArguments {
                 format: render::Format::Dxf,
                 ..
             } => MOST_PLOTTED,
-            // Of which there are no more than pixels.
+            // Their number is bounded by that of pixels.
             render::Options {
                 format: render::Format::Png,
                 detail: Some(_),
@@ -90,9 +90,9 @@ impl GrowthArguments {
         self.max_elements.unwrap_or(default)
     }
 
-    /// Refuses a step that has too many elements, as far as that can be told before.
+    /// Returns an error if a step has too many elements, where the number is known in advance.
     ///
-    /// `picture` tells how it would be drawn, if it would.
+    /// `picture` holds the options of the picture, if there is one.
     pub(super) fn check(
         &self,
         steps: u32,
@@ -111,7 +111,7 @@ impl GrowthArguments {
         Ok(())
     }
 
-    /// Growth by a number of steps.
+    /// Returns the parameters of growth by a number of steps.
     pub(super) fn to<'a>(&self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
         Growth {
             steps,
@@ -122,7 +122,7 @@ impl GrowthArguments {
         }
     }
 
-    /// The same for a picture.
+    /// Returns the parameters of growth for a picture.
     pub(super) fn drawn_as<'a>(
         &self,
         picture: &render::Options,
@@ -135,12 +135,12 @@ impl GrowthArguments {
         }
     }
 
-    /// The options that the draws depend on.
+    /// Returns the options on which random draws depend, with their values.
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
         vec![("seed", self.seed.to_string())]
     }
 
-    /// Why `path` has not been written.
+    /// Returns the failure for which `path` has not been written.
     pub(super) fn explain(&self, error: RenderError, loaded: &Loaded, path: &Path) -> Failure {
         match error {
             RenderError::Io(error) => output::failed(error, path),
@@ -178,7 +178,7 @@ impl GrowthArguments {
     }
 }
 
-/// What is said of a step that has more elements than may be.
+/// Returns the message for a step that has too many elements.
 fn too_large(
     error: &TooLarge,
     most: u64,
@@ -211,7 +211,7 @@ fn too_large(
     format!("step {steps} of {name} has {count}{size}; {deepest}{detail}")
 }
 
-/// What a step takes that is not grown.
+/// Estimates the SVG of a step without growing it.
 fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Estimate> {
     let mut forecast = graph.forecast()?;
     if !(0..steps).all(|_| forecast.advance()) {
@@ -221,8 +221,8 @@ fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Esti
     Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
-/// The bytes of a PNG, where that can be told: of what is to be drawn to a detail, those of the first
-/// step whose elements are as small in the mean.
+/// Estimates the bytes of a PNG, if possible. For a detail, they are those of the first step whose mean
+/// element is as small.
 pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) -> Option<f64> {
     const MOST_STEPS: u32 = 1_000;
     let steps = match goal {
@@ -253,7 +253,7 @@ pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) ->
     estimate.map(|estimate| estimate.png_bytes)
 }
 
-/// The box of an approximant: from the graph, or else by a walk that is not too long.
+/// Returns the bounding box of an approximant: from the graph, or else by a walk that is not too long.
 pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     const MOST_ELEMENTS: u64 = 1_000_000;
     let growth = Growth {
@@ -268,7 +268,8 @@ pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     graph.bounds(steps).or_else(walked)
 }
 
-/// About the box of an approximant: where the graph does not tell it, that of a smaller one.
+/// Returns an approximate bounding box of an approximant: that of a smaller one, where the graph does not
+/// determine it.
 pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     let walked = || match graph.check_size(steps, 20_000) {
         Ok(_) => bounds(graph, steps),
@@ -277,7 +278,7 @@ pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     graph.bounds(steps).or_else(walked)
 }
 
-/// Whether all that is replaced becomes smaller, so that elements fall below any size.
+/// Returns whether all replacements shrink, so that elements fall below any size.
 fn shrinks(graph: &Graph) -> bool {
     if graph.is_levelled() {
         return true;

@@ -1,4 +1,4 @@
-//! The rule that a command works on, found and resolved.
+//! Rules on the command line, found and resolved.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -21,8 +21,8 @@ use super::family::{self, Assignment};
 use super::growth::GrowthArguments;
 use super::{Failure, input, number, text};
 
-/// The catalogue of the folders that were given, of `$KFRAC_LIBRARY`, of the user's data folder
-/// and of the embedded library, in this order. Only those that were given must be there.
+/// Returns the catalogue of the given folders, of `$KFRAC_LIBRARY`, of the data folder of the user and of the
+/// embedded library, in this order. Only the given folders must exist.
 pub(super) fn catalogue(given: &[PathBuf]) -> Result<Catalogue, Failure> {
     if let Some(missing) = given.iter().find(|folder| !folder.is_dir()) {
         let message = format!("--library: there is no folder '{}'", missing.display());
@@ -38,44 +38,44 @@ pub(super) fn catalogue(given: &[PathBuf]) -> Result<Catalogue, Failure> {
     Ok(Catalogue::with_folders(folders))
 }
 
-/// A rule, and how its parameters are set.
+/// Rule with the settings of its parameters.
 #[derive(clap::Args)]
 pub(super) struct RuleArguments {
-    /// A rule file, the name of a rule in the library, or - for standard input
+    /// Rule file, name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
     pub(super) rule: PathBuf,
-    /// Sets a parameter of the rule; it may be given several times
+    /// Sets a parameter of the rule; may be given several times
     ///
-    /// The value may be an expression: --set angle=180/7. That of a complex parameter is [RE,IM], which
-    /// shells want in quotes. `kfrac info RULE` lists the parameters.
+    /// The value may be an expression: --set angle=180/7. A complex parameter has a value [RE,IM], which
+    /// shells require in quotes. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = family::assignment)]
     pub(super) set: Vec<Assignment>,
-    /// Leaves maps of a system out, by their numbers from 1: --omit 2,3
+    /// Omits maps of a system, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     pub(super) omit: Vec<u32>,
 }
 
-/// A member of a family, with the settings that make it.
+/// Member of a family, with its settings.
 pub(super) type Member = (Vec<Setting>, Loaded);
 
-/// A rule that has been read.
+/// Rule that has been read and resolved.
 pub(super) struct Loaded {
-    /// What messages call it.
+    /// Name in messages.
     pub(super) name: String,
     pub(super) document: Document,
     pub(super) model: Model,
-    /// The parameters that were set.
+    /// Parameters that were set.
     pub(super) settings: Vec<Setting>,
-    /// The maps that are left out, as the command line has them.
+    /// Omitted maps, numbered as on the command line.
     pub(super) omitted: Vec<u32>,
-    /// What draws depend on, and how many elements are allowed, where that is known.
+    /// Seed and limit of the number of elements, for graphs that depend on them.
     growth: (u64, u64),
-    /// The map from the coordinates of compiled graphs to those of the file; [`Model::place`] unless given.
+    /// Map from the coordinates of compiled graphs to those of the file; [`Model::place`] if `None`.
     place: Option<Homothety>,
 }
 
 impl Loaded {
-    /// The same to be grown in a way.
+    /// Sets the seed and the limit of the number of elements.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
         self.growth = (growth.seed, growth.most_elements());
         self
@@ -89,14 +89,14 @@ impl Loaded {
         }
     }
 
-    /// Returns [`Model::place`], with an error as a mistake in the file.
+    /// Returns [`Model::place`]; an error is reported as an error in the file.
     pub(super) fn place(&self) -> Result<Homothety, Failure> {
         let place = self.model.place().map_err(CompileError::from);
         place.map_err(|error| self.model.diagnostic(&error).into())
     }
 
-    /// The graph, resolved for a number of steps, near the unit box around the origin: [`Graph::place`]
-    /// leads from its coordinates to those of the rule.
+    /// Returns the graph for a number of steps, near the unit box around the origin: [`Graph::place`] maps
+    /// its coordinates to those of the rule.
     pub(super) fn graph(&self, steps: u32) -> Result<Graph, CompileError> {
         self.graph_of(&self.model, steps)
     }
@@ -109,7 +109,7 @@ impl Loaded {
         }
     }
 
-    /// The same, with what is wrong as a mistake in the file.
+    /// Returns the graph like [`Loaded::graph`]; an error is reported as an error in the file.
     pub(super) fn compile(&self, steps: u32) -> Result<Graph, Failure> {
         self.compiled(&self.model, steps)
     }
@@ -147,7 +147,7 @@ impl Loaded {
                 let graph = graph.map_err(|error| self.model.diagnostic(&error.into()))?;
                 graph.ok_or_else(|| {
                     let message = format!(
-                        "{} has too many maps and sets to tell the map that is applied last",
+                        "{} has too many maps and sets to distinguish the map that is applied last",
                         self.name
                     );
                     anyhow::anyhow!(message).into()
@@ -155,7 +155,7 @@ impl Loaded {
             }
             (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) => {
                 let message = format!(
-                    "{} is a rule and has no maps that --color-by {} could tell apart",
+                    "{} is a rule and has no maps that --color-by {} could distinguish",
                     self.name,
                     color_by.name()
                 );
@@ -166,7 +166,7 @@ impl Loaded {
     }
 }
 
-/// Standard input, to the most that a rule file may have.
+/// Reads standard input, up to the limit of a rule file.
 fn standard_input() -> Result<Arc<Source>, Failure> {
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
@@ -174,7 +174,7 @@ fn standard_input() -> Result<Arc<Source>, Failure> {
     Ok(Source::read("<stdin>", bytes)?)
 }
 
-/// The text that `argument` names.
+/// Opens the file that `argument` names.
 pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
     input::note(argument);
     if argument == Path::new("-") {
@@ -183,7 +183,7 @@ pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>
     Ok(catalogue.rule(argument)?)
 }
 
-/// The name of a rule, without folder and extension.
+/// Returns the name of a rule, without folder and extension.
 pub(super) fn name_of(argument: &Path) -> &OsStr {
     let is_rule_file = argument
         .extension()
@@ -198,7 +198,7 @@ pub(super) fn name_of(argument: &Path) -> &OsStr {
 }
 
 impl RuleArguments {
-    /// The file in the current folder that something made from the rule is written to.
+    /// Returns the default output file for the rule, in the current folder.
     pub(super) fn file(&self, suffix: &str, extension: &str) -> PathBuf {
         let mut name = name_of(&self.rule).to_os_string();
         name.push(suffix);
@@ -207,13 +207,13 @@ impl RuleArguments {
         name.into()
     }
 
-    /// Finds, reads and resolves the rule; warnings are said.
+    /// Finds, reads and resolves the rule; warnings are printed unless `quiet`.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
         let source = open(&self.rule, catalogue)?;
         self.load_from(&source, catalogue, quiet)
     }
 
-    /// The same from its text.
+    /// Reads and resolves the rule from its text.
     pub(super) fn load_from(
         &self,
         source: &Arc<Source>,
@@ -225,8 +225,8 @@ impl RuleArguments {
         self.resolve(document, settings?.concat(), quiet)
     }
 
-    /// The same for several values of a parameter, or of some together, each with the settings that make
-    /// it; a range has so many. Without one, there is none.
+    /// Returns the members of a family, each with its settings; `samples` is the number of values of a range.
+    /// The result is empty if no parameter has several values.
     pub(super) fn load_family(
         &self,
         catalogue: &Catalogue,
@@ -247,7 +247,7 @@ impl RuleArguments {
         members.collect()
     }
 
-    /// Resolves the rule when it has been read.
+    /// Resolves the rule after it has been read.
     pub(super) fn resolve(
         &self,
         document: Document,
@@ -274,7 +274,7 @@ impl RuleArguments {
         })
     }
 
-    /// The model without the maps that are left out.
+    /// Returns the model without the omitted maps.
     fn without_omitted(&self, model: Model, name: &str) -> Result<Model, Failure> {
         if self.omit.is_empty() {
             return Ok(model);
@@ -298,13 +298,16 @@ impl RuleArguments {
         }
         let left = system.omitting(&maps).map_err(|errors| {
             let said: Vec<_> = errors.iter().map(ToString::to_string).collect();
-            usage(format!("--omit: of what is left, {}", said.join("; ")))
+            usage(format!(
+                "--omit: of the remaining maps, {}",
+                said.join("; ")
+            ))
         })?;
         Ok(Model::Ifs(left.into()))
     }
 }
 
-/// What is wrong with a setting is wrong with the command line, not with the file.
+/// Checks a setting: an error in it is an error on the command line, not in the file.
 fn check_setting(
     setting: &Setting,
     settings: &[Setting],
@@ -324,7 +327,7 @@ fn check_setting(
         .collect();
     let unset = document.resolve(&[]);
     match document.resolve(&others) {
-        // The file is right with its own values, so it is this one that is not.
+        // The file is correct with its own values, so that this setting causes the error.
         Err(diagnostics) if unset.is_ok() => {
             let errors = diagnostics
                 .iter()

@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     /// Background colour of the figure
     #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
     background: Option<picture::Ink>,
-    /// Prints errors only
+    /// Suppresses all messages except errors
     #[arg(long, short)]
     quiet: bool,
 }
