@@ -170,7 +170,7 @@ fn the_command_line_has_millimetres() {
         let (code, said) = run(&[&levy[..], options].concat());
         assert_eq!(code, Some(0), "{said}");
         assert!(said.contains(told), "{said}");
-        let noted = said.starts_with("note: one pen for all 64 colours: --pens 8 gives as many");
+        let noted = said.starts_with("note: one pen for all 64 colours: --pens 8 gives that many");
         assert_eq!(noted, note, "{said}");
     }
     let chaos = ["grow", "barnsley-fern", "--method", "chaos", "-o"];
