@@ -107,7 +107,7 @@ impl Goal {
         }
     }
 
-    /// The options that say so.
+    /// Returns the options that give the goal, with their values.
     pub(super) fn options(self) -> Vec<(&'static str, String)> {
         let (steps, pixels) = match self {
             Self::Steps(steps, pixels) => (Some(steps), pixels),
@@ -118,7 +118,7 @@ impl Goal {
         steps.into_iter().chain(detail).collect()
     }
 
-    /// What a picture shows.
+    /// Describes the content of a picture, for its labels.
     pub(super) fn described(self) -> String {
         match self {
             Self::Steps(steps, None) => format!("Step {steps}"),
@@ -129,7 +129,7 @@ impl Goal {
         }
     }
 
-    /// What has been grown of a rule, in how many steps.
+    /// Describes the approximant that has been grown, for the summary.
     pub(super) fn reached(self, name: &str, steps_taken: u32) -> String {
         match self {
             Self::Steps(steps, None) => format!("step {steps} of {name}"),
@@ -167,7 +167,7 @@ fn starts_anew(loaded: &Loaded) -> bool {
     matches!(&loaded.model, Model::LSystem(system) if !Graph::rewrites_edges(system))
 }
 
-/// A number of pixels as words have it.
+/// Formats a number of pixels with its noun.
 fn counted(pixels: f64) -> String {
     format!("{pixels} pixel{}", if pixels == 1.0 { "" } else { "s" })
 }

@@ -139,7 +139,7 @@ impl Loaded {
         })
     }
 
-    /// The same for pictures whose colours tell something.
+    /// Returns the graph for pictures with a `color_by`, which may need a graph that records more.
     pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
         match (&self.model, color_by) {
             (Model::Ifs(_), ColorBy::LastMap) => {

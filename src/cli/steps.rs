@@ -15,15 +15,15 @@ pub(super) fn parse(text: &str) -> Result<u32, String> {
     number::whole("a number of steps", 0..=MOST_STEPS)(text)
 }
 
-/// The most approximants on a sheet where nobody says which.
+/// Largest number of approximants on a sheet by default.
 pub(super) const MOST_CELLS: u32 = 12;
 
-/// Several numbers of steps, one at least.
+/// Several numbers of steps, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Several(Vec<u32>);
 
 impl Several {
-    /// All from 0 to a number.
+    /// Returns all numbers from 0 to `last`.
     pub(super) fn up_to(last: u32) -> Self {
         Self((0..=last).collect())
     }
@@ -37,7 +37,7 @@ impl Several {
     }
 }
 
-/// As the command line has them.
+/// Formats the numbers in the notation of the command line.
 impl fmt::Display for Several {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let follow = |pair: &[u32]| pair[1] == pair[0] + 1;
@@ -51,7 +51,7 @@ impl fmt::Display for Several {
     }
 }
 
-/// Reads several numbers of steps: `0..6` is 0 to 6 with both ends, `0,2,4` is a list.
+/// Parses several numbers of steps: `0..6` is 0 to 6, both included, and `0,2,4` is a list.
 pub(super) fn parse_several(text: &str) -> Result<Several, String> {
     const MOST: usize = 10_000;
     let wrong = || "write 0..6, or a list such as 0,2,4".to_owned();
