@@ -167,7 +167,7 @@ fn starts_anew(loaded: &Loaded) -> bool {
     matches!(&loaded.model, Model::LSystem(system) if !Graph::rewrites_edges(system))
 }
 
-/// Formats a number of pixels with its noun.
+/// A number of pixels as words have it.
 fn counted(pixels: f64) -> String {
     format!("{pixels} pixel{}", if pixels == 1.0 { "" } else { "s" })
 }
