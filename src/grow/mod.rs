@@ -199,7 +199,7 @@ pub trait Visitor {
     ///
     /// # Errors
     ///
-    /// Whatever ends the walk.
+    /// Returns an error to end the walk.
     fn colony(&mut self, _: &Colony<'_>, _: Taken) -> Result<(), Self::Error> {
         Ok(())
     }

@@ -1,3 +1,5 @@
+//! Contribution mask: the elements of which a pass may paint descendants.
+
 use std::ops::RangeInclusive;
 
 use crate::graph::Object;
@@ -7,18 +9,18 @@ use super::scene::{Pass, Scene};
 use super::sketch::stands_alone;
 use super::stamps::Painted;
 
-/// What a pass is to paint, as far as it is known of an element before it is replaced: what becomes of
-/// others is left out.
+/// Elements that a pass paints, as far as they are known before replacement. Elements without painted
+/// descendants are left out.
 pub(super) struct Aim {
     /// Whether nothing needs to be known of elements that are not painted.
     pub(super) stands_alone: bool,
-    /// The steps in which is born what is painted, where that is so.
+    /// Steps in which painted elements are born, if the colour depends on steps.
     pub(super) steps: Option<RangeInclusive<u32>>,
-    /// By object, what part of all that becomes of it is painted, where objects tell their class.
+    /// By object, the part of its descendants that is painted; empty unless objects determine classes.
     objects: Vec<Part>,
 }
 
-/// How much of what becomes of an object is painted.
+/// Part of an object's descendants that is painted.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
     Nothing,
@@ -40,7 +42,7 @@ impl Aim {
         }
     }
 
-    /// Whether anything that becomes of an element may be painted.
+    /// Returns whether any descendant of an element may be painted.
     #[inline]
     pub(super) fn may_paint(&self, scene: &Scene<'_>, subtree: &Subtree) -> bool {
         if self.objects.get(subtree.object) == Some(&Part::Nothing) {
@@ -67,20 +69,21 @@ impl Aim {
         }
     }
 
-    /// Whether objects tell what is painted.
+    /// Returns whether objects determine which elements are painted.
     #[inline]
     pub(super) fn tells_objects(&self) -> bool {
         !self.objects.is_empty()
     }
 
-    /// Whether all that is drawn of what becomes of an object is painted.
+    /// Returns whether all descendants of an object are painted.
     #[inline]
     pub(super) fn paints_all_of(&self, object: usize) -> bool {
         self.objects.get(object) == Some(&Part::Everything)
     }
 }
 
-/// By object, what part of all that becomes of it is of a class; empty where objects do not tell.
+/// Returns, by object, the part of its descendants that is of a class; empty unless objects determine
+/// classes.
 fn parts(scene: &Scene<'_>, class: u64) -> Vec<Part> {
     let graph = scene.graph;
     let of = |object: &Object| scene.classes.of_object(object);
@@ -114,10 +117,10 @@ mod tests {
     use crate::render::scene::Scene;
     use crate::style::ColorBy;
 
-    /// What classes are drawn of what becomes of every object.
+    /// Visitor that records, by object, the classes of its drawn descendants.
     struct Lineage<'a> {
         scene: &'a Scene<'a>,
-        /// What the element descends from that comes next: steps of birth and objects.
+        /// Ancestors of the next element, with the steps of their birth.
         path: Vec<(u32, usize)>,
         drawn: Vec<BTreeSet<u64>>,
     }
@@ -165,7 +168,7 @@ mod tests {
     #[test]
     fn what_is_left_out_has_nothing_of_its_class() {
         let catalogue = Catalogue::embedded();
-        // Any map may come to be the first one, and either star leads to both.
+        // Any map may be the first one, and either star leads to both.
         for (name, color_by, leaves_out) in [
             ("twindragon-ifs", ColorBy::LastMap, true),
             ("square-filled", ColorBy::FirstMap, false),

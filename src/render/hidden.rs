@@ -1,3 +1,5 @@
+//! Occlusion: elements are left out if all pixels that they would cover are covered already.
+
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
@@ -12,45 +14,47 @@ use super::sight::own_reach;
 use super::sketch::stands_alone;
 use super::survey::overhang;
 
-/// Longer and longer descendants are looked for so many times.
+/// Maximum number of sweeps in the search for the longest descendants.
 const MOST_SWEEPS: usize = 64;
 
-/// Filled shapes that are narrower than a pixel are drawn as wide, which is less than so many pixels beyond
-/// their outlines.
+/// Upper bound of the distance, in pixels, by which filled shapes are drawn beyond their outlines: shapes
+/// narrower than a pixel are drawn a pixel wide.
 const BROADENED: f64 = 0.75;
 
-/// Tells what need not be drawn, since it lies where all is covered already.
+/// Occlusion of a pass: determines the elements that need not be drawn, since they lie where everything is
+/// covered already.
 ///
-/// The law: a picture is the same to the bit whether anything is hidden or not. So it does not matter
-/// what a thread knows of that which others have covered, nor when, nor how many they are. It holds
-/// since
+/// The invariant is that a picture is the same to the bit whether anything is left out or not. Therefore the
+/// coverage by other threads that a thread knows of does not matter, nor when it knows of it, nor the number
+/// of threads. The invariant holds because
 ///
-/// - all that hides has been drawn already, and is drawn once: nothing is hidden by itself, or by what
-///   may yet be left out;
-/// - coverage of one opaque colour neither grows nor changes where it is whole; of areas and strokes in two
-///   colours, which are one path, the strokes lie on top and hide both;
-/// - what is left out joins nothing: lines that go on behind it begin where all is covered, and no caps
-///   or corners show there;
-/// - all of it would be drawn as coverage, which has no order. Paths that are drawn in pieces, by the
-///   number of their vertices, may have seams; what is drawn as such is not hidden.
+/// - everything that occludes has been drawn already, and is drawn once: nothing is occluded by itself, or by
+///   elements that may yet be left out;
+/// - complete coverage in one opaque colour neither grows nor changes; of areas and strokes in two colours,
+///   which are one path, the strokes lie on top and occlude both;
+/// - elements that are left out join nothing: lines that continue behind them begin where everything is
+///   covered, and no caps or corners are visible there;
+/// - all of them would be drawn as coverage, which has no order. Paths that are divided by the number of
+///   their vertices may have seams; elements that are drawn by such paths are not left out.
 pub(super) struct Hidden {
     filled: Arc<Filled>,
-    /// The layer of the first class.
+    /// Layer of the first class.
     pub(super) first: u64,
-    /// How far what becomes of an object reaches from the middle of its frame, by object,
+    /// By object, radius of its descendants about the centre of its frame, as a multiple of its length.
     reaches: Arc<[f64]>,
-    /// and how many pixels further it is drawn.
+    /// Distance, in pixels, by which drawing may exceed that radius.
     overhang: f64,
-    /// How wide strokes of what becomes of an object are at most, as a multiple of its length, by object.
+    /// By object, upper bound of the stroke widths of its descendants, as a multiple of its length; empty if
+    /// widths are in pixels.
     widths: Vec<f64>,
 }
 
 impl Hidden {
-    /// Whether anything may be left out of a pass for that reason.
+    /// Returns whether any elements of a pass may be left out.
     pub(super) fn may_be(scene: &Scene<'_>, pass: Pass) -> bool {
         let Scene { graph, style, .. } = scene;
         let numbers_change = match style.color_by {
-            // Spans of one class are told apart where they come in order.
+            // If classes occur in order, spans of one class are recognised.
             ColorBy::Index => pass != Pass::Along,
             ColorBy::Fractal => graph.seeds,
             ColorBy::Tint => graph.tints(),
@@ -63,7 +67,7 @@ impl Hidden {
             && Self::is_narrow(graph, style)
     }
 
-    /// What is hidden of a scene.
+    /// Creates the occlusion of a scene.
     pub(super) fn new(scene: &Scene<'_>, filled: Arc<Filled>) -> Self {
         let Scene { graph, style, .. } = scene;
         let reaches = graph.reaches(|object| own_reach(graph, object, style));
@@ -87,8 +91,8 @@ impl Hidden {
         }
     }
 
-    /// Whether all lines are narrow enough to be drawn as coverage where they are as wide as `style` says
-    /// in pixels; where widths are relative, some may be.
+    /// Returns whether all lines are narrow enough to be drawn as coverage, if widths are in pixels; if
+    /// widths are relative, some may be.
     fn is_narrow(graph: &Graph, style: &Style) -> bool {
         let mut drawn = graph.objects().iter().filter(|object| object.visible);
         let draws_lines = style.outlines_polygons()
@@ -101,8 +105,8 @@ impl Hidden {
         }
     }
 
-    /// How many pixels from the middle of its frame what becomes of an object of a length is drawn at
-    /// most.
+    /// Returns an upper bound of the distance, in pixels, from the centre of an element's frame at which its
+    /// descendants are drawn.
     #[inline]
     pub(super) fn reach(&self, scene: &Scene<'_>, object: usize, length: f64) -> f64 {
         self.reach_of(scene, self.reaches[object], length)
@@ -114,16 +118,16 @@ impl Hidden {
         radius * scene.canvas.scale() * length + self.overhang
     }
 
-    /// Returns the radius about the middle of its frame of the descendants of an object, without strokes, as a
-    /// multiple of its length.
+    /// Returns the radius about the centre of its frame of the descendants of an object, without strokes in
+    /// pixels, as a multiple of its length.
     pub(super) fn radius(&self, object: usize) -> f64 {
         self.reaches[object]
     }
 
-    /// Whether all that becomes of an element of a class is.
+    /// Returns whether all descendants of an element, which are of one class, are occluded.
     #[inline]
     pub(super) fn hides(&self, scene: &Scene<'_>, subtree: &Subtree, class: u64) -> bool {
-        // What a disc becomes is as wide and as high as the rows of the map are long.
+        // The image of a disc is as wide and as high as the rows of the map are long.
         let rows = subtree.frame.map.matrix2.transpose();
         let [x, y] = [rows.x_axis, rows.y_axis].map(DVec2::length);
         let reach = [x, y].map(|length| self.reach(scene, subtree.object, length));
@@ -139,7 +143,7 @@ impl Hidden {
     }
 }
 
-/// By object, the most that what becomes of it is long, as a multiple of its length.
+/// Returns, by object, an upper bound of the lengths of its descendants, as a multiple of its length.
 fn longest(graph: &Graph) -> Vec<f64> {
     let ratios = graph.ratios();
     let mut longest = vec![1.0; ratios.len()];

@@ -1,3 +1,5 @@
+//! Painter: joins the sketches of a walk's spans to paths, in order.
+
 use std::collections::BTreeSet;
 use std::io;
 use std::sync::Arc;
@@ -17,35 +19,35 @@ use super::stamps::Stamps;
 use super::surface::{FINE, Paint, Pen, Position, Stencil, Stroke, Surface};
 use super::tracer::Tracer;
 
-/// Vertices between two chances of the surface to hand on what it has.
+/// Number of vertices after which the surface may hand on the drawn portion of a path.
 const MANY: usize = 256;
 
-/// Where the element before ended.
+/// End of the preceding element.
 #[derive(Clone, Copy)]
 struct Previous {
     end: Position,
-    /// Whether that is the end of the element's frame.
+    /// Whether it is the end of the element's frame.
     meets_frame: bool,
-    /// Whether the pen has drawn it.
+    /// Whether it has been drawn.
     drawn: bool,
 }
 
-/// Paints what one walk over an approximant is for, from sketches of its spans.
+/// Paints a pass from the sketches of its spans.
 pub(super) struct Painter<'a, 's, S> {
     scene: &'a Scene<'a>,
-    /// The class's colour, where colours tell something.
+    /// Colour of the class, if colours depend on classes.
     colour: Option<Colour>,
-    /// The class that it has come to, where one walk paints all.
+    /// Current class, if one walk paints all classes.
     class: Option<u64>,
-    /// The layer of the first class, where classes are layers.
+    /// Layer of the first class, if classes are layers.
     first_layer: Option<u64>,
     tracer: Tracer<'s, S>,
     look: Option<Look>,
     previous: Option<Previous>,
-    /// For a ring that has not been broken: whether its first element starts where its frame does.
+    /// For a ring that is unbroken so far, whether its first element starts where its frame does.
     ring: Option<bool>,
     is_first: bool,
-    /// Where lines end that come together.
+    /// Scratch memory for the ends of successive lines.
     vertices: Vec<Position>,
 }
 
@@ -68,14 +70,14 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         }
     }
 
-    /// Closed outlines without what is too fine, if they may be drawn so.
+    /// Returns the simplified outlines, if the surface permits them.
     pub(super) fn coarse(&self) -> Option<&'a Coarse> {
         let grain = self.tracer.grain()?;
         let coarse = || Coarse::of(self.scene.graph, grain);
         self.scene.coarse.get_or_init(coarse).as_ref()
     }
 
-    /// Whether closed base elements that are narrower than a pixel are stroked.
+    /// Returns whether closed base elements that are narrower than a pixel are stroked.
     pub(super) fn broadens(&self) -> bool {
         let paint = self.paint(Look {
             kind: Kind::Polygon,
@@ -84,7 +86,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         paint.stroke.is_none() && self.tracer.broadens(&paint)
     }
 
-    /// What makes tufts, if they may be drawn.
+    /// Creates the comb that makes tufts, if the surface permits them.
     pub(super) fn comb(&self) -> Option<Comb> {
         let Width::Relative(width) = self.scene.style.width else {
             return None;
@@ -94,7 +96,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         (below > 0.0).then(|| Comb::new(width, stroke.pen, below))
     }
 
-    /// What tells what need not be drawn, if everything is covered in one opaque colour a class.
+    /// Creates the occlusion of a pass, if everything is covered in one opaque colour per class.
     pub(super) fn hidden(&mut self, pass: Pass) -> Option<Hidden> {
         if !Hidden::may_be(self.scene, pass) {
             return None;
@@ -140,8 +142,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Some(hidden)
     }
 
-    /// What makes stamps, if they may be put in one opaque colour a class: where everything may be
-    /// hidden that is covered already.
+    /// Creates the stamps of a pass, if they may be put in one opaque colour per class: under the conditions
+    /// of occlusion.
     pub(super) fn stamps(
         &mut self,
         pass: Pass,
@@ -171,7 +173,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Stamps::new(self.scene, stencil, painted, Arc::clone(hidden))
     }
 
-    /// The kinds of what is drawn.
+    /// Returns the kinds of the paths that are drawn.
     fn kinds(&self) -> Vec<Kind> {
         let graph = self.scene.graph;
         let drawn = graph.objects().iter().filter(|object| object.visible);
@@ -181,14 +183,14 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         closed.into_iter().map(kind).collect()
     }
 
-    /// What comes is of the layer of a class.
+    /// Declares that the following paths belong to the layer of a class.
     fn begin_layer(&mut self, class: u64) {
         if let Some(first) = self.first_layer {
             self.tracer.layer(first + class);
         }
     }
 
-    /// Ends what is still open.
+    /// Ends the open path.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.end_path()
     }
@@ -213,14 +215,14 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.tracer.stamps(now);
             }
             self.mark(mark, joined, &mut points)?;
-            // A class is not yet an element.
+            // A class is not an element yet.
             joined |= !matches!(mark, Mark::Class(_));
         }
         Ok(())
     }
 
-    /// Paints what a mark says of the points that come next. `joined` tells whether what says that
-    /// it is joined to what comes before is so.
+    /// Paints a mark and the points that belong to it. Elements that are marked as joined to the preceding
+    /// one are so only if `joined` is set.
     fn mark(&mut self, mark: &Mark, joined: bool, points: &mut &[Position]) -> io::Result<()> {
         let mut next = || {
             let (first, rest) = points.split_first().unwrap_or((&[0; 2], &[]));
@@ -296,7 +298,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
-    /// Goes on with elements of a class.
+    /// Begins a class, unless it is the current one.
     fn come_to(&mut self, class: u64) -> io::Result<()> {
         if self.class == Some(class) {
             return Ok(());
@@ -308,7 +310,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
-    /// Goes on with the open path if it looks alike, or begins a new one.
+    /// Continues the open path if it has a matching paint key, or begins a new one.
     fn begin_path(&mut self, look: Look) -> io::Result<()> {
         if self.look.is_some_and(|open| open.serves(look)) {
             return Ok(());
@@ -366,7 +368,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
-    /// Begins to draw a line of elements, or goes on.
+    /// Begins a line of elements, or continues one.
     fn line(&mut self, line: &Line, start: Position) -> io::Result<()> {
         self.begin_path(line.look)?;
         let [meets_start, meets_end] = line.meets_frame;
@@ -407,7 +409,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
-    /// Gives the surface a chance to hand on what it has; a polygon stays in one piece.
+    /// Permits the surface to hand on the drawn portion of the path; a polygon stays in one piece.
     fn hand_on(&mut self) -> io::Result<()> {
         if self.look.is_some_and(Look::is_of_polygons) {
             return Ok(());
@@ -415,7 +417,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         self.tracer.hand_on()
     }
 
-    /// What is drawn has come to a point.
+    /// Records the end of the drawn line.
     fn reach(&mut self, end: Position) {
         if let Some(previous) = &mut self.previous {
             previous.end = end;
@@ -430,7 +432,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         {
             self.tracer.close(meets_start && previous.meets_frame);
         }
-        // Polygons of different fractals stay in one path; lines begin a new one.
+        // Polygons of different fractals share a path; lines begin a new one.
         if self.look.is_some_and(|look| !look.is_of_polygons()) {
             self.end_path()?;
         }

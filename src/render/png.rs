@@ -1,6 +1,6 @@
-//! PNG: the paths of a picture, antialiased. Strokes that are not wide and opaque areas that are small, of
-//! which there may be millions, or have millions of vertices, are drawn as coverage, by any thread; tiny-skia
-//! draws the rest.
+//! PNG: the paths of a picture, antialiased. Narrow strokes, and opaque areas that are small or have very
+//! many vertices, are drawn as coverage by any thread; there may be millions of them. tiny-skia draws the
+//! rest.
 
 mod chunk;
 mod coverage;
@@ -40,28 +40,28 @@ use super::Labels;
 use super::filled::Filled;
 use super::surface::{FINE, Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
 
-/// Outlines may lie so far beside where they are, in pixels: twice as far as rounding moves them.
+/// Deviation that outlines are permitted, in pixels: twice that of rounding.
 const GRAIN: f64 = 1.0 / FINE;
 
-/// Strokes of round pens that are wider than this, in pixels, are not drawn as coverage.
+/// Maximum width of strokes of round pens that are drawn as coverage, in pixels.
 pub(super) const WIDEST_COVERED: f64 = *RoundPen::WIDTHS.end();
 
-/// The most pixels that a picture may have: two gibibytes.
+/// Maximum number of pixels of a picture: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
 
-/// A picture that memory should not be asked to hold.
+/// Error that a picture would take too much memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a PNG of {0} x {1} pixels takes {gigabytes:.1} GB of memory, and {most:.1} GB is the most; an SVG of this size takes none",
     size[0], size[1], gigabytes = bytes(.size), most = MOST_PIXELS as f64 * 4e-9
 )]
 pub struct TooManyPixels {
-    /// Its width and height.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
 }
 
 impl TooManyPixels {
-    /// Refuses pictures that would be.
+    /// Returns an error if a picture would take too much memory.
     pub(crate) fn check(size: [u32; 2]) -> Result<(), Self> {
         let [width, height] = size.map(u64::from);
         if width * height > MOST_PIXELS {
@@ -71,42 +71,45 @@ impl TooManyPixels {
     }
 }
 
-/// The gigabytes that a picture takes.
+/// Returns the memory that a picture takes, in gigabytes.
 fn bytes(size: &[u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1]) * 4e-9
 }
 
-/// What is of use for other bands: threads that gave memory back and took it again would keep it, each
-/// for itself.
+/// Coverage buffers for other bands. Threads that repeatedly free and allocate memory would each retain it.
 #[derive(Default)]
 pub(super) struct Spare(Layers);
 
-/// A picture in memory.
+/// Picture in memory.
 pub(super) struct Png<'t, 'w> {
-    /// The part of the picture that is drawn on, and those that it was entered from.
+    /// Part of the picture that is drawn on.
     part: Part,
+    /// Parts from which it was entered.
     outer: Vec<Part>,
-    /// What has not been covered yet, and what has it covered.
+    /// Shapes that are not submitted yet.
     chunk: Chunk,
+    /// Pipeline that covers chunks.
     line: Line<'t, 'w, Chunk>,
     threads: usize,
-    /// The layer that paths are of.
+    /// Layer of the paths.
     layer: u64,
     nibs: Nibs,
-    /// The nib that draws the path as coverage, if one does.
+    /// Stroker of the path, if its strokes are drawn as coverage.
     nib: Option<Nib>,
     /// State of the current subpath.
     trail: Trail,
-    /// Whether the next path is of words, whose letters have holes: subpaths that are covered one by one
-    /// would fill them.
+    /// Whether the next path is text, whose letters have holes: to cover its subpaths one by one would fill
+    /// these.
     has_holes: bool,
-    /// Whether the path may hold polygons that are drawn as coverage,
+    /// Whether the path may contain polygons that are drawn as coverage.
     covers: bool,
-    /// the vertices of the current one, and the outlines with too many vertices for one.
+    /// Vertices of the current polygon.
     ring: Vec<Position>,
+    /// Outlines with too many vertices for a polygon.
     region: Region,
-    /// What tiny-skia draws of the path, if that is anything.
+    /// Portion of the path that tiny-skia draws.
     outline: Outline,
+    /// Whether tiny-skia draws any portion.
     is_outlined: bool,
 }
 
@@ -122,8 +125,8 @@ impl<'t, 'w> Png<'t, 'w> {
         Self::begin_on(size, 0..height, Outline::default(), background, team)
     }
 
-    /// Begins a band of a picture: some of its rows, of which the first is a multiple of
-    /// [`BAND_ROWS`]. What is drawn in them does not depend on where bands begin.
+    /// Begins a band of a picture: some of its rows, the first of which is a multiple of [`BAND_ROWS`]. Their
+    /// contents do not depend on where bands begin.
     pub(super) fn begin_band(
         size: [u32; 2],
         rows: Range<u32>,
@@ -169,7 +172,7 @@ impl<'t, 'w> Png<'t, 'w> {
         })
     }
 
-    /// The pixels of the rows, and what another band can be drawn with.
+    /// Returns the pixels of the rows, and coverage buffers for another band.
     pub(super) fn into_pixels(mut self) -> (Pixmap, Spare) {
         self.settle();
         let spare = Spare(self.part.planes());
@@ -179,7 +182,7 @@ impl<'t, 'w> Png<'t, 'w> {
     /// Encodes the picture.
     pub(super) fn write(mut self, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
         self.settle();
-        // Into memory first: the encoder would not tell why `out` fails.
+        // The encoder would not return the error of `out`, hence the copy in memory.
         let mut bytes = Vec::new();
         encode::encode(&self.part.pixmap, labels, &mut bytes)?;
         out.write_all(&bytes)
@@ -198,7 +201,7 @@ impl<'t, 'w> Png<'t, 'w> {
         }
     }
 
-    /// Hands on what is to be covered, if that is much.
+    /// Submits the current chunk if it is full.
     #[inline]
     fn hand_on_chunk(&mut self) {
         if self.chunk.is_full() {
@@ -216,11 +219,11 @@ impl<'t, 'w> Png<'t, 'w> {
         let Ok(()) = self.line.hand_on::<Infallible>(chunk, &mut |_| Ok(()));
     }
 
-    /// Colours what has been covered, between two paths.
+    /// Colours everything that has been covered, between two paths.
     fn settle(&mut self) {
         self.nib = None;
         if self.line.is_idle() {
-            // Not worth while to wake another thread.
+            // The work is not worth another thread.
             self.chunk.assign(self.part.planes_in_use());
             self.chunk.cover();
         } else if !self.chunk.is_empty() {
@@ -231,7 +234,7 @@ impl<'t, 'w> Png<'t, 'w> {
     }
 }
 
-/// Returns the colours of the two planes for colours of areas and strokes.
+/// Returns the colours of the two layers of coverage, for colours of areas and strokes.
 fn inks(fill: Option<Colour>, stroke: Option<Colour>) -> [Option<Colour>; 2] {
     match (fill, stroke) {
         (Some(fill), Some(stroke)) if fill != stroke => [Some(fill), Some(stroke)],
@@ -390,7 +393,7 @@ impl Surface for Png<'_, '_> {
     }
 
     fn broadens(&self, paint: &Paint) -> bool {
-        // What is opaque is covered no narrower.
+        // Opaque areas are covered at least a pixel wide.
         paint.fill.is_some_and(|fill| fill != fill.opaque())
     }
 

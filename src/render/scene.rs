@@ -1,3 +1,5 @@
+//! Scenes: approximants on their canvases, drawn in one or more passes.
+
 use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::{Arc, OnceLock};
@@ -17,7 +19,7 @@ use super::surface::{Pen, Surface};
 use super::survey::{Ranks, span};
 use super::{Canvas, Classes, Drawing, RenderError, Survey};
 
-/// An approximant on its canvas.
+/// Approximant on its canvas.
 pub(crate) struct Scene<'a> {
     pub(super) graph: &'a Graph,
     pub(super) growth: &'a Growth<'a>,
@@ -26,9 +28,9 @@ pub(crate) struct Scene<'a> {
     pub(super) sight: Sight,
     pub(super) classes: Classes,
     passes: Vec<Pass>,
-    /// The number of elements.
+    /// Number of elements.
     pub(super) elements: u64,
-    /// Ranks of elements, where colours tell them and they are known.
+    /// Ranks of elements, if colours depend on them and they are known.
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
@@ -36,29 +38,29 @@ pub(crate) struct Scene<'a> {
     pub(super) colonies: OnceLock<ColonyKinds>,
     /// Minimum number of uses of a stamp.
     pub(super) uses: u64,
-    /// Whether closed paths are filled as they are stroked.
+    /// Whether one path fills and strokes closed chains.
     pub(super) fills_strokes: bool,
-    /// Outlines without what is too fine, once a surface has said what that is.
+    /// Simplified outlines, once a surface has stated the deviation that it permits.
     pub(super) coarse: OnceLock<Option<Coarse>>,
 }
 
-/// What one walk paints.
+/// Part of a picture that one walk paints.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Pass {
-    /// The areas of fractals that are closed chains, under everything else.
+    /// Areas of fractals that are closed chains, below everything else.
     Areas,
-    /// The elements of a class.
+    /// Elements of a class.
     Class(u64),
-    /// The elements of all classes, which come one class after another.
+    /// Elements of all classes, which occur in order.
     Along,
 }
 
 impl<'a> Scene<'a> {
-    /// What a survey has seen, on a canvas.
+    /// Creates the scene of a surveyed approximant on a canvas.
     pub(crate) fn new(survey: &Survey<'a>, growth: &'a Growth<'a>, canvas: Canvas) -> Self {
         let (graph, style) = (survey.graph(), survey.style());
         let (classes, painted) = survey.classes();
-        // One path for both, where stroke and colour never change along a fractal.
+        // One path serves both if stroke and colour never change along a fractal.
         let together = graph.draws_closed_paths()
             && matches!(style.width, Width::Pixels(_))
             && graph.widest().is_none()
@@ -73,7 +75,7 @@ impl<'a> Scene<'a> {
         };
         let passes: Vec<_> = areas.into_iter().chain(painted).collect();
         if let Some(progress) = growth.progress {
-            // The survey, and a walk for everything that is painted apart.
+            // The survey, and a walk for every pass.
             let walks = u64::from(survey.walked) + passes.len() as u64;
             progress.expect(survey.elements * walks);
         }
@@ -123,7 +125,7 @@ impl Drawing for Scene<'_> {
         if self.style.color_by == ColorBy::Index {
             match &self.ranks {
                 Some(ranks) => (growth.steps, division.ranks) = (ranks.steps, ranks.for_walk()),
-                // Ranks that are not known before need one pair of eyes.
+                // If ranks are unknown before the walk, it is not divided.
                 None => division.span = None,
             }
         }
@@ -155,7 +157,7 @@ impl Drawing for Scene<'_> {
             )?;
             painter.finish()?;
             if let Some(progress) = self.growth.progress {
-                // What a pass leaves out is done with it.
+                // Elements that a pass leaves out are done with it.
                 progress.count(self.elements.saturating_sub(walked.elements));
             }
         }
@@ -164,8 +166,8 @@ impl Drawing for Scene<'_> {
 }
 
 impl<'a> Survey<'a> {
-    /// What the graph tells of an approximant, or a walk over it where it does not. Colours that
-    /// tell steps span `steps` of them.
+    /// Surveys an approximant: from the graph if it determines everything, otherwise by a walk. Colours that
+    /// depend on steps span `steps` of them.
     pub(crate) fn of(
         graph: &'a Graph,
         growth: &Growth<'_>,
@@ -203,7 +205,7 @@ mod tests {
             ("dragon-wreath", ColorBy::Index),
             ("pentaflake", ColorBy::Index),
             ("hilbert", ColorBy::Index),
-            // Of unlike lengths, so that it takes a walk to know ranks.
+            // Lengths are unequal, so that ranks require a walk.
             ("snowflake-sweep", ColorBy::Index),
             ("random-tree", ColorBy::Index),
             ("self-seeding-square", ColorBy::Fractal),
@@ -276,7 +278,7 @@ mod tests {
         }
     }
 
-    /// Of elements that are large outlines few make a span.
+    /// A span has few elements if these are large outlines.
     #[test]
     fn sketches_stay_small() {
         let catalogue = Catalogue::embedded();

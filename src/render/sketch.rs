@@ -1,7 +1,7 @@
-//! Sketches: what a span of a walk draws, in positions on the picture.
+//! Sketches: the drawn contents of a span of a walk, in positions on the picture.
 //!
-//! A sketch is made by any thread, without knowing what was drawn before; the painter puts the
-//! sketches of all spans together, in order.
+//! A sketch is made by any thread, without knowledge of what was drawn before; the painter joins the sketches
+//! of all spans, in order.
 
 mod mark;
 mod runs;
@@ -29,7 +29,8 @@ use super::stamps::{Painted, Stamps};
 use super::surface::{FINE, Position, position};
 use super::survey::span;
 
-/// The vertices of a closed outline after the first, if it has no curves and ends where it starts.
+/// Returns the vertices of a closed outline after the first, if it has no curves. Its last line leads to its
+/// start.
 fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
     let is_line = |piece: &Piece| matches!(piece, Piece::Line(_));
     let (_, sides) = pieces.split_last()?;
@@ -39,13 +40,13 @@ fn vertices(pieces: &[Piece]) -> Option<impl Iterator<Item = DVec2>> {
         .then(|| sides.iter().map(Piece::end))
 }
 
-/// Whether an outline starts and ends where its frame does, in the order of traversal.
+/// Returns whether an outline starts and ends where its frame does, in the order of traversal.
 fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     let [start, end] = base_element.ends_meet_frame();
     if reversed { [end, start] } else { [start, end] }
 }
 
-/// Whether no line leads to the end of an element that a pass does not paint.
+/// Returns whether no line leads to the end of an element that a pass does not paint.
 pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
     let graph = scene.graph;
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
@@ -56,37 +57,37 @@ pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
         })
 }
 
-/// What makes a pass short, each where the surface allows it.
+/// Means to shorten a pass, each if the surface permits it.
 #[derive(Clone)]
 pub(super) struct Means<'a> {
-    /// What makes tufts,
+    /// Comb that makes tufts.
     pub(super) comb: Option<Arc<Comb>>,
-    /// outlines without what is too fine,
+    /// Simplified outlines.
     pub(super) coarse: Option<&'a Coarse>,
-    /// whether closed base elements that are narrower than a pixel are stroked,
+    /// Whether closed base elements that are narrower than a pixel are stroked.
     pub(super) broadens: bool,
-    /// what need not be drawn,
+    /// Occlusion.
     pub(super) hidden: Option<Arc<Hidden>>,
-    /// what many runs cover, drawn once,
+    /// Stamps of congruent runs and colonies.
     pub(super) stamps: Option<Arc<Stamps<'a>>>,
-    /// and what the pass is to paint.
+    /// Contribution mask of the pass.
     pub(super) aim: Arc<Aim>,
 }
 
-/// Sketches what one walk over an approximant is for.
+/// Sketches the spans of a pass.
 pub(super) struct Sketcher<'a> {
     scene: &'a Scene<'a>,
     pass: Pass,
     fractal: Fractal,
     pub(super) sketch: Sketch,
     means: Means<'a>,
-    /// The class that all of the span is of, if it is known.
+    /// Class of all elements of the span, if it is known.
     whole: Option<u64>,
-    /// The class that the sketch has come to, where it holds all.
+    /// Current class of the sketch, if it holds all classes.
     class: Option<u64>,
-    /// The mark of the line or area that the next element may go on with.
+    /// Index of the mark of the line or area that the next element may continue.
     open: Option<usize>,
-    /// The last width that a stroke had, as a length where widths are relative, and its class.
+    /// Last width of a stroke, as a length if widths are relative, and its class.
     width: (f64, i32),
 }
 
@@ -126,13 +127,13 @@ impl<'a> Sketcher<'a> {
         position(self.scene.canvas.pixel(point) * FINE)
     }
 
-    /// Makes a mark that begins something new.
+    /// Adds a mark that continues nothing.
     fn mark(&mut self, mark: Mark) {
         self.open = None;
         self.sketch.marks.push(mark);
     }
 
-    /// Makes a mark of an element that is not drawn. Only the last one in a row matters.
+    /// Adds a mark of an element that is not drawn. Only the last of successive ones matters.
     fn pass_by(&mut self, mark: Mark) {
         if let Some(Mark::Skip { .. }) = self.sketch.marks.last() {
             self.sketch.points.pop();
@@ -144,7 +145,7 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// What comes is of a class.
+    /// Declares the class of the following elements.
     fn come_to(&mut self, class: u64) {
         if self.class != Some(class) {
             self.class = Some(class);
@@ -207,7 +208,7 @@ impl<'a> Sketcher<'a> {
             width,
             colour: self.colour(element, self.scene.style.polygons()),
         };
-        // One orientation for all, so that what overlaps stays filled under the nonzero rule.
+        // All polygons have one orientation, so that overlaps stay filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
         if let Some(corners) = self.corners(element) {
             self.polygon_of(look, corners.len());
@@ -239,7 +240,7 @@ impl<'a> Sketcher<'a> {
         self.mark(Mark::Close { returned });
     }
 
-    /// The corners of what is drawn of an element, in its unit frame, where those will do.
+    /// Returns the corners of the simplified outline of an element, in its unit frame, if it is simplified.
     fn corners(&self, element: &Element) -> Option<&'a [DVec2]> {
         let Scene { graph, canvas, .. } = self.scene;
         let object = &graph.objects()[element.object];
@@ -248,7 +249,7 @@ impl<'a> Sketcher<'a> {
         coarse.corners(graph, object.base_element, pixels)
     }
 
-    /// One more polygon of a number of vertices.
+    /// Adds a polygon of `sides` vertices.
     #[inline]
     fn polygon_of(&mut self, look: Look, sides: usize) {
         match self.sketch.marks.last_mut() {
@@ -265,7 +266,7 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// Goes on along the outline of a fractal that is filled, whether it is drawn there or not.
+    /// Continues the outline of a filled fractal, whether it is visible there or not.
     fn area(&mut self, element: &Element, base_element: &BaseElement) {
         let map = element.frame.map;
         let (start, pieces) = base_element.outline(element.frame.direction.is_reversed());
@@ -312,7 +313,7 @@ impl<'a> Sketcher<'a> {
                 self.sketch.points.push(start);
             }
         }
-        // What a ring encircles is told by its curves.
+        // The area of a ring depends on its curves, which are therefore not simplified.
         let corners = self.corners(element).filter(|_| look.kind == Kind::Line);
         if let Some([first, between @ .., last]) = corners {
             let map = self.scene.canvas.map(&map);
@@ -348,8 +349,8 @@ impl<'a> Sketcher<'a> {
         self.width.1
     }
 
-    /// The logarithm to base 2 of the width that the stroke of an element of a length has, in
-    /// hundredths of a pixel, if widths are relative.
+    /// Returns the logarithm to base 2 of the stroke width of an element of a given length, in hundredths of
+    /// a pixel, if widths are relative.
     fn octave(&self, length: f64) -> Option<f64> {
         match self.scene.style.width {
             Width::Pixels(_) => None,
@@ -359,7 +360,7 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// The colour of an element that is tinted and has a colour of its own.
+    /// Returns the colour of a tinted element whose colour is `own` without the tint; `None` without tints.
     #[inline]
     fn colour(&self, element: &Element, own: Colour) -> Option<Colour> {
         let Scene { graph, style, .. } = self.scene;
@@ -367,7 +368,7 @@ impl<'a> Sketcher<'a> {
         is_tinted.then(|| element.coat.on(own))
     }
 
-    /// Whether nothing that becomes of an element can be seen any more.
+    /// Returns whether all descendants of an element are occluded.
     #[inline]
     fn is_hidden(&self, subtree: &Subtree) -> bool {
         let (Some(hidden), Some(class)) = (&self.means.hidden, self.whole) else {
@@ -505,7 +506,7 @@ impl Visitor for Sketcher<'_> {
         let one_width = matches!(self.scene.style.width, Width::Pixels(_));
         let line = run.line().filter(|_| one_width);
         match (share, line, run.sticks()) {
-            // Of what is not painted only the end matters, where the next line may begin.
+            // Of elements that are not painted, only the end matters, where the next line may begin.
             (Share::None, ..) => {
                 if let Some(last) = run.last() {
                     self.see(&last);

@@ -6,11 +6,11 @@
 //! they are put on a grid some ten times as fine as the detail: of 1/128 of a pixel for runs if there are
 //! enough of them, otherwise of 1/64, and half as fine for lines and outlines, whose pens are on a grid of
 //! 1/16. This moves them by at most 1/128 of a pixel, lines by 1/64. The coverage is computed on the grid, so
-//! that it does not depend on the thread that draws it first. Areas and outlines are covered separately, since
-//! their colours may differ.
+//! that it does not depend on the thread that draws it first. Areas and outlines are covered separately,
+//! since their colours may differ.
 //!
-//! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one
-//! by no more than 40/255, which are ten of the samples that tell its coverage.
+//! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one by
+//! at most 40/255, which corresponds to ten of the samples that determine its coverage.
 
 mod colonies;
 mod runs;
@@ -32,23 +32,24 @@ use super::scene::Scene;
 use super::sketch::Kind;
 use super::surface::{FINE, Position, Stamped, Stencil, position};
 
-/// Steps to a pixel in which linear parts are told apart.
+/// Steps per pixel in which linear parts are quantised.
 const LINEAR: f64 = 4096.0;
 
-/// Fewer elements than this are drawn one by one, in a run and in a picture; likewise.
+/// Minimum number of elements of a run that is stamped; an element with many pieces counts as several.
 const FEWEST_IN_RUN: u64 = 4;
+/// Minimum number of elements of a picture with stamps, counted likewise.
 const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
-/// Larger runs are drawn one by one, in pixels.
+/// Maximum size of a run that is stamped, in pixels.
 const LARGEST: f64 = 32.0;
 
-/// How often a stamp should be used.
+/// Minimum average number of uses of a stamp.
 pub(super) const USES: u64 = 3;
 
-/// What is kept of all stamps: no more bytes than this.
+/// Maximum memory of all stamps, in bytes.
 const MOST_MEMORY: usize = 1 << 26;
 
-/// Tables that are locked apart.
+/// Number of tables with separate locks.
 const TABLES: u64 = 64;
 
 /// Properties that determine the coverage of a run or colony up to its position.
@@ -68,16 +69,16 @@ enum Of {
     Colony(usize),
 }
 
-/// Stamps with equal keys, by place in a pixel; `None` where it could not be drawn.
+/// Stamps with equal keys, by position in a pixel; `None` for stamps that could not be drawn.
 type Places = [OnceLock<Option<Arc<Stamp>>>];
 
-/// What of a run is painted.
+/// Selection of painted elements.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Painted {
     All,
-    /// What is born in some steps: from the first to the last.
+    /// Elements born in some steps, from the first to the last.
     Steps(u32, u32),
-    /// The objects of a class.
+    /// Elements whose objects are of a class.
     Class(u64),
 }
 
@@ -94,7 +95,7 @@ impl Painted {
     }
 }
 
-/// The stamps of a pass.
+/// Stamps of a pass.
 pub(super) struct Stamps<'a> {
     stencil: Stencil,
     hidden: Arc<Hidden>,
@@ -152,8 +153,8 @@ impl<'a> Stamps<'a> {
 }
 
 impl Stamps<'_> {
-    /// Returns the stamp for a position, rounded to a grid of `phases` places a pixel; it is drawn if there is
-    /// none yet for its place in a pixel.
+    /// Returns the stamp for a position, which is rounded to a grid of `phases` steps per pixel. The stamp is
+    /// drawn if there is none yet for the position in the pixel.
     fn put(
         &self,
         key: &Key,
@@ -186,7 +187,7 @@ impl Stamps<'_> {
         Some(Stamped { stamp, pixel })
     }
 
-    /// Returns the stamps of a key by place, if there is memory for them.
+    /// Returns the stamps of a key by position in a pixel, if there is memory for them.
     fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
         let number = match key.of {
             Of::Run(number) => number,
@@ -206,12 +207,12 @@ impl Stamps<'_> {
         Some(Arc::clone(table.entry(key.clone()).or_insert_with(made)))
     }
 
-    /// Takes memory; whether there was any left.
+    /// Reserves memory. Returns whether any was left.
     fn take(&self, bytes: usize) -> bool {
         self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
     }
 
-    /// Draws a stamp with a linear map at a place in a pixel, inside a disc relative to that place.
+    /// Draws a stamp with a linear map at a position in a pixel, inside a disc relative to that position.
     fn drawn(
         &self,
         linear: DMat2,
@@ -219,7 +220,7 @@ impl Stamps<'_> {
         (middle, reach): (DVec2, f64),
         draw: impl FnOnce(DAffine2, &mut Sheet),
     ) -> Option<Stamp> {
-        // All of it comes to lie on the sheet, with a pixel on every side.
+        // Everything lies on the sheet, with a pixel on every side.
         let reach = reach + 2.0;
         let corner = phase + middle - reach;
         let pixel = [-corner.x, -corner.y].map(whole);
@@ -237,7 +238,7 @@ impl Stamps<'_> {
     }
 }
 
-/// Draws an element on a sheet, whose pixels its frame is told in.
+/// Draws an element on a sheet. The frame of the element is in pixels of the sheet.
 fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, sheet: &mut Sheet) {
     let object = &scene.graph.objects()[element.object];
     if !object.visible {

@@ -1,3 +1,5 @@
+//! Surfaces: the interface between drawing and the formats of pictures.
+
 use std::io;
 use std::sync::Arc;
 
@@ -7,19 +9,18 @@ use crate::style::{Cap, Colour, Join};
 use super::filled::Filled;
 use super::png::{RoundPen, Stamp};
 
-/// A position on a picture in hundredths of a pixel, from the upper left corner, y down.
+/// Position on a picture, in hundredths of a pixel from the upper left corner, with y down.
 ///
-/// Positions are rounded once, so that pictures of all formats show the same points, and none is
-/// off by more than 0.01 pixels.
+/// Positions are rounded once, so that pictures of all formats show the same points, each within 0.01 pixels.
 pub(crate) type Position = [i64; 2];
 
-/// Units of positions to a pixel.
+/// Units of positions per pixel.
 pub(crate) const FINE: f64 = 100.0;
 
-/// The position nearest to a point that is given in their units.
+/// Returns the position nearest to a point that is given in units of positions.
 ///
-/// Halves are decided a hair before they are reached: so rounding in the last bits, which depends on
-/// the way that a point is computed, does not decide them.
+/// Ties are decided slightly early, so that they do not depend on rounding in the last bits, which varies
+/// with the way in which a point is computed.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -34,71 +35,70 @@ pub(crate) fn position(point: DVec2) -> Position {
     })
 }
 
-/// How a path is painted: filled first, then stroked.
+/// Paint of a path, which is first filled and then stroked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Paint {
-    /// The colour of the area, under the nonzero rule.
+    /// Colour of the area, under the nonzero rule.
     pub(crate) fill: Option<Colour>,
-    /// The line along the path.
+    /// Line along the path.
     pub(crate) stroke: Option<Stroke>,
 }
 
-/// A line along a path.
+/// Line along a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
-    /// Its colour.
+    /// Colour.
     pub(crate) colour: Colour,
-    /// Its width and shape.
+    /// Width and shape.
     pub(crate) pen: Pen,
 }
 
-/// The pen that strokes are drawn with.
+/// Pen with which strokes are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pen {
-    /// The width in pixels.
+    /// Width, in pixels.
     pub(crate) width: f64,
-    /// The ends of open paths.
+    /// Ends of open paths.
     pub(crate) cap: Cap,
-    /// The corners of paths.
+    /// Corners of paths.
     pub(crate) join: Join,
-    /// The length of dashes and of the gaps between them, in pixels; 0 for a line without gaps.
+    /// Length of dashes and of the gaps between them, in pixels; 0 for a line without gaps.
     pub(crate) dash: f64,
 }
 
 impl Pen {
-    /// How much longer caps make a line of the pen at each end, in widths, by the area that they
-    /// cover.
+    /// Returns the length that caps add to each end of a line, in widths, by the area that they cover.
     pub(crate) fn overshoot(&self) -> f64 {
         match self.cap {
             Cap::Butt => 0.0,
-            // As much as half a disc.
+            // Area of half a disc.
             Cap::Round => std::f64::consts::FRAC_PI_8,
             Cap::Square => 0.5,
         }
     }
 }
 
-/// Thin lines that lie near each other, drawn as one: as a box that is no larger than a pixel.
+/// Thin lines close to each other, drawn as one box that is no larger than a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tuft {
-    /// Twice its middle, in hundredths of a pixel,
+    /// Twice its centre, in hundredths of a pixel.
     pub(crate) middle: [i32; 2],
-    /// and its width and height.
+    /// Width and height, in hundredths of a pixel.
     pub(crate) extent: [u32; 2],
-    /// The area of the lines, in pixels.
+    /// Area of the lines, in pixels.
     pub(crate) area: f32,
-    /// Their width, in pixels.
+    /// Width of the lines, in pixels.
     pub(crate) width: f32,
 }
 
-/// A stamp, and the pixel on which it is put.
+/// Stamp, and the pixel on which it is put.
 #[derive(Clone, Debug)]
 pub(crate) struct Stamped {
     pub(crate) stamp: Arc<Stamp>,
     pub(crate) pixel: [i64; 2],
 }
 
-/// Way to draw stamps: shapes are filled, and lines are drawn with the pen.
+/// Means by which stamps are drawn: shapes are filled, and lines are drawn with the pen.
 #[derive(Clone)]
 pub(crate) struct Stencil {
     /// Pen of lines and outlines.
@@ -107,81 +107,79 @@ pub(crate) struct Stencil {
     pub(crate) outlines: bool,
 }
 
-/// Where the parts of pictures are made: a picture's format.
+/// Destination of drawings: a format of pictures.
 ///
-/// Paths come one after another, each between [`Surface::begin`] and [`Surface::end`]; what comes
-/// later lies on top. Their subpaths have no two equal vertices in a row but dots, which are one
-/// line of no length.
+/// Paths follow one another, each between [`Surface::begin`] and [`Surface::end`]; later ones lie on top.
+/// Successive vertices of their subpaths differ, except for dots, which are one line of length 0.
 pub(crate) trait Surface {
     /// Begins a path.
     fn begin(&mut self, paint: &Paint) -> io::Result<()>;
     /// Begins a subpath.
     fn move_to(&mut self, to: Position);
-    /// A straight line.
+    /// Draws a straight line.
     fn line_to(&mut self, to: Position);
-    /// Straight lines, one after another.
+    /// Draws straight lines, one after another.
     #[inline]
     fn lines_to(&mut self, to: &[Position]) {
         for &to in to {
             self.line_to(to);
         }
     }
-    /// A cubic Bézier curve.
+    /// Draws a cubic Bézier curve.
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.
     fn close(&mut self);
-    /// A polygon that is a subpath of its own, with vertices that may be equal, where the surface knows
-    /// a short way to draw it; whether it does.
+    /// Draws a polygon as a subpath of its own, if the surface has a short way to do so. Its vertices may be
+    /// equal. Returns whether it is drawn.
     fn polygon(&mut self, _: &[Position]) -> bool {
         false
     }
-    /// Hands on what has been drawn of the path, if that is much.
+    /// Hands on the drawn portion of the path, if it is large.
     fn hand_on(&mut self) -> io::Result<()>;
     /// Ends the path.
     fn end(&mut self) -> io::Result<()>;
 
-    /// How far, in pixels, outlines may lie beside where they are, which then cannot be seen; `None` where
-    /// all of them is kept.
+    /// Returns the distance, in pixels, by which outlines may deviate invisibly; `None` if they must be
+    /// exact.
     fn grain(&self) -> Option<f64> {
         None
     }
 
-    /// Whether areas that are painted so and narrower than a pixel are to be stroked, so that they are as wide
-    /// and can be seen; not where the surface sees to that, or draws no areas.
+    /// Returns whether areas with this paint that are narrower than a pixel are to be stroked to a width of
+    /// one pixel, so that they are visible. `false` if the surface ensures that itself, or draws no areas.
     fn broadens(&self, _: &Paint) -> bool {
         false
     }
 
-    /// Strokes that are thinner than this, in pixels, may come as tufts where they are short; none
-    /// unless said otherwise.
+    /// Returns the width, in pixels, below which short strokes may be drawn as tufts; 0 unless overridden.
     fn tufts_below(&self, _: &Stroke) -> f64 {
         0.0
     }
-    /// Tufts, within a path of one that may come so.
+    /// Draws tufts, within a path whose stroke permits them.
     fn tufts(&mut self, _: &[Tuft]) {}
 
-    /// What draws stamps that may be put where paths are painted so, if they may: whatever they cover
-    /// more than once stays covered once.
+    /// Returns the stencil of stamps that may be put in paths with this paint, if the surface permits them.
+    /// Pixels that they cover repeatedly are covered once.
     fn stencil(&mut self, _: &Paint) -> Option<Stencil> {
         None
     }
-    /// Stamps, within a path that is painted so.
+    /// Draws stamps, within a path whose paint permits them.
     fn stamps(&mut self, _: &[Stamped]) {}
 
-    /// What tells which pixels are covered all over, where paths that are painted so are drawn by
-    /// layers, each of one opaque colour, or of two, of which that of strokes lies on top and is asked for;
-    /// nothing unless said otherwise.
+    /// Returns the index of completely covered pixels, if paths with this paint are drawn in layers, each of
+    /// one opaque colour, or of two, of which that of strokes lies on top and is indexed. `None` unless
+    /// overridden.
     fn filled(&mut self, _: &Paint) -> Option<Arc<Filled>> {
         None
     }
-    /// The paths that come are of a layer.
+    /// Declares that the following paths belong to a layer.
     fn layer(&mut self, _: u64) {}
 
-    /// Begins a part of the picture: a window with corner and size in pixels. Positions are in it
-    /// and nothing is drawn outside. Tells whether any of it shows; if none does, it does not begin.
+    /// Begins a part of the picture: a window with corner and size in pixels. Positions are relative to it,
+    /// and nothing is drawn outside. Returns whether any of it is visible; otherwise the part does not begin.
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool>;
     /// Ends a part.
     fn leave(&mut self) -> io::Result<()>;
-    /// What the next path says in words, where the format can tell.
+    /// Sets the text that the next path represents, for formats that can state it.
     fn label(&mut self, text: &str);
 }

@@ -1,3 +1,5 @@
+//! Tests of colonies: walks that take them, against walks over all elements.
+
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Pictures in which covered elements are left out against pictures with all of them.
+//! Tests of occlusion: pictures in which covered elements are left out, against pictures with all of them.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -21,7 +21,7 @@ use crate::render::png::Png;
 use crate::render::{Detail, Drawing, Options, Scene, Size};
 use crate::style::{ColorBy, Colour, Style, Width};
 
-/// Of 256 questions for what is covered, those that are not answered: none may be.
+/// Number, of every 256 queries of coverage, that are not answered: all.
 const NOTHING_IS_HIDDEN: u64 = 256;
 
 /// Returns the pixels drawn by a number of threads in an order given by `seed`.
@@ -43,8 +43,8 @@ fn drawn(
     })
 }
 
-/// Holds pictures on any number of threads, in any order, against the one where nothing is left out
-/// because it lies where all is covered.
+/// Compares pictures on any number of threads, in any order, with the picture in which no elements are left
+/// out.
 fn shows_no_threads(
     name: &str,
     text: Option<&str>,
@@ -71,7 +71,7 @@ fn shows_no_threads(
     options(&mut drawing);
     let draw = |threads, timing| drawn(&graph, &growth, &drawing, threads, timing);
     let expected = draw(1, (1, NOTHING_IS_HIDDEN));
-    // What is known is known at once, or later or much later.
+    // Coverage is known at once, later, or much later.
     for (threads, late) in [(1, 0), (2, 0), (2, 100), (3, 250), (8, 0), (8, 100)] {
         let is_same = draw(threads, (seed, late)) == expected;
         let style = &drawing.style;
@@ -80,7 +80,7 @@ fn shows_no_threads(
     Ok(())
 }
 
-/// Curves that retrace themselves, whose pixels are covered all over by many.
+/// The curves retrace themselves, so that many lines cover the same pixels completely.
 #[test]
 fn threads_do_not_show_where_curves_retrace_themselves() {
     let cases = [
@@ -130,7 +130,7 @@ fn threads_do_not_show_where_areas_are_outlined() {
     }
 }
 
-/// Words that go back and forth on a lattice.
+/// Returns words that go back and forth on a lattice.
 fn word() -> impl Strategy<Value = String> {
     let wide = ["!(1)", "!(0.1)", "!(3)"];
     let symbols = ["F", "F", "F", "F", "F", "+", "-", "|", "f"];

@@ -1,4 +1,4 @@
-//! A stretch of what is drawn as coverage: made in order, covered by any thread.
+//! Chunks of shapes that are drawn as coverage: assembled in order, covered by any thread.
 
 use std::sync::Arc;
 
@@ -10,38 +10,38 @@ use super::nib::{Hand, Nib, Trail};
 use super::part::Layers;
 use super::region::Region;
 
-/// Chunks have about this many commands or positions.
+/// Approximate number of commands or positions of a chunk.
 const MANY: usize = 1 << 14;
 
 enum Command {
-    /// Lines that come next are drawn with a nib.
+    /// Stroker of the following lines.
     Nib(Nib),
-    /// A subpath begins at a position.
+    /// Beginning of a subpath, at a position.
     Start,
-    /// A subpath continues from another chunk.
+    /// Continuation of a subpath from another chunk.
     GoOn(Box<Trail>),
-    /// A subpath is closed, or ends.
+    /// Closing or end of a subpath.
     Close,
     End,
-    /// Lines to so many positions, one after another.
+    /// Number of lines, each to a position.
     Lines(usize),
-    /// Polygons of so many vertices each, by number.
+    /// Polygons with equal numbers of vertices.
     Polygons {
         vertices: usize,
         count: usize,
     },
     /// Rows of a region, from the first to the last.
     Region(Arc<Region>, [i64; 2]),
-    /// So many tufts.
+    /// Number of tufts.
     Tufts(usize),
-    /// So many stamps.
+    /// Number of stamps.
     Stamps(usize),
 }
 
-/// Commands, and what they are about.
+/// Commands with their operands.
 #[derive(Default)]
 pub(super) struct Chunk {
-    /// Where it is drawn, once it may be.
+    /// Coverage buffers on which the chunk is drawn, once assigned.
     planes: Layers,
     commands: Vec<Command>,
     points: Vec<Position>,
@@ -127,7 +127,7 @@ impl Chunk {
         self.commands.push(Command::Stamps(stamps.len()));
     }
 
-    /// Makes `next` continue the current subpath with a nib.
+    /// Makes `next` continue the current subpath with a stroker.
     pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, trail: &Trail) {
         let is_flat = matches!(nib, Nib::Flat(_));
         next.nib(nib);
@@ -140,12 +140,12 @@ impl Chunk {
         }
     }
 
-    /// Sets the planes to draw on: lines are drawn on the second ones if there are any.
+    /// Assigns the coverage buffers: lines are drawn on the second ones if there are any.
     pub(super) fn assign(&mut self, planes: Layers) {
         self.planes = planes;
     }
 
-    /// Covers what it covers, and empties it.
+    /// Executes the commands, and empties the chunk.
     pub(super) fn cover(&mut self) {
         match std::mem::take(&mut self.planes) {
             [Some(planes), None] => planes.with_one(|plane| self.cover_on(plane, None)),

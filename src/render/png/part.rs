@@ -1,3 +1,5 @@
+//! Parts of a picture, with their pixels and their coverage.
+
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -12,54 +14,55 @@ use super::coverage::{Plane, WHOLE};
 use super::planes::Planes;
 use super::split::ROWS;
 
-/// Pictures of more pixels have no plane of coverage: with it they would take more memory than the
-/// largest.
+/// Maximum number of pixels of pictures with coverage buffers; larger ones would take more memory with them
+/// than the largest picture does without.
 const MOST_COVERED: u64 = MOST_PIXELS * 4 / (4 + Plane::BYTES);
 
-/// A part of a picture, or all of it.
+/// Part of a picture, or all of it.
 pub(super) struct Part {
     pub(super) pixmap: Pixmap,
-    /// Width and height of what it shows rows of, and which.
+    /// Width and height of the part, in pixels.
     size: [u32; 2],
+    /// Rows of it that are drawn.
     rows: Range<u32>,
-    /// Its place in what it is a part of.
+    /// Position in the part that contains it, in pixels.
     corner: [u32; 2],
-    /// What is covered and not yet coloured: by paths, and by the strokes of those that are filled too,
-    /// which lie on top.
+    /// Coverage that is not coloured yet: of paths, and of the strokes of paths that are filled too, which
+    /// lie on top.
     layers: [Layer; 2],
 }
 
-/// What is covered in one colour.
+/// Coverage in one colour.
 #[derive(Default)]
 struct Layer {
-    /// Once something has been covered.
+    /// Coverage buffers, once anything has been covered.
     planes: Option<Arc<Planes>>,
     ink: Option<Colour>,
 }
 
-/// The planes of a part's layers.
+/// Coverage buffers of a part's layers.
 pub(super) type Layers = [Option<Arc<Planes>>; 2];
 
 impl Part {
-    /// A part of this one, and the rows of it that lie in the rows of this one, or a little more: the
-    /// first one is a multiple of [`ROWS`].
+    /// Creates a part of this one, with its rows that lie in the rows of this one, or a few more: the first
+    /// is a multiple of [`ROWS`].
     pub(super) fn enter(&self, corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
         let within = |row: u32| row.saturating_sub(corner[1]).min(size[1]);
         let [from, to] = [self.rows.start, self.rows.end].map(within);
         Self::of_rows(corner, size, from - from % ROWS..to)
     }
 
-    /// Whether anything of a part of this one lies in its rows.
+    /// Returns whether any of a part of this one lies in its rows.
     pub(super) fn shows(&self, corner: [u32; 2], size: [u32; 2]) -> bool {
         corner[1] < self.rows.end && corner[1].saturating_add(size[1]) > self.rows.start
     }
 
-    /// Its rows that are drawn.
+    /// Returns the rows that are drawn.
     pub(super) fn rows(&self) -> Range<u32> {
         self.rows.clone()
     }
 
-    /// Some rows of a part.
+    /// Creates some rows of a part; `None` if it has no valid size.
     pub(super) fn of_rows(corner: [u32; 2], size: [u32; 2], rows: Range<u32>) -> Option<Self> {
         Some(Self {
             pixmap: Pixmap::new(size[0], rows.end - rows.start)?,
@@ -70,7 +73,7 @@ impl Part {
         })
     }
 
-    /// The same with planes that have been used for other rows.
+    /// Returns the part with coverage buffers that have been used for other rows.
     pub(super) fn on(mut self, layers: Layers) -> Self {
         for (layer, planes) in self.layers.iter_mut().zip(layers) {
             let planes = planes.and_then(Arc::into_inner);
@@ -79,36 +82,38 @@ impl Part {
         self
     }
 
-    /// Width and height of what it shows rows of.
+    /// Returns the width and height of the part, in pixels.
     pub(super) fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Whether the part is small enough to have a plane.
+    /// Returns whether the part is small enough for coverage buffers.
     pub(super) fn may_cover(&self) -> bool {
         let pixels = u64::from(self.pixmap.width()) * u64::from(self.pixmap.height());
         pixels <= MOST_COVERED
     }
 
-    /// The planes that there are.
+    /// Returns the coverage buffers that exist.
     pub(super) fn planes(&self) -> Layers {
         self.layers.each_ref().map(|layer| layer.planes.clone())
     }
 
-    /// Those of them that paths are drawn on, and the strokes on top of them, if these lie apart.
+    /// Returns the coverage buffers in use: of paths, and of the strokes on top of them if these are
+    /// separate.
     pub(super) fn planes_in_use(&self) -> Layers {
         let in_use = |layer: &Layer| layer.planes.clone().filter(|_| layer.ink.is_some());
         self.layers.each_ref().map(in_use)
     }
 
-    /// Whether a path of a colour goes on where others were covered, with nothing to be done.
+    /// Returns whether a path of this colour is covered together with the preceding ones, without
+    /// preparation.
     #[inline]
     pub(super) fn goes_on_in(&self, colour: Colour) -> bool {
         self.layers[0].ink == Some(colour) && self.layers[1].ink.is_none()
     }
 
-    /// Whether what has been covered must be coloured before a path begins. Paths of one opaque
-    /// colour share the planes, whoever draws them: in what order they come does not show.
+    /// Returns whether coverage must be coloured before a path begins. Paths of one opaque colour share the
+    /// buffers, since their order has no effect.
     pub(super) fn settles_before(&self, paint: &Paint) -> bool {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let mut colours = [paint.fill, stroke].into_iter().flatten();
@@ -116,7 +121,7 @@ impl Part {
         ink.is_some() && !colours.all(|colour| ink == Some(colour))
     }
 
-    /// Begins a path that covers something, by its colour; or by two, of its area and its stroke.
+    /// Begins a path that covers anything, in one colour, or in two for its area and its stroke.
     pub(super) fn begin(&mut self, inks: [Option<Colour>; 2], threads: usize) {
         for (number, ink) in inks
             .into_iter()
@@ -128,7 +133,7 @@ impl Part {
         }
     }
 
-    /// Says of what layer the paths are that are covered.
+    /// Declares that the following paths belong to a layer.
     #[inline]
     pub(super) fn begin_layer(&self, layer: u64) {
         for planes in self.layers.iter().filter_map(|it| it.planes.as_ref()) {
@@ -136,7 +141,8 @@ impl Part {
         }
     }
 
-    /// Returns the pixels that are fully covered by paths (layer 0), or by the strokes on top of them (1).
+    /// Returns the index of pixels that are completely covered by paths (layer 0), or by the strokes on top
+    /// (1).
     pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<Filled> {
         Arc::clone(self.made_planes(layer, threads).filled())
     }
@@ -146,14 +152,14 @@ impl Part {
         self.layers[layer].planes.get_or_insert_with(planes)
     }
 
-    /// Whether what has been covered must be coloured before the next path, whatever that is.
+    /// Returns whether coverage must be coloured before the next path, regardless of that path.
     #[inline]
     pub(super) fn settles_after(&self) -> bool {
         let [paths, strokes] = self.layers.each_ref().map(|layer| layer.ink);
         strokes.is_some() || paths.is_some_and(|ink| ink != ink.opaque())
     }
 
-    /// Colours what has been covered, once all threads have.
+    /// Colours the coverage, once all threads have finished.
     pub(super) fn settle(&mut self) {
         let data = self.pixmap.data_mut();
         for Layer { planes, ink } in &mut self.layers {
@@ -180,7 +186,7 @@ impl Part {
         }
     }
 
-    /// Lays the part on what it is a part of.
+    /// Draws the part onto the part that contains it.
     #[expect(clippy::cast_possible_wrap, reason = "pictures are smaller than that")]
     pub(super) fn lay_on(self, other: &mut Self) {
         let [x, y] = self.corner.map(|side| side as i32);

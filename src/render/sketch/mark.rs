@@ -1,23 +1,24 @@
-//! What sketches are made of.
+//! Marks, of which sketches consist.
 
 use crate::render::WIDTHS_AN_OCTAVE;
 use crate::render::surface::{Position, Stamped, Tuft};
 use crate::style::Colour;
 
-/// What tells paths apart: a new one is begun where this changes.
+/// Paint key: a path ends where it changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(in crate::render) struct Look {
     pub(in crate::render) kind: Kind,
-    /// The width of a stroke where widths differ, in steps of an eighth of an octave; of specks, in eighths
-    /// of a pixel.
+    /// Class of the stroke width, in steps of an eighth of an octave, if widths differ; for specks, the width
+    /// in eighths of a pixel.
     pub(in crate::render) width: i32,
-    /// Its colour, where what is drawn is tinted.
+    /// Colour, if tints apply.
     pub(in crate::render) colour: Option<Colour>,
 }
 
 impl Look {
-    /// Whether what looks like `other` may go on in an open path of this look. Specks whose strokes differ
-    /// by a quarter of a pixel or less share one, so that squares of two sizes in turn do not need a path each.
+    /// Returns whether shapes with paint key `other` may continue an open path with this one. Specks whose
+    /// strokes differ by at most a quarter of a pixel share a path, so that squares alternating between two
+    /// sizes do not need a path each.
     pub(in crate::render) fn serves(self, other: Self) -> bool {
         const ALIKE: u32 = 2;
         let is_alike = self.kind == Kind::Speck && self.width.abs_diff(other.width) <= ALIKE;
@@ -25,19 +26,19 @@ impl Look {
         self == Self { width, ..other }
     }
 
-    /// Whether it is of closed base elements.
+    /// Returns whether the path consists of closed base elements.
     pub(in crate::render) fn is_of_polygons(self) -> bool {
         matches!(self.kind, Kind::Polygon | Kind::Speck)
     }
 
-    /// Of tufts: a stroke as thin as there are.
+    /// Paint key of tufts, with the thinnest stroke.
     pub(in crate::render) const TUFTS: Self = Self {
         kind: Kind::Line,
         width: 0,
         colour: None,
     };
 
-    /// Of the areas of fractals.
+    /// Paint key of the areas of fractals.
     pub(in crate::render) const AREA: Self = Self {
         kind: Kind::Area,
         width: 0,
@@ -45,7 +46,7 @@ impl Look {
     };
 }
 
-/// What a path holds.
+/// Kind of the shapes in a path.
 #[derive(Clone, Copy, PartialEq)]
 pub(in crate::render) enum Kind {
     /// Open lines.
@@ -56,58 +57,58 @@ pub(in crate::render) enum Kind {
     Area,
     /// Closed base elements.
     Polygon,
-    /// Closed base elements that are narrower than a pixel, stroked so that they can be seen.
+    /// Closed base elements that are narrower than a pixel, stroked so that they are visible.
     Speck,
 }
 
-/// Elements in a row, each joined to the one before, that look alike.
+/// Successive elements with equal paint keys, each joined to the one before.
 #[derive(Clone, Copy)]
 pub(in crate::render) struct Line {
     pub(in crate::render) look: Look,
-    /// Whether the first one joins what comes before.
+    /// Whether the first element joins the preceding one.
     pub(in crate::render) joined: bool,
-    /// Whether the first one starts, and the last one ends, where its frame does.
+    /// Whether the first element starts, and the last one ends, where its frame does.
     pub(in crate::render) meets_frame: [bool; 2],
 }
 
-/// What is to be drawn through the next points of a sketch.
+/// Instruction to draw something through the next points of a sketch.
 #[derive(Clone, Copy)]
 pub(in crate::render) enum Mark {
-    /// A fractal begins.
+    /// Beginning of a fractal.
     Begin,
-    /// Elements of a class come.
+    /// Class of the following elements.
     Class(u64),
-    /// A line begins at a point.
+    /// Beginning of a line, at a point.
     Line(Line),
-    /// A polygon begins at a point.
+    /// Beginning of a polygon, at a point.
     Polygon(Look),
-    /// Polygons that look alike, by number, each of so many vertices.
+    /// Polygons with equal paint keys and equal numbers of vertices.
     Polygons {
         look: Look,
         vertices: usize,
         count: usize,
     },
-    /// The outline of a fractal begins or goes on at a point.
+    /// Beginning or continuation of the outline of a fractal, at a point.
     Area,
-    /// Straight lines to so many points.
+    /// Number of straight lines, each to a point.
     Lines(usize),
-    /// A curve, by three points.
+    /// Curve, by three points.
     Curve,
-    /// So many tufts.
+    /// Number of tufts.
     Tufts(usize),
-    /// So many stamps of what looks alike.
+    /// Stamps with equal paint keys.
     Stamps { look: Look, count: usize },
-    /// The polygon is closed; whether it has returned to its start.
+    /// End of a polygon, with whether it has returned to its start.
     Close { returned: bool },
-    /// An open element that is not drawn, by its end, and whether its frame ends there.
+    /// Open element that is not drawn, by its end, with whether its frame ends there.
     Skip { meets_frame: bool },
-    /// An element that nothing can be joined to, not drawn.
+    /// Element that is not drawn and that nothing can join.
     Break,
-    /// The fractal ends; as [`Visitor::end`].
+    /// End of the fractal, as in `Visitor::end`.
     End(bool),
 }
 
-/// Marks, and the points, tufts and stamps that they are about.
+/// Marks with their points, tufts and stamps.
 #[derive(Default)]
 pub(in crate::render) struct Sketch {
     pub(in crate::render) marks: Vec<Mark>,
@@ -116,20 +117,20 @@ pub(in crate::render) struct Sketch {
     pub(in crate::render) stamps: Vec<Stamped>,
 }
 
-/// The width of a relative stroke in steps, from the logarithm of its width; not less than one
-/// hundredth of a pixel.
+/// Returns the class of a stroke width, from the logarithm of the width in hundredths of a pixel. Smaller
+/// widths than one hundredth are in class 0.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
 pub(in crate::render) fn width_class(octave: f64) -> i32 {
-    // Rounded, as it is not negative.
+    // The cast rounds down, as the value is not negative.
     (WIDTHS_AN_OCTAVE * octave.max(0.0) + 0.5) as i32
 }
 
-/// The width of a class in hundredths of a pixel: there are eight to an octave.
+/// Returns the width of a class in hundredths of a pixel: there are eight classes per octave.
 pub(in crate::render) fn class_width(class: i32) -> f64 {
-    // exp2 of eighths, for there may be a path for every element.
+    // exp2 of eighths is tabulated, for there may be a path for every element.
     const EIGHTHS: [f64; 8] = [
         1.0,
         1.090_507_732_665_257_7,

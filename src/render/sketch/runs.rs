@@ -1,4 +1,4 @@
-//! Runs of elements, many at once.
+//! Sketches of whole runs of elements.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::render::surface::{FINE, position};
 use super::{Kind, Line, Look, Mark, Sketcher, width_class};
 
 impl Sketcher<'_> {
-    /// Lines of one class that end in these points, one after another.
+    /// Draws lines of one class that end in the given points, one after another.
     pub(super) fn lines(&mut self, run: &Run<'_>, ends: &[DVec2], first: &Element) {
         self.see(first);
         let map = self.scene.canvas.map(run.map());
@@ -22,14 +22,14 @@ impl Sketcher<'_> {
         }
     }
 
-    /// Lines of one class that need not join.
+    /// Draws lines of one class that need not join.
     pub(super) fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
         self.see(first);
         let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
         self.draw_sticks(run, rest);
     }
 
-    /// Draws lines, and says of each whether it joins the one before.
+    /// Draws lines, each with whether it joins the one before.
     fn draw_sticks<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = (&'b Stick, bool)>) {
         let map = self.scene.canvas.map(run.map());
         let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
@@ -58,7 +58,7 @@ impl Sketcher<'_> {
         }
     }
 
-    /// Some elements of a run, by number, from which lines lead to no others.
+    /// Draws some elements of a run, given with their indices, if no lines lead to others.
     pub(super) fn some(&mut self, run: &Run<'_>, elements: impl Iterator<Item = (usize, Element)>) {
         let mut next = 0;
         for (number, element) in elements {
@@ -73,7 +73,8 @@ impl Sketcher<'_> {
         }
     }
 
-    /// Lines of one class, short and thin ones as tufts; whether there are any.
+    /// Draws lines of one class, short and thin ones as tufts. Returns `false`, and draws nothing, if there
+    /// are no tufts.
     pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
         let (Some(comb), Some(last)) = (&self.means.comb, sticks.last()) else {
             return false;
@@ -141,7 +142,7 @@ impl Sketcher<'_> {
         };
         let end = run.last().filter(is_open);
         self.sketch.stamps.push(stamped);
-        // What joins the run goes on where it ends; of other runs nobody needs to know.
+        // Elements that join the run continue at its end; nothing joins runs of closed elements.
         if let Some(end) = end {
             self.mark_stamps(Kind::Line);
             self.pass_by(Mark::Skip { meets_frame: true });

@@ -1,20 +1,20 @@
-//! Closed outlines that are narrower than a pixel, in formats where whoever shows them lets areas fade:
-//! they are stroked, so wide that together it makes a pixel.
+//! Specks: closed outlines narrower than a pixel, in formats whose viewers let small areas fade. They are
+//! stroked, so that area and stroke together are a pixel wide.
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
-/// Widths of strokes to a pixel.
+/// Number of widths of strokes per pixel.
 pub(in crate::render) const SPECK_WIDTHS: f64 = 8.0;
 
-/// Outlines of more points are not looked at.
+/// Maximum number of points of an outline that is examined.
 const MOST_POINTS: usize = 32;
 
-/// Directions between any two points are tried of no more than these, of others those of sides.
+/// Number of points up to which directions between any two are examined; beyond it, only those of sides are.
 const FEW_POINTS: usize = 8;
 
-/// The width of the stroke that makes an outline a pixel wide, in [`SPECK_WIDTHS`]; `None` if it is as wide.
-/// The map leads to the picture, in pixels.
+/// Returns the width of the stroke that makes an outline a pixel wide, in [`SPECK_WIDTHS`]; `None` if it is
+/// as wide already or has too many points. `map` leads to the picture, in pixels.
 pub(super) fn width(base_element: &BaseElement, map: &DAffine2) -> Option<i32> {
     let mut points = [DVec2::ZERO; MOST_POINTS];
     let mut count = 0;
@@ -33,14 +33,14 @@ pub(super) fn width(base_element: &BaseElement, map: &DAffine2) -> Option<i32> {
         add(piece.end())?;
     }
     let missing = 1.0 - narrowest(&points[..count]);
-    // What is turned is no wider for that, whatever is rounded.
+    // The tolerance absorbs rounding errors of rotated outlines.
     let parts = (missing * SPECK_WIDTHS - 1e-6).ceil();
     #[expect(clippy::cast_possible_truncation, reason = "no more than eight")]
     (parts > 0.0).then_some(parts as i32)
 }
 
-/// The least distance of two parallels that points lie between; of many points, that of parallels to the
-/// sides.
+/// Returns the least distance between two parallel lines that enclose points; for many points, between
+/// parallels to the sides.
 fn narrowest(points: &[DVec2]) -> f64 {
     let mut narrowest = f64::INFINITY;
     for (number, &from) in points.iter().enumerate() {

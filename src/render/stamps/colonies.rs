@@ -13,12 +13,13 @@ use crate::render::surface::Stamped;
 
 use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
 
-/// Places a pixel along each axis of the grid on which colonies are put; with strokes half as many.
+/// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
 
-/// Minimum number of uses of a stamp of a whole colony, relative to that of other stamps. It is one for every
-/// `SEEDED_A_USE` elements of descendant fractals if that is more: these cost less as stamps of their own.
+/// Minimum number of uses of a stamp of a whole colony, relative to that of other stamps.
 const USES_OF_WHOLE: u64 = 5;
+/// Number of elements of descendant fractals for which a whole colony needs one more use, if that is more:
+/// these cost less as stamps of their own.
 const SEEDED_A_USE: u64 = 12;
 
 /// Maximum number of elements of a stamp of a whole colony.
@@ -103,7 +104,7 @@ impl Means {
         radius: 0.0,
     };
 
-    /// Decides about the colonies of a kind, for stamps at a number of places in a pixel.
+    /// Decides about the colonies of a kind, for stamps at `places` positions in a pixel.
     fn of(
         scene: &Scene<'_>,
         hidden: &Hidden,
@@ -268,7 +269,7 @@ fn turned(map: &DMat2, steps: &[i64; 4], length: f64) -> DMat2 {
 /// Visitor of the painted elements of a colony.
 struct Members<'s, F> {
     scene: &'s Scene<'s>,
-    /// Units of the walk a unit of the rule.
+    /// Units of the walk per unit of the rule.
     scale: f64,
     painted: Painted,
     see: F,

@@ -9,31 +9,33 @@ use crate::render::surface::{Stamped, Stencil};
 
 use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
 
-/// Places to a pixel, along either axis, and the most elements of a run: the first of these for which
-/// there are enough runs. For lines half as many places; of outlines that have more than four pieces as
-/// many fewer elements, but no less than few.
+/// Numbers of steps per pixel, along either axis, and maximum numbers of elements of a run: the first of
+/// these for which there are enough runs is used. For strokes there are half as many steps; for outlines of
+/// more than four pieces, proportionally fewer elements, but at least `FEW_ELEMENTS`.
 const GRIDS: [(f64, u64); 3] = [(128.0, 128), (128.0, 64), (64.0, 64)];
 
-/// The same where elements are not equally long.
+/// Corresponding numbers if elements have unequal lengths.
 const UNEVEN_GRIDS: [(f64, u64); 3] = [(128.0, 64), (128.0, 16), (64.0, 16)];
+/// Minimum of the maximum number of elements of a run.
 const FEW_ELEMENTS: u64 = 8;
 
-/// More sides than this are too many.
+/// Maximum number of orientations.
 const MOST_SIDES: usize = 1 << 8;
 
 /// Runs that are stamped.
 pub(super) struct Runs {
-    /// The most elements of a run, and how many plain ones one of them is worth.
+    /// Maximum number of elements of a run.
     pub(super) longest: u64,
+    /// Cost of an element, in simple ones.
     worth: u64,
     phases: f64,
 }
 
 impl Runs {
-    /// Creates the runs of a scene if many are congruent; `worth` is the cost of an element in plain ones.
+    /// Creates the runs of a scene if many are congruent; `worth` is the cost of an element, in simple ones.
     pub(super) fn of(scene: &Scene<'_>, stencil: &Stencil, worth: u64) -> Option<Self> {
         let Scene { graph, .. } = scene;
-        // Lines that are not equally long are drawn as soon one by one.
+        // Lines of unequal lengths are drawn as fast one by one.
         let is_filled = stencil.pen.is_none() || stencil.outlines;
         let grids = match graph.even_lengths() {
             Some(_) => GRIDS,
@@ -109,15 +111,15 @@ fn draw(scene: &Scene<'_>, run: &Run<'_>, painted: Painted, map: DAffine2, sheet
     }
 }
 
-/// How many objects turned to how many sides there are after the last step; where elements are replaced
-/// down to a length instead, about how many of how many lengths become runs of so many elements. `None` if
-/// they are too many.
+/// Returns the number of objects by orientation after the last step. If elements are replaced down to a
+/// length instead, returns approximately the number of objects by orientation and length that become runs of
+/// at most `longest_run` elements. `None` if there are too many.
 fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
-    /// Turns and lengths are told apart by so many steps.
+    /// Steps in which orientations and lengths are quantised.
     const TURNS: f64 = 1e9;
     let Scene { graph, growth, .. } = scene;
     let shortest = scene.sight.shortest().filter(|&shortest| shortest > 0.0);
-    // What is shorter becomes no more than such a run if it fills an area.
+    // A shorter element becomes at most such a run, if it fills an area.
     #[expect(clippy::cast_precision_loss, reason = "a small number")]
     let long = shortest.map_or(0.0, |shortest| shortest * (longest_run as f64).sqrt());
     let turned = |map: &DMat2| *map * (1.0 / map.x_axis.length());

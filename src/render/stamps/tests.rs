@@ -1,3 +1,5 @@
+//! Tests of stamps: pictures with stamps, against pictures in which every element is drawn.
+
 use std::num::NonZero;
 
 use crate::catalogue::Catalogue;
@@ -18,7 +20,7 @@ fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {
     })
 }
 
-/// The largest difference of pixels, the mean one, and that of the means.
+/// Returns the largest difference of pixels, the mean difference, and the difference of the means.
 fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
     let differences = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
     let sum = |values: &mut dyn Iterator<Item = u8>| values.map(f64::from).sum::<f64>();
@@ -47,7 +49,7 @@ fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     let growth = Growth::steps(30);
     let layout = Layout::find(&graph, &growth, &options).unwrap();
     let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
-    // As if there were so many that they are worth it.
+    // Assume enough elements for stamps.
     scene.elements = u64::MAX;
     if graph.seeds {
         scene.uses = 0;
@@ -56,7 +58,7 @@ fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     let one_by_one = drawn(&scene, 1);
     scene.is_to_detail = true;
     let stamped = drawn(&scene, 1);
-    // The squares of some stand on the grid.
+    // Squares of some fractals lie on the grid.
     let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
     assert!(shows, "{name}: nothing is stamped");
     assert!(stamped == drawn(&scene, 3), "{name} on three threads");
@@ -75,7 +77,7 @@ fn stamps_cover_what_elements_do() {
         "twindragon-ifs",
         "square-filled",
         "pentaflake",
-        // All of a step is turned alike; of two lengths.
+        // In each step, all elements have the same orientation; in the second, two lengths.
         "complex-pair",
         "snowflake-tiles",
     ] {

@@ -1,44 +1,46 @@
+//! Hairlines: strokes so thin that their lines would fall between the samples.
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::{FINE, MARGIN, Plane, Position, index};
 
-/// Lines are drawn in pieces no longer than this, in hundredths of a pixel, across and down.
+/// Maximum length of the pieces of a line, along either axis, in hundredths of a pixel.
 const PIECE: i64 = 25;
 
-/// Places on the way along a line have so many binary places.
+/// Number of binary places of positions along a line.
 const PLACES: u32 = 16;
 
-/// The logarithm that is kept of a part that lets 1 / e of the light through.
+/// Stored logarithm of a transmittance of 1 / e.
 const UNIT: f32 = (1 << 24) as f32;
 
-/// A pen so thin that its lines would fall between the samples.
+/// Pen so thin that its lines would fall between the samples.
 ///
-/// What it draws is told by how much of a pixel's light it takes. Lines are taken to lie in a pixel
-/// independently of each other, so that what all of them let through is the product of what each
-/// does, as in a stack of transparent layers. Sums of logarithms say the same in any order.
+/// A line absorbs a fraction of a pixel's light. Lines are assumed to be independent of each other within a
+/// pixel, so that their transmittances multiply, as in a stack of transparent layers. The logarithms are
+/// summed as integers, so that the sum does not depend on the order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HairPen {
-    /// The width in hundredths of a pixel: edges are blurred to whole ones.
+    /// Width, in hundredths of a pixel: edges are blurred to whole hundredths.
     width: i64,
-    /// What a line takes for each hundredth of its length, in `UNIT`s.
+    /// Absorption per hundredth of a pixel of length, in `UNIT`s.
     ink: f32,
-    /// What both ends of a line add to its length, in hundredths.
+    /// Length that both ends add to a line, in hundredths of a pixel.
     ends: f32,
 }
 
-/// What a line takes of a pixel's light, as a part of the area that it covers: w times this is
-/// -ln(1 - w) within 0.1 %, so that a line through a whole pixel takes just its width.
+/// Returns the absorption of a line, as a multiple of the area that it covers: w times this is -ln(1 - w)
+/// within 0.1 %, so that a line through a whole pixel absorbs a fraction that equals its width.
 #[inline]
 fn thickness(w: f32) -> f32 {
     1.0 + w * (0.5 + 0.41 * w)
 }
 
 impl HairPen {
-    /// The least width that is too large, in pixels.
+    /// Smallest width that is too large, in pixels.
     pub(crate) const TOO_WIDE: f64 = 0.25;
 
-    /// A pen of a width above 0, whose lines are longer at each end by so many widths.
+    /// Creates a pen of a width above 0, whose caps extend lines by `cap` widths at each end.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "hairs are thin, and need no more than f32"
@@ -55,7 +57,7 @@ impl HairPen {
     }
 }
 
-/// What takes light, by cell; nothing anywhere as long as there are no cells.
+/// Absorption by cell; without cells as long as there is none.
 ///
 /// Atomic for the same reason as the cells of samples.
 #[derive(Default)]
@@ -64,7 +66,7 @@ pub(super) struct Hairs {
 }
 
 impl Hairs {
-    /// The part of a cell's light that hairs take, which they then no longer do.
+    /// Returns the fraction of a cell's light that hairlines absorb, and clears the cell.
     #[inline]
     pub(super) fn take(&mut self, cell: usize) -> f32 {
         let cell = self.cells.get_mut(cell);
@@ -77,12 +79,12 @@ impl Hairs {
         -libm::expm1f(-taken / UNIT)
     }
 
-    /// Returns whether no hair has ever been drawn.
+    /// Returns whether no hairline has ever been drawn.
     pub(super) fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
-    /// Has cells if others have.
+    /// Allocates cells if `others` has some.
     pub(super) fn make_room_for(&mut self, others: &Self) {
         if self.cells.is_empty() {
             self.make_room(others.cells.len());
@@ -95,7 +97,7 @@ impl Hairs {
             .collect();
     }
 
-    /// Takes in some cells what others take, which they then no longer do.
+    /// Moves the absorption of some cells from `others` to this one.
     pub(super) fn take_over(&mut self, others: &mut Self, cells: Range<usize>) {
         if others.cells.is_empty() {
             return;
@@ -113,7 +115,7 @@ fn add(cell: &AtomicU32, ink: u32) {
 }
 
 impl Plane {
-    /// A line of a hair pen, with ends if it is the first of its path: they add to its length.
+    /// Draws a line of a hairline pen. `ends` adds the length of both ends, for the first line of a path.
     #[inline]
     pub(crate) fn hair(&mut self, pen: &HairPen, from: Position, to: Position, ends: bool) {
         if self.hairs.cells.is_empty() {
@@ -126,8 +128,9 @@ impl Plane {
         }
     }
 
-    /// Hairs that lie near each other, as a box that is no larger than a pixel: twice its middle, and
-    /// its extent, in hundredths of a pixel; the area of the hairs in pixels, and their width.
+    /// Draws hairlines close to each other as a box no larger than a pixel. `middle` is twice its centre,
+    /// `extent` its width and height, in hundredths of a pixel; `area` is the area of the lines and `width`
+    /// their width, in pixels.
     #[inline]
     pub(crate) fn tuft(&mut self, middle: [i32; 2], extent: [u32; 2], area: f32, width: f32) {
         if self.hairs.cells.is_empty() {
@@ -147,7 +150,7 @@ impl Plane {
         let [across, down] = way.map(|along| along as f32);
         let length = (across * across + down * down).sqrt();
         let ends = if ends { pen.ends } else { 0.0 };
-        // Twice the middle, so that halves are whole.
+        // Twice the centre, so that halves are whole numbers.
         let middle = [from[0] + to[0], from[1] + to[1]];
         let extent = way.map(i64::abs);
         let longest = extent[0].max(extent[1]);
@@ -155,7 +158,7 @@ impl Plane {
             let ink = (length + ends) * pen.ink;
             self.blot(middle, extent.map(|extent| extent + pen.width), ink);
         } else {
-            // Where the line begins: whether it does is not seen from far along it.
+            // The ends are drawn at the start of the line, so that its other pieces do not depend on them.
             if ends > 0.0 {
                 self.blot(from.map(|at| 2 * at), [pen.width; 2], ends * pen.ink);
             }
@@ -172,7 +175,7 @@ impl Plane {
         }
     }
 
-    /// Spreads ink over a box that is no larger than a pixel: twice its middle, and its extent.
+    /// Spreads absorption over a box no larger than a pixel, given by twice its centre and by its extent.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
@@ -182,7 +185,7 @@ impl Plane {
     fn blot(&mut self, middle: [i64; 2], extent: [i64; 2], ink: f32) {
         let first = [MARGIN, MARGIN - self.top];
         let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * first[axis]);
-        // What is negative becomes larger than any plane.
+        // Negative positions become larger than any buffer.
         let cell = least.map(|least| index(least) / (2 * FINE) as usize);
         let [most_columns, most_rows] = self.size.map(|side| index(side + 2 * MARGIN) - 2);
         if cell[0] > most_columns || cell[1] > most_rows {

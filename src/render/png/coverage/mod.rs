@@ -1,9 +1,9 @@
-//! Coverage of pixels: sixty-four samples in each, as the bits of a number.
+//! Coverage of pixels: sixty-four samples per pixel, as the bits of a number.
 //!
-//! What is drawn sets the bits of the samples that it covers. What covers a sample twice leaves
-//! it covered once, so overlaps of any number add no ink, and neither order nor division of the
-//! work shows. The mask method is Carpenter's (The A-buffer, 1984). Lines so thin that they would
-//! fall between the samples are summed beside them, in a way that has no order either.
+//! Drawing sets the bits of the samples that are covered. A sample that is covered twice stays covered once,
+//! so that overlaps add nothing, and neither the order nor the division of the work has an effect. The mask
+//! method is Carpenter's (The A-buffer, 1984). Lines so thin that they would fall between the samples are
+//! summed separately, also independently of the order.
 
 mod area;
 mod curve;
@@ -28,62 +28,63 @@ use hair::Hairs;
 pub(crate) use pen::RoundPen;
 pub(crate) use stamp::{Sheet, Stamp};
 
-/// A position in hundredths of a pixel.
+/// Position in hundredths of a pixel.
 type Position = [i64; 2];
 
-/// Units of positions to a pixel.
+/// Units of positions per pixel.
 const FINE: i64 = 100;
 
-/// The samples of a pixel: as many as a cell has bits.
+/// Number of samples per pixel: the number of bits of a cell.
 const SAMPLES: u32 = u64::BITS;
 
 /// Coverage of a whole pixel.
 pub(crate) const WHOLE: u32 = SAMPLES << 8;
 
-/// Pixels around the picture that are drawn on and never seen, so that nothing that touches the
-/// picture needs to be cut.
+/// Width of the margin around the picture, in pixels. The margin is drawn on and never visible, so that
+/// shapes that touch the picture need not be clipped.
 pub(crate) const MARGIN: i64 = 5;
 
-/// Where sample `number` lies in its pixel. The samples form a lattice; no two of them share a
-/// row or a column, so that edges that are nearly level, or upright, have 65 shades too.
+/// Returns the position of a sample in its pixel. The samples form a lattice; no two of them share a row or a
+/// column, so that nearly horizontal or vertical edges also have 65 shades.
 fn sample(number: u32) -> [f64; 2] {
-    // Of all lattices of this kind one whose shortest vectors are longest.
+    // Of all lattices of this kind, one with the longest shortest vectors.
     [column(number), number].map(|place| (f64::from(place) + 0.5) / f64::from(SAMPLES))
 }
 
-/// The column of a sample; its row is its number.
+/// Returns the column of a sample; its row is its number.
 const fn column(number: u32) -> u32 {
     number * 19 % SAMPLES
 }
 
-/// The samples, as bits, for which `covers` holds.
+/// Returns the samples for which `covers` holds, as bits.
 fn mask(covers: impl Fn([f64; 2]) -> bool) -> u64 {
     (0..SAMPLES).fold(0, |mask, number| {
         mask | (u64::from(covers(sample(number))) << number)
     })
 }
 
-/// Which samples of a picture are covered.
+/// Coverage buffer: the covered samples of some rows of a picture.
 pub(crate) struct Plane {
-    /// Width and height in pixels, of the picture and of the rows that the plane has of it,
+    /// Width and height of the picture, in pixels.
     picture: [i64; 2],
+    /// Width and number of the rows, in pixels.
     size: [i64; 2],
-    /// of which this is the first.
+    /// First of the rows.
     top: i64,
-    /// The cells of a row, the margins' among them.
+    /// Number of cells per row, including margins.
     stride: usize,
-    /// By rows. Atomic so that the compiler does not join neighbours into wider stores: prints
-    /// overlap, and to load what was stored in other portions takes a processor long. Shared so that
-    /// others see what is covered all over.
+    /// Cells, by rows. Atomic, so that the compiler does not combine neighbouring stores: prints overlap, and
+    /// loads that span several recent stores are slow. Shared, so that other threads can query complete
+    /// coverage.
     cells: Arc<[AtomicU64]>,
-    /// What is thinner than that.
+    /// Lines that would fall between the samples.
     hairs: Hairs,
     touched: Touched,
     scratch: area::Scratch,
     windings: winding::Windings,
 }
 
-/// The pixels outside of which nothing has been covered: first and last column, first and last row.
+/// Bounds of the pixels that may be covered: first and last column, first and last row.
 #[derive(Clone, Copy)]
 struct Touched {
     columns: [i64; 2],
@@ -106,17 +107,17 @@ impl Touched {
 }
 
 impl Plane {
-    /// Bytes that a pixel takes.
+    /// Memory per pixel, in bytes.
     pub(crate) const BYTES: u64 = 12;
 
-    /// A plane where nothing is covered.
+    /// Creates an empty buffer.
     #[cfg(test)]
     pub(crate) fn new(size: [u32; 2]) -> Self {
         Self::of_rows(size, 0..size[1])
     }
 
-    /// One of some rows of a picture. Positions are those in the picture, and what is covered is
-    /// what the plane of all of it would have covered in these rows.
+    /// Creates an empty buffer for some rows of a picture. Positions are those in the picture. The coverage
+    /// of these rows equals that in a buffer for the whole picture.
     pub(crate) fn of_rows([width, height]: [u32; 2], rows: Range<u32>) -> Self {
         let picture = [i64::from(width), i64::from(height)];
         let top = i64::from(rows.start);
@@ -140,18 +141,17 @@ impl Plane {
         self.picture
     }
 
-    /// Has other rows of the picture, as many from this one on. Nothing may be covered.
+    /// Moves the empty buffer to as many other rows of the picture.
     pub(crate) fn move_to(&mut self, top: u32) {
         self.top = top.into();
     }
 
-    /// The samples that are covered, by pixel, by rows, with a margin of [`MARGIN`] around the picture.
+    /// Returns the covered samples by pixel, row by row, with a margin of [`MARGIN`] around the picture.
     pub(crate) fn cells(&self) -> Arc<[AtomicU64]> {
         Arc::clone(&self.cells)
     }
 
-    /// The rows and columns, the margins among them, where something may be covered, which is then
-    /// forgotten.
+    /// Returns the rows and columns, including margins, where anything may be covered, and resets them.
     fn take_touched(&mut self) -> [Range<usize>; 2] {
         let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
         let rows = rows.map(|row| row.saturating_sub(self.top));
@@ -165,8 +165,8 @@ impl Plane {
         [range(rows, self.size[1]), range(columns, self.size[0])]
     }
 
-    /// Covers what another plane of the same size does, which it then no longer does. In which order
-    /// planes come does not show.
+    /// Moves the coverage of another buffer of the same size to this one. The order of such moves has no
+    /// effect.
     pub(crate) fn take_over(&mut self, other: &mut Self) {
         let touched = other.touched;
         self.touched.add(touched.columns, touched.rows);
@@ -187,14 +187,14 @@ impl Plane {
         }
     }
 
-    /// Gives every pixel that is covered with how much of it is, in any order, and uncovers all.
-    /// Pixels are numbered by rows.
+    /// Calls `paint` with every covered pixel and its coverage, in any order, and clears the buffer. Pixels
+    /// are numbered row by row.
     pub(crate) fn drain(&mut self, mut paint: impl FnMut(usize, u32)) {
         let [rows, columns] = self.take_touched();
         let [width, height] = self.size.map(index);
         let margin = index(MARGIN);
         let has_hairs = !self.hairs.is_empty();
-        // The margins are uncovered with the rest.
+        // The margins are cleared, too.
         let seen = margin..margin + width;
         for row in rows {
             let start = row * self.stride;
@@ -218,13 +218,13 @@ impl Plane {
     }
 }
 
-/// Covers samples of a pixel, on a plane on which no other thread draws.
+/// Covers samples of a pixel, on a buffer on which no other thread draws.
 #[inline(always)]
 fn cover(cell: &AtomicU64, samples: u64) {
     cell.store(cell.load(Relaxed) | samples, Relaxed);
 }
 
-/// How much of a pixel is covered by samples and, of the rest, by a part.
+/// Returns the coverage of a pixel from its covered samples and from the covered fraction of the rest.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -237,7 +237,7 @@ fn covered(samples: u32, part: f32) -> u32 {
     WHOLE - free + (free as f32 * part + 0.5) as u32
 }
 
-/// A number that is known not to be negative.
+/// Converts a number to an index; negative numbers become larger than any index of a buffer.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

@@ -1,3 +1,5 @@
+//! Stamps: coverage that is drawn once and put in many places.
+
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -20,27 +22,29 @@ impl Stamp {
     }
 }
 
-/// Coverage of a rectangle of pixels by one plane.
+/// Coverage of a rectangle of pixels by one coverage buffer.
 #[derive(Debug, Default)]
 pub(crate) struct Print {
-    /// Its upper left pixel, seen from that on which it is put,
+    /// Upper left pixel, relative to the pixel on which the print is put.
     corner: [i64; 2],
+    /// Number of pixels per row.
     /// and how many of them are in a row.
     width: usize,
-    /// What is covered of each, by rows: samples as bits.
+    /// Covered samples of each pixel as bits, row by row.
     cells: Box<[u64]>,
 }
 
-/// Small planes on which a stamp is drawn.
+/// Small coverage buffers on which a stamp is drawn.
 pub(crate) struct Sheet {
-    /// Planes of areas and, if there is a pen, of strokes.
+    /// Buffer of areas.
     areas: Plane,
+    /// Buffer of strokes, if there is a pen.
     strokes: Option<Plane>,
     /// Pen of lines and outlines.
     pen: Option<Arc<RoundPen>>,
     /// Whether areas are outlined.
     pub(crate) outlines: bool,
-    /// Whether all could be drawn that was to be.
+    /// Whether everything could be drawn so far.
     is_whole: bool,
 }
 
@@ -57,7 +61,7 @@ impl Sheet {
         }
     }
 
-    /// Covers what a closed outline encircles.
+    /// Covers the area of a closed outline.
     pub(crate) fn polygon(&mut self, vertices: &[Position]) {
         self.is_whole &= self.areas.shape(vertices);
     }
@@ -98,8 +102,8 @@ impl Sheet {
         }
     }
 
-    /// What has been covered, if all could be drawn; a pixel of the sheet is to come to the pixel that it
-    /// is put on.
+    /// Returns the stamp, if everything could be drawn. `pixel` is the pixel of the sheet that is put on the
+    /// pixel of the picture.
     pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Stamp> {
         let strokes = self.strokes.map(|plane| Print::of(plane, pixel));
         self.is_whole.then(|| Stamp {
@@ -110,7 +114,7 @@ impl Sheet {
 }
 
 impl Print {
-    /// Creates the print of a plane whose pixel `pixel` is its origin.
+    /// Creates the print of a buffer whose pixel `pixel` is its origin.
     fn of(mut plane: Plane, pixel: [i64; 2]) -> Self {
         let [rows, columns] = plane.take_touched();
         let stride = plane.stride;
@@ -140,7 +144,7 @@ impl Plane {
         let [left, top] = [0, 1].map(|axis| pixel[axis] + corner[axis]);
         let side = |count: usize| i64::try_from(count).unwrap_or(i64::MAX);
         let height = stamp.cells.len() / width;
-        // In the cells of the plane.
+        // Position in cells of the buffer.
         let (x, y) = (left + MARGIN, top - self.top + MARGIN);
         let within = |from: i64, count: usize, most: i64| {
             let first = (-from).clamp(0, side(count));
