@@ -101,7 +101,7 @@ impl Filled {
             let most = self.size[axis] as f64;
             let end = |place: f64| whole(place.clamp(0.0, most));
             let [from, to] = [middle[axis] - reach[axis], middle[axis] + reach[axis]];
-            // Casts round down what is not negative.
+            // Casts round down non-negative numbers.
             let past = end(to) + usize::from(to >= 0.0);
             end(from) + self.margin..past.min(self.size[axis]) + self.margin
         });

@@ -1,17 +1,17 @@
 //! Cells of the plane that hold points of a limit set, however much its copies overlap.
 //!
-//! A limit set is made of images of itself, or of sets that are made so with it, and of outlines. From
-//! one point of each set on, and from points of the outlines, every map is applied to one point of each
-//! cell that has not been met before, until no new cell is met: minimal plotting (Monro & Dudbridge,
-//! "Rendering algorithms for deterministic fractals", 1995), for all objects of a graph at once. Work
-//! and memory are those of the cells, whatever number of elements an approximant would have.
+//! A limit set consists of images of itself and of other sets of its system, and of outlines. Starting from
+//! one point of each set and from points of the outlines, every map is applied to one point of each newly met
+//! cell, until no new cell is met: minimal plotting (Monro & Dudbridge, "Rendering algorithms for
+//! deterministic fractals", 1995), for all objects of a graph at once. Work and memory depend on the number
+//! of cells, not on the number of elements of an approximant.
 //!
-//! Every cell that is met holds a point of the set, or lies between such. A point of the set lies no farther than d / (1 − c)
-//! from one that is met, with d the diagonal of a cell and c the factor by which maps contract, and
-//! rarely farther than d.
+//! Every cell that is met holds a point of the set, or lies between cells that do. A point of the set is no
+//! farther than d / (1 − c) from one that is met, where d is the diagonal of a cell and c the contraction
+//! factor of the maps, and rarely farther than d.
 //!
-//! Cells are found by waves, of which threads look at parts; what they find is put together in the order
-//! of one thread.
+//! Cells are found in waves, which are divided between threads; the results are merged in the order of one
+//! thread.
 
 mod field;
 mod net;
@@ -37,49 +37,49 @@ use self::net::{Edge, Net, Node};
 use self::shown::Shown;
 use self::waves::Waves;
 
-/// Points whose images are looked for together.
+/// Maximum number of points whose images are computed together.
 const BLOCK: usize = 1 << 15;
 
-/// Images that are worth another thread.
+/// Number of images that are worth another thread.
 const WORTH_A_THREAD: usize = 1 << 14;
 
-/// Cells along a side of one about which finer ones are looked for, and the images of points that
-/// are worth it.
+/// Numbers of finer cells along the side of a cell, with which a search is refined.
 const FINER: [f64; 2] = [2.0, 4.0];
+/// Maximum number of images of points for a refinement.
 const FINER_WORTH: f64 = 4e6;
 
-/// Rounds in which cells between others are filled.
+/// Number of rounds in which cells between others are filled.
 const ROUNDS: usize = 2;
 
-/// Why cells are not found.
+/// Reason why cells are not found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stopped {
-    /// It would take more work than was allowed.
+    /// The search takes more work than is allowed.
     TooMany,
-    /// Somebody wants it to end.
+    /// The search was cancelled.
     Cancelled,
 }
 
-/// The limit set of a graph that contracts, by the layers of a picture.
+/// Limit set of a contractive graph, by the layers of a picture.
 pub(crate) struct LimitCells<'g> {
     graph: &'g Graph,
     net: Net,
     layers: usize,
 }
 
-/// The bounds of a search for cells.
+/// Parameters of a search for cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
-    /// Cells to a unit of length of the plane.
+    /// Number of cells per unit of length of the plane.
     pub(crate) scale: f64,
-    /// The most images of points that are worked out.
+    /// Maximum number of images of points that are computed.
     pub(crate) most_images: u64,
     pub(crate) threads: NonZero<usize>,
     pub(crate) cancel: Option<&'a AtomicBool>,
 }
 
 impl Search<'_> {
-    /// Ends the search if somebody wants that.
+    /// Returns an error if the search was cancelled.
     fn check(&self) -> Result<(), Stopped> {
         let is_cancelled = |cancel: &AtomicBool| cancel.load(Relaxed);
         if self.cancel.is_some_and(is_cancelled) {
@@ -89,18 +89,18 @@ impl Search<'_> {
     }
 }
 
-/// Cells that have been found.
+/// Result of a search for cells.
 pub(crate) struct Found {
-    /// Those of every layer that hold points of it.
+    /// Cells of every layer that hold points of it.
     pub(crate) fields: Vec<Field>,
-    /// The images of points that were worked out.
+    /// Number of images of points that were computed.
     pub(crate) images: u64,
-    /// The most maps that were applied to one point.
+    /// Maximum number of maps that were applied to one point.
     pub(crate) steps: u32,
 }
 
 impl<'g> LimitCells<'g> {
-    /// Describes the limit set of a plain graph that contracts, by the layers of a picture.
+    /// Creates the limit set of a plain contractive graph, by the layers of a picture.
     pub(crate) fn new(graph: &'g Graph, layers: &[Layer]) -> Self {
         Self {
             graph,
@@ -109,7 +109,7 @@ impl<'g> LimitCells<'g> {
         }
     }
 
-    /// Returns a box that holds most of the layers, by a sequence of points.
+    /// Returns a bounding box of most of the layers, from orbits of pseudo-random maps.
     fn rough_bounds(&self) -> Bounds {
         const POINTS: usize = 1 << 16;
         let nodes = &self.net.nodes;
@@ -128,7 +128,7 @@ impl<'g> LimitCells<'g> {
                 for Edge { map, .. } in shown {
                     bounds.add(map.transform_point2(point));
                 }
-                // As linear congruential generators go (Knuth), by the upper bits.
+                // Linear congruential generator (Knuth), of which the upper bits are used.
                 turn = turn.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let choice = (u64::from(turn) * inner.len() as u64) >> 32;
                 let Some(Edge { map, whole, .. }) = inner.get(choice as usize) else {
@@ -140,11 +140,11 @@ impl<'g> LimitCells<'g> {
         bounds
     }
 
-    /// Returns the box of the layers, to about a pixel of a picture whose longer side has `pixels`.
+    /// Returns the bounding box of the layers, to about a pixel of a picture whose longer side has `pixels`.
     ///
     /// # Errors
     ///
-    /// As [`LimitCells::find`].
+    /// Returns the errors of [`LimitCells::find`].
     pub(crate) fn bounds(&self, search: &Search<'_>, pixels: f64) -> Result<Bounds, Stopped> {
         let mut bounds = self.rough_bounds();
         for pixels in [pixels / 4.0, pixels] {
@@ -164,7 +164,7 @@ impl<'g> LimitCells<'g> {
     ///
     /// # Errors
     ///
-    /// If that takes more work than is allowed, or if it is cancelled.
+    /// Returns an error if the search takes more work than is allowed, or if it is cancelled.
     pub(crate) fn find(&self, search: &Search<'_>) -> Result<Found, Stopped> {
         let mut found = self.find_all(search, true)?;
         let layers = found.fields.len() - self.layers;
@@ -172,8 +172,8 @@ impl<'g> LimitCells<'g> {
         Ok(found)
     }
 
-    /// Finds the cells of all sets, and of every layer after these; without outlines, of what is replaced
-    /// for ever.
+    /// Finds the cells of all sets, followed by those of every layer. Without outlines, only elements that
+    /// are replaced without end are considered.
     fn find_all(&self, search: &Search<'_>, with_outlines: bool) -> Result<Found, Stopped> {
         let scales = { self.net.nodes.iter() }.map(|node| search.scale * node.stretch);
         let mut orbit = Orbit::new(self, search, scales, search.most_images, &[]);
@@ -190,8 +190,8 @@ impl<'g> LimitCells<'g> {
         })
     }
 
-    /// Adds cells beside those that are known of all sets, where one point of each had not led there: finer
-    /// cells are looked for about all but inner ones, if that takes no more work than is worth while.
+    /// Adds cells of all sets that one point per cell has not reached: finer cells are searched around all
+    /// cells but inner ones, if that takes no more work than it is worth.
     fn refine(&self, search: &Search<'_>, known: &mut Found) -> Result<(), Stopped> {
         let nodes = &self.net.nodes;
         for fineness in FINER {
@@ -234,24 +234,24 @@ fn finished(mut layers: Vec<Field>) -> Vec<Field> {
     layers
 }
 
-/// Points of all sets, one a cell.
+/// Points of all sets, one per cell.
 struct Orbit<'a> {
     net: &'a Net,
     search: &'a Search<'a>,
-    /// The cells of sets,
+    /// Cells of sets.
     fields: Vec<Field>,
-    /// and of layers.
+    /// Cells of layers.
     shown: Shown<()>,
-    /// The points that are new.
+    /// New points.
     waves: Waves<DVec2>,
-    /// Images that may still be worked out.
+    /// Number of images that may still be computed.
     left: u64,
-    /// By set, if they are given, cells from which points are not followed.
+    /// Cells from which points are not followed, by set; may be empty.
     without: &'a [Field],
 }
 
 impl<'a> Orbit<'a> {
-    /// No points yet of sets and layers, of a number of cells to a unit of length each.
+    /// Creates empty sets and layers; `scales` are their numbers of cells per unit of length.
     fn new(
         set: &'a LimitCells<'_>,
         search: &'a Search<'a>,
@@ -271,14 +271,14 @@ impl<'a> Orbit<'a> {
         }
     }
 
-    /// The cells of all sets, and of every layer after these.
+    /// Returns the cells of all sets, followed by those of every layer.
     fn into_fields(self) -> Result<Vec<Field>, TooFar> {
         let mut fields = self.fields;
         fields.extend(self.shown.into_fields()?);
         Ok(fields)
     }
 
-    /// Adds a point that so many maps lead to from those of the last wave.
+    /// Adds a point to which `maps` maps lead from a point of the last wave.
     fn add(&mut self, node: usize, point: DVec2, maps: usize) -> Result<(), TooFar> {
         if self.leaves_out(node, point) {
             return Ok(());
@@ -292,7 +292,7 @@ impl<'a> Orbit<'a> {
         Ok(())
     }
 
-    /// Cells of a set or a layer to a unit of length.
+    /// Returns the number of cells per unit of length of a set or layer.
     fn scale_of(&self, node: usize) -> f64 {
         let field = self.fields.get(node);
         field.map_or_else(|| self.shown.scale(node - self.fields.len()), Field::scale)
@@ -302,13 +302,14 @@ impl<'a> Orbit<'a> {
         self.without.get(node).is_some_and(|it| it.holds(point))
     }
 
-    /// Takes some work.
+    /// Takes images from the remaining ones. Returns an error if there are too few, or if the search was
+    /// cancelled.
     fn take(&mut self, images: usize) -> Result<(), Stopped> {
         self.left = { self.left.checked_sub(images as u64) }.ok_or(Stopped::TooMany)?;
         self.search.check()
     }
 
-    /// Points of the sets themselves, and of their outlines if those are given by a graph.
+    /// Adds points of the sets themselves and, if a graph is given, of their outlines.
     fn begin(&mut self, outlines: Option<&Graph>) -> Result<(), Stopped> {
         let net = self.net;
         for (number, node) in net.nodes.iter().enumerate() {
@@ -367,7 +368,7 @@ impl<'a> Orbit<'a> {
     }
 }
 
-/// Points of the outlines of a set, no more than so many.
+/// Returns points of the outlines of a set, or an error if there are more than `most`.
 fn outlined(graph: &Graph, node: &Node, scale: f64, most: u64) -> Result<Vec<DVec2>, Stopped> {
     let mut points = Vec::new();
     for (map, base_element) in &node.outlines {
@@ -383,7 +384,7 @@ fn outlined(graph: &Graph, node: &Node, scale: f64, most: u64) -> Result<Vec<DVe
     Ok(points)
 }
 
-/// Collects the results of a look at each of some points, in the order of the points, on a number of threads.
+/// Collects the results of `look` for each of some points, in the order of the points, on `threads` threads.
 fn looked_for<P: Sync, T: Send>(
     points: &[P],
     threads: usize,

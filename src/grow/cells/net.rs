@@ -1,58 +1,59 @@
-//! The limit set of a graph as sets that are made of each other's images.
+//! Limit set of a graph, as sets that consist of images of each other.
 
 use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Object, Replacement};
 
-/// Addresses of points are followed no deeper.
+/// Maximum length of the addresses of points.
 const MOST_LEVELS: usize = 1 << 20;
 
-/// A map that makes everything smaller than this leaves a point.
+/// Stretch of a map below which the image of a set is a point.
 const NEGLIGIBLE: f64 = 1e-18;
 
-/// Sets are left out between others where no more than so many maps come together.
+/// Maximum number of maps that are composed in one edge.
 const MOST_MAPS: usize = 16;
 
-/// A way in which a set is part of another.
+/// Way in which a set is part of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
     pub(super) map: DAffine2,
-    /// The other set, by number.
+    /// Index of the other set.
     pub(super) whole: usize,
-    /// The number of maps that are composed.
+    /// Number of maps that are composed.
     pub(super) maps: usize,
 }
 
 impl Edge {
-    /// How many steps later than by one map something is born that is in the whole so.
+    /// Returns the number of additional steps, compared with a single map, after which elements of the image
+    /// are born.
     pub(super) fn later(&self) -> u16 {
         u16::try_from(self.maps.saturating_sub(1)).unwrap_or(u16::MAX)
     }
 }
 
-/// A set of the limit, in a unit frame.
+/// Set of the limit, in a unit frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Node {
-    /// The ways in which it is part of other sets.
+    /// Ways in which it is part of other sets.
     pub(super) images: Vec<Edge>,
-    /// The maps by which outlines are parts of it, and base elements by number.
+    /// Maps by which outlines are parts of it, with the indices of base elements.
     pub(super) outlines: Vec<(DAffine2, usize)>,
-    /// A point of it, where it is more than outlines and images of those.
+    /// Point of the set, if it is more than outlines and their images.
     pub(super) point: Option<DVec2>,
-    /// The most that it is stretched in the picture.
+    /// Upper bound of its stretch in the picture.
     pub(super) stretch: f64,
 }
 
-/// Sets: what becomes of each behaviour, then what is in each layer of a picture.
+/// Sets: first the descendants of each behaviour, then the contents of each layer of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Net {
     pub(super) nodes: Vec<Node>,
 }
 
-/// A part of a picture: what becomes of objects where they stand.
+/// Part of a picture: objects with the maps that place them, including all their descendants.
 pub(crate) type Layer = Vec<(DAffine2, usize)>;
 
 impl Net {
-    /// The sets of layers, as far as something is drawn in them.
+    /// Creates the sets of layers, as far as anything is drawn in them.
     pub(super) fn of(graph: &Graph, layers: &[Layer]) -> Self {
         let builder = Builder {
             graph,
@@ -64,7 +65,7 @@ impl Net {
 
 struct Builder<'g> {
     graph: &'g Graph,
-    /// Objects of which something is drawn in the limit.
+    /// By object, whether anything of it is drawn in the limit.
     drawn: Vec<bool>,
 }
 
@@ -76,7 +77,7 @@ impl Builder<'_> {
         )
     }
 
-    /// The behaviour of an object of which something is drawn.
+    /// Returns the behaviour of an object of which anything is drawn.
     fn node(&self, object: usize) -> Option<usize> {
         let is_drawn = self.drawn[object] && self.is_replaced(object);
         is_drawn.then(|| self.graph.objects()[object].behaviour)
@@ -124,7 +125,7 @@ impl Builder<'_> {
         net
     }
 
-    /// Points of what is replaced for ever: those that a fixed address leads to.
+    /// Finds points of sets that are replaced without end, by fixed addresses.
     fn find_points(&self, net: &mut Net) {
         let parts = |(number, _): (usize, &Object)| -> Vec<(DAffine2, usize)> {
             let children = self.children(number);
@@ -155,7 +156,7 @@ impl Builder<'_> {
                 if stretch(&map.matrix2) <= NEGLIGIBLE {
                     break;
                 }
-                // The golden section never repeats itself.
+                // Multiples of the golden section never repeat.
                 turn = turn.wrapping_add(0x9e37_79b9);
                 let choice = (u64::from(turn) * parts[at].len() as u64) >> 32;
                 let (next, part) = parts[at][choice as usize];
@@ -167,7 +168,7 @@ impl Builder<'_> {
 }
 
 impl Net {
-    /// Works out the most that sets are stretched on ways that come to no set again.
+    /// Computes the largest stretch of sets, over paths that return to no set.
     fn measure(&mut self, behaviours: usize) {
         for layer in &mut self.nodes[behaviours..] {
             layer.stretch = 1.0;
@@ -194,8 +195,8 @@ impl Net {
         }
     }
 
-    /// Leaves out the sets that are part of one other in one way only: what is part of them becomes part of
-    /// that. None of their own cells are needed then.
+    /// Bypasses the sets that are part of exactly one other set in one way: their parts become parts of that
+    /// set, so that no cells of their own are needed.
     fn leave_out(&mut self, behaviours: usize) {
         for part in 0..behaviours {
             let [edge] = self.nodes[part].images[..] else {
@@ -222,7 +223,7 @@ impl Net {
         }
     }
 
-    /// The most maps that are composed in one edge.
+    /// Returns the largest number of maps that are composed in one edge.
     pub(super) fn most_maps(&self) -> usize {
         let images = self.nodes.iter().flat_map(|node| &node.images);
         images.map(|image| image.maps).max().unwrap_or(1)

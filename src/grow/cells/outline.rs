@@ -1,16 +1,16 @@
-//! Points of outlines, no two neighbours farther apart than a cell.
+//! Points of outlines, of which neighbours are at most a cell apart.
 
 use crate::geometry::{DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
-/// Lines that stand for a curve.
+/// Number of lines that replace a curve.
 const LINES: u32 = 64;
 
-/// Visits points of an outline in the image of a map, and of the area of a closed one, until no more
-/// are wanted; whether all were.
+/// Visits points of an outline in the image of a map, and of the area of a closed outline, until `visit`
+/// returns `false`. Returns whether all points were visited.
 ///
-/// On a grid of `scale` cells to a unit, no point of the image lies farther than a cell from those
-/// that are visited, which are on it. Areas are those of the nonzero rule.
+/// The visited points lie on the image. On a grid of `scale` cells per unit, no point of the image is farther
+/// than a cell from one of them. Areas are those of the nonzero rule.
 pub(super) fn visit(
     base_element: &BaseElement,
     map: &DAffine2,
@@ -23,7 +23,7 @@ pub(super) fn visit(
         && (!base_element.is_closed() || fill(&corners, scale, visit))
 }
 
-/// The ends of lines along an outline.
+/// Returns the ends of lines along an outline.
 fn flattened(base_element: &BaseElement, map: &DAffine2) -> Vec<DVec2> {
     let mut at = map.transform_point2(base_element.start());
     let mut corners = vec![at];
@@ -44,7 +44,7 @@ fn flattened(base_element: &BaseElement, map: &DAffine2) -> Vec<DVec2> {
     corners
 }
 
-/// Points of a line, both ends included.
+/// Visits points of a line, including both ends.
 fn line(from: DVec2, to: DVec2, scale: f64, visit: &mut impl FnMut(DVec2) -> bool) -> bool {
     let steps = ((to - from).abs().max_element() * scale).ceil().max(1.0);
     let mut step = 0.0;
@@ -57,7 +57,7 @@ fn line(from: DVec2, to: DVec2, scale: f64, visit: &mut impl FnMut(DVec2) -> boo
     true
 }
 
-/// A point of every cell whose middle is encircled.
+/// Visits a point of every cell whose centre lies inside.
 fn fill(corners: &[DVec2], scale: f64, visit: &mut impl FnMut(DVec2) -> bool) -> bool {
     let rows = corners.iter().map(|corner| corner.y * scale);
     let low = rows.clone().fold(f64::INFINITY, f64::min).floor();

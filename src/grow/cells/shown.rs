@@ -1,23 +1,23 @@
-//! Points of layers, which lead no further.
+//! Points of layers, from which none are derived.
 
 use std::thread;
 
 use super::field::{Field, TooFar};
 use crate::geometry::DVec2;
 
-/// Points that are put into cells together.
+/// Maximum number of points that are put into cells together.
 const MANY: usize = 1 << 17;
 
-/// Points that are worth other threads.
+/// Number of points that are worth several threads.
 const WORTH_THREADS: usize = 1 << 14;
 
-/// What comes with a point that is put into its cell.
+/// Data of a point that is put into its cell.
 pub(super) trait Mark: Copy + Send + Sync {
     /// Puts a point into its cell.
     fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar>;
 }
 
-/// Nothing: the first point of a cell stays.
+/// Without data, the first point of a cell is kept.
 impl Mark for () {
     #[inline]
     fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
@@ -25,7 +25,7 @@ impl Mark for () {
     }
 }
 
-/// A label: the greatest one of a cell stays.
+/// The greatest label of a cell is kept.
 impl Mark for u16 {
     #[inline]
     fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
@@ -33,18 +33,18 @@ impl Mark for u16 {
     }
 }
 
-/// The cells of layers, in parts of the plane of which every thread has its own.
+/// Cells of layers, divided so that every thread has a part of the plane of its own.
 ///
-/// The points of a cell come in their order, whatever number of threads there is.
+/// The points of a cell are put in their order, regardless of the number of threads.
 pub(super) struct Shown<M> {
-    /// By thread and by layer.
+    /// Fields by thread and by layer.
     parts: Vec<Vec<Field>>,
     /// Points of layers that are not in their cells yet.
     open: Vec<(usize, DVec2, M)>,
 }
 
 impl<M: Mark> Shown<M> {
-    /// Layers without points, of numbers of cells to a unit of length.
+    /// Creates layers without points; `scales` are their numbers of cells per unit of length.
     pub(super) fn new(scales: impl Iterator<Item = f64> + Clone, threads: usize) -> Self {
         let layers = || scales.clone().map(Field::new).collect();
         Self {
@@ -53,7 +53,7 @@ impl<M: Mark> Shown<M> {
         }
     }
 
-    /// Cells of a layer to a unit of length.
+    /// Returns the number of cells of a layer per unit of length.
     pub(super) fn scale(&self, layer: usize) -> f64 {
         self.parts
             .first()
@@ -109,7 +109,7 @@ impl<M: Mark> Shown<M> {
         outcome
     }
 
-    /// The cells of every layer.
+    /// Returns the cells of every layer.
     pub(super) fn into_fields(mut self) -> Result<Vec<Field>, TooFar> {
         self.put_open()?;
         let mut parts = self.parts.into_iter();
@@ -127,7 +127,7 @@ impl<M: Mark> Shown<M> {
 mod tests {
     use super::*;
 
-    /// The first point of a cell stays, and the greatest label, whatever number of threads there is.
+    /// The first point and the greatest label of a cell are kept, regardless of the number of threads.
     #[test]
     fn threads_do_not_show_in_layers() {
         let points = || {

@@ -1,13 +1,14 @@
-//! Cells with the last step in which something that covers them is born.
+//! Cells with the last step in which an element that covers them is born.
 //!
 //! Elements of a later step cover those of earlier ones. Two kinds of points are followed, from inner to
-//! outer maps, with the linear part of all maps that were applied:
+//! outer maps, with the linear part of the composition of all maps that were applied:
 //!
-//! - Points of what is replaced for ever. Only the last steps of these are seen, and by then they have been
-//!   contracted to the shortest length: cells in which one stands for others may be as much larger as
-//!   they are to be contracted yet, so that nearly all work is that of the last halving.
-//! - Points of outlines, step by step, as far as they are not within what is replaced for ever: images of
-//!   it would cover all images of such a point.
+//! - Points of elements that are replaced without end. Only their last steps are visible, by which they have
+//!   been contracted to the shortest length. The cells in which one point represents others may therefore be
+//!   larger by the factor by which they are still to be contracted, so that nearly all work is that of the
+//!   last halving.
+//! - Points of outlines, step by step, unless they lie within elements that are replaced without end: images
+//!   of these would cover all images of such a point.
 
 use std::collections::VecDeque;
 
@@ -19,31 +20,34 @@ use super::{Found, LimitCells, Search, Stopped};
 use super::{finished, looked_for, outlined};
 use crate::geometry::{DAffine2, DMat2, DVec2, stretch};
 
-/// Elements shorter than this multiple of the shortest length are hardly replaced again.
+/// Multiple of the shortest length below which elements are hardly replaced again.
 const SHORT: f64 = 2.0;
 
-/// Sides of cells to which the last steps of what is replaced for ever are told, in cells of the picture.
+/// Sides of cells, in cells of the picture, for which the last steps of elements replaced without end are
+/// found.
 const GRAINS: [f64; 3] = [4.0, 2.0, 1.0];
 
-/// Images of points that are worth a finer grain.
+/// Expected number of images of points above which the next finer grain is not tried.
 const WORTH: u64 = 12_000_000;
 
-/// Points along a side of a cell that outlines are followed by: the most that take not too much work.
+/// Numbers of points along a side of a cell by which outlines are followed, in the order in which they are
+/// tried.
 const FINENESS: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// Points whose images are looked for together: few, so that most that meet others are known to.
+/// Maximum number of points whose images are computed together: small, so that most images that coincide with
+/// others are recognised.
 const BLOCK: usize = 1 << 12;
 
-/// Images that are worth another thread.
+/// Number of images that are worth another thread.
 const WORTH_A_THREAD: usize = 1 << 13;
 
-/// Growth of the number of cells where their sides are halved.
+/// Factor by which the number of cells grows when their sides are halved.
 const TIMES: u64 = 4;
 
-/// The most sizes of cells, of which each is half of the one before.
+/// Maximum number of sizes of cells, each of which is half of the one before.
 const MOST_SIZES: usize = 40;
 
-/// A point, and the linear part of the maps that were applied to it.
+/// Point with the linear part of the maps that were applied to it.
 #[derive(Clone, Copy)]
 struct Drawn {
     at: DVec2,
@@ -60,44 +64,44 @@ impl Drawn {
     }
 }
 
-/// A search for the last steps.
+/// Search for the last steps.
 struct Steps<'a> {
     set: &'a LimitCells<'a>,
     search: &'a Search<'a>,
-    /// The least length at which elements are replaced.
+    /// Minimum length of elements that are replaced.
     shortest: f64,
-    /// By set and then by layer: the cells of what is replaced for ever,
+    /// Cells of elements that are replaced without end, by set and then by layer.
     cores: Vec<Field>,
-    /// and the last steps in cells, which are larger for sets.
+    /// Last steps of cells, by set and then by layer; the cells of sets are larger.
     last: Vec<Field>,
     waves: Waves<Drawn>,
-    /// By the number of maps from the last wave on, less one, by set, and by the size of cells that points
-    /// stand for: the points of the waves that come.
+    /// Points of the coming waves: by the number of maps from the last wave, minus 1, by set, and by the size
+    /// of the cells that the points represent.
     met: VecDeque<Vec<Vec<Field>>>,
-    /// The step of what one map leads to from the last wave.
+    /// Step to which one map leads from the last wave.
     step: u16,
-    /// Images that may still be worked out.
+    /// Number of images that may still be computed.
     left: u64,
 }
 
-/// An image of a point.
+/// Image of a point.
 struct Image<'a> {
     edge: &'a Edge,
     drawn: Drawn,
     step: u16,
-    /// The number of the size of the cell that the point stands for.
+    /// Index of the size of the cell that the point represents.
     size: usize,
-    /// Whether hardly anything that comes of the point is born in a later step.
+    /// Whether hardly any descendant of the point is born in a later step.
     is_last: bool,
 }
 
 impl LimitCells<'_> {
-    /// Finds the cells of every layer by the last steps in which what covers them is born. Elements are
-    /// replaced down to a length.
+    /// Finds the cells of every layer, with the last steps in which elements that cover them are born.
+    /// Elements are replaced down to the length `shortest`.
     ///
     /// # Errors
     ///
-    /// If that takes more work or more steps than are allowed, or if it is cancelled.
+    /// Returns an error if that takes more work or more steps than are allowed, or if it is cancelled.
     pub(crate) fn find_steps(&self, search: &Search<'_>, shortest: f64) -> Result<Found, Stopped> {
         let mut cores = self.find_all(search, false)?;
         self.refine(search, &mut cores)?;
@@ -147,20 +151,21 @@ impl Steps<'_> {
         self.set.net.nodes.len() - self.set.layers
     }
 
-    /// Takes some work.
+    /// Takes images from the remaining ones. Returns an error if there are too few, or if the search was
+    /// cancelled.
     fn take(&mut self, images: usize) -> Result<(), Stopped> {
         self.search.check()?;
         self.left = { self.left.checked_sub(images as u64) }.ok_or(Stopped::TooMany)?;
         Ok(())
     }
 
-    /// Returns the length of an element in the picture, in units of the shortest length.
+    /// Returns the length of an element in the picture, as a multiple of the shortest length.
     #[inline]
     fn ratio(&self, whole: usize, drawn: &Drawn) -> f64 {
         stretch(&drawn.linear) * self.set.net.nodes[whole].stretch / self.shortest
     }
 
-    /// Makes room for the points of the waves that come, by fields of every set.
+    /// Prepares fields for the points of the coming waves; `met` creates those of a set.
     fn begin(&mut self, met: impl Fn(usize) -> Vec<Field>) {
         let net = &self.set.net;
         let first_layer = self.first_layer();
@@ -172,14 +177,15 @@ impl Steps<'_> {
             .collect();
     }
 
-    /// Whether a point like the image is among those of its wave.
+    /// Returns whether the cell of an image already holds a point of its wave.
     #[inline]
     fn has_met(&self, image: &Image<'_>) -> bool {
         let sizes = &self.met[image.edge.maps - 1][image.edge.whole];
         sizes[image.size.min(sizes.len() - 1)].holds(image.drawn.at)
     }
 
-    /// Goes on from an image, unless one like it has been met; whether none had.
+    /// Continues from an image, unless its cell already holds a point of its wave. Returns whether it does
+    /// continue.
     #[inline]
     fn follow(&mut self, image: &Image<'_>) -> Result<bool, TooFar> {
         let Edge { whole, maps, .. } = *image.edge;
@@ -192,7 +198,7 @@ impl Steps<'_> {
         Ok(is_new)
     }
 
-    /// Works out the images of the points of the next wave that are kept, and adds each.
+    /// Computes the images of the points of the next wave, and calls `add` with those that are kept.
     fn go_on(
         &mut self,
         is_kept: impl Fn(&Self, &Image<'_>) -> bool + Sync,
@@ -254,12 +260,12 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Finds the last steps of what is replaced for ever, to cells of `grain` picture cells along a side;
-    /// returns the number of steps.
+    /// Finds the last steps of elements that are replaced without end, in cells of `grain` picture cells
+    /// along a side. Returns the number of steps.
     fn follow_points(&mut self, grain: f64) -> Result<u16, Stopped> {
         let first_layer = self.first_layer();
         let cores = self.cores.iter().enumerate();
-        // One point of a cell of this size leads on, and so labels all of it.
+        // In each cell of this size only one point is followed, and labels the whole cell.
         let grain = |set: usize| if set < first_layer { grain } else { 1.0 };
         let scales: Vec<f64> = cores.map(|(set, core)| core.scale() / grain(set)).collect();
         let (sets, layers) = scales.split_at(first_layer);
@@ -297,7 +303,7 @@ impl Steps<'_> {
         Ok(self.step)
     }
 
-    /// Finds the last steps of outlines, by `fineness` points along a side of a cell; returns the number of
+    /// Finds the last steps of outlines, by `fineness` points along a side of a cell. Returns the number of
     /// steps.
     fn follow_outlines(&mut self, fineness: f64) -> Result<u16, Stopped> {
         let set = self.set;
@@ -348,8 +354,8 @@ impl Steps<'_> {
         Ok(self.step)
     }
 
-    /// Whether what is replaced for ever covers a point of a step, and so all its images: it is born in no
-    /// fewer steps, or hardly fewer, when it is as short.
+    /// Returns whether elements that are replaced without end cover a point of a step, and thereby all its
+    /// images: when they are as short, they are born in at least as many steps, or nearly.
     fn is_covered(&self, whole: usize, drawn: &Drawn, step: u16) -> bool {
         const NEARLY: f64 = 1.25;
         const SPARE: f64 = 2.0;
@@ -364,7 +370,7 @@ impl Steps<'_> {
     }
 }
 
-/// The number of a size of cells: the smallest for what cannot be contracted any further.
+/// Returns the index of a size of cells; the smallest is for points that cannot be contracted any further.
 fn size_of(ratio: f64) -> usize {
     let mut size = 0;
     let mut longest = SHORT;

@@ -1,3 +1,5 @@
+//! Tests of searches for cells.
+
 use std::num::NonZero;
 
 use super::field::Field;
@@ -5,8 +7,8 @@ use super::{Found, LimitCells, Search};
 use crate::catalogue::Catalogue;
 use crate::document::Document;
 
-/// The branches of the tree are the tree again, in one way each: points of it lead to points of it, with
-/// no cells of branches between.
+/// Each branch of the tree is part of the tree in one way only, so that points of the tree lead to points of
+/// the tree without cells of branches in between.
 #[test]
 fn sets_between_are_left_out() {
     let catalogue = Catalogue::embedded();
@@ -27,6 +29,6 @@ fn sets_between_are_left_out() {
     };
     let layer = fields.last().unwrap();
     let cells = layer.count_without(&Field::new(layer.scale())) as u64;
-    // Three branches and the picture for each, which were seven images with those of the branches.
+    // Three images for the branches and one for the picture; with cells of branches there were seven.
     assert!(cells > 5_000 && images < 5 * cells, "{images} of {cells}");
 }

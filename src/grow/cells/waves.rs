@@ -1,16 +1,16 @@
-//! Points whose images are to be worked out, by the number of maps that lead to them.
+//! Points whose images are to be computed, by the number of maps that lead to them.
 
 use std::collections::VecDeque;
 
 use super::net::Net;
 
-/// Points by the number of maps and by set: what comes next, and what is some maps further.
+/// Points by the number of maps and by set: the next wave, and those of later waves.
 pub(super) struct Waves<P> {
     coming: VecDeque<Vec<Vec<P>>>,
 }
 
 impl<P> Waves<P> {
-    /// No points of any set yet.
+    /// Creates waves without points.
     pub(super) fn of(net: &Net) -> Self {
         let coming = (0..net.most_maps()).map(|_| none(net.nodes.len()));
         Self {
@@ -18,8 +18,8 @@ impl<P> Waves<P> {
         }
     }
 
-    /// Adds a point of a set that so many maps lead to from those of the last wave. Those of a start, to
-    /// which none does, come next.
+    /// Adds a point of a set to which `maps` maps lead from a point of the last wave. Points to which no maps
+    /// lead belong to the next wave.
     #[inline]
     pub(super) fn push(&mut self, maps: usize, node: usize, point: P) {
         self.coming[maps.saturating_sub(1)][node].push(point);
@@ -32,7 +32,7 @@ impl<P> Waves<P> {
         self.coming.pop_front().unwrap_or_default()
     }
 
-    /// Whether no points are left.
+    /// Returns whether no points are left.
     pub(super) fn are_over(&self) -> bool {
         self.coming.iter().flatten().all(Vec::is_empty)
     }

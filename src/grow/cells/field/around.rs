@@ -1,10 +1,10 @@
-//! Cells by those around them.
+//! Operations on the cells of a field by their neighbours.
 
 use super::{Field, NONE, SIDE, Tile, WIDTH, bits, within};
 
 impl Field {
-    /// Fills cells with no fewer than three neighbours of four that hold points: where the set has an area,
-    /// a point of every cell leads to a point of most cells, not of all.
+    /// Fills cells of which at least three of the four neighbours hold points. If a set has an area, the
+    /// images of one point per cell reach most of its cells, but not all.
     pub(in crate::grow::cells) fn fill_pits(&mut self) {
         let mut filled = Vec::new();
         for (slot, &number) in self.directory.iter().enumerate() {
@@ -30,7 +30,7 @@ impl Field {
         }
     }
 
-    /// The cells whose eight neighbours all hold points, and which do themselves.
+    /// Returns the cells that hold points and whose eight neighbours all do.
     pub(in crate::grow::cells) fn inner(&self) -> Self {
         let mut inner = Self {
             low: self.low,
@@ -63,7 +63,7 @@ impl Field {
         inner
     }
 
-    /// Whether the left and the right neighbours of the cells of a word hold points.
+    /// Returns whether the left and the right neighbours of the cells of a word hold points.
     pub(super) fn beside(&self, column: i64, row: i64, word: u64) -> [u64; 2] {
         [
             word << 1 | self.word(column - 1, row) >> 63,
@@ -71,7 +71,8 @@ impl Field {
         ]
     }
 
-    /// Which cells of a word have neighbours that hold points: three of four, and all.
+    /// Returns the cells of a word with at least three of four neighbours that hold points, and those with
+    /// four.
     pub(super) fn neighbours(&self, column: i64, row: i64) -> [u64; 2] {
         let [left, right] = self.beside(column, row, self.word(column, row));
         let [below, above] = [row - 1, row + 1].map(|row| self.word(column, row));

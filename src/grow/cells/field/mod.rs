@@ -1,4 +1,4 @@
-//! Cells of the plane that hold points of a set, and one such point of each.
+//! Fields of square cells, with one point of a set for each cell that holds any.
 
 mod around;
 mod rows;
@@ -6,52 +6,54 @@ mod spread;
 
 use crate::geometry::{Bounds, DVec2};
 
-/// Cells along a side of a tile.
+/// Number of cells along a side of a tile.
 const SIDE: i64 = 64;
 const WIDTH: usize = 64;
 
-/// Steps to a cell in which its point is kept.
+/// Steps per cell in which the position of its point is stored.
 const STEPS: f64 = 256.0;
 
-/// No tile.
+/// Index of no tile.
 const NONE: u32 = u32::MAX;
 
-/// Tiles that lie farther from the origin are not kept.
+/// Maximum distance of tiles from the origin, in tiles.
 const FARTHEST: i64 = 1 << 40;
 
-/// The most tiles that a directory has room for.
+/// Maximum number of tiles in a directory.
 const MOST_ROOM: i64 = 1 << 27;
 
-/// Square cells of which some hold a point.
+/// Square cells, some of which hold a point.
 ///
-/// Cells are kept in tiles, and a directory of those grows with the set: its box need not be known.
+/// Cells are stored in tiles. The directory of tiles grows with the set, whose bounding box need not be
+/// known.
 #[derive(Debug)]
 pub(crate) struct Field {
-    /// Cells to a unit of length.
+    /// Number of cells per unit of length.
     scale: f64,
-    /// The lower left tile of the directory, and its columns and rows.
+    /// Lower left tile of the directory.
     low: [i64; 2],
+    /// Numbers of columns and rows of the directory.
     room: [i64; 2],
     directory: Vec<u32>,
     tiles: Vec<Tile>,
     bounds: Bounds,
 }
 
-/// 64 × 64 cells.
+/// Tile of 64 × 64 cells.
 #[derive(Debug)]
 struct Tile {
-    /// Rows of cells, the first one in the lowest bit.
+    /// Rows of cells, with the first cell in the lowest bit.
     rows: [u64; WIDTH],
-    /// Where in its cell the point of each lies.
+    /// Position in the cell of each point, or label of the cell.
     places: Box<[[u8; 2]]>,
 }
 
-/// A point that is farther from the origin than cells are numbered.
+/// Error that a point is too far from the origin for the numbers of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooFar;
 
 impl Field {
-    /// Returns a field without points, of a number of cells to a unit of length.
+    /// Creates a field without points, with `scale` cells per unit of length.
     pub(super) fn new(scale: f64) -> Self {
         Self {
             scale,
@@ -63,17 +65,17 @@ impl Field {
         }
     }
 
-    /// Cells to a unit of length.
+    /// Returns the number of cells per unit of length.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The box of the points.
+    /// Returns the bounding box of the points.
     pub(crate) fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Returns the number of a tile in the directory, if that has room for it.
+    /// Returns the index of a tile in the directory, if the directory has room for it.
     #[inline]
     fn slot(&self, tile: [i64; 2]) -> Option<usize> {
         let [column, row] = [tile[0] - self.low[0], tile[1] - self.low[1]];
@@ -89,7 +91,7 @@ impl Field {
         self.tiles.get(number as usize)
     }
 
-    /// Whether the cell of a point holds one already.
+    /// Returns whether the cell of a point holds one already.
     #[inline]
     pub(super) fn holds(&self, point: DVec2) -> bool {
         let cell = cell_of(point * self.scale);
@@ -98,7 +100,7 @@ impl Field {
             .is_some_and(|tile| tile.rows[row] >> column & 1 == 1)
     }
 
-    /// Adds a point, unless its cell holds one already; whether it did not.
+    /// Adds a point, unless its cell holds one already. Returns whether it was added.
     #[inline]
     pub(super) fn add(&mut self, point: DVec2) -> Result<bool, TooFar> {
         let scaled = point * self.scale;
@@ -114,7 +116,7 @@ impl Field {
         Ok(true)
     }
 
-    /// Adds a point with a label for its cell, unless that has a greater one.
+    /// Adds a point with a label for its cell, unless the cell has a greater label.
     #[inline]
     pub(super) fn label(&mut self, point: DVec2, label: u16) -> Result<(), TooFar> {
         let cell = cell_of(point * self.scale);
@@ -132,7 +134,7 @@ impl Field {
         Ok(())
     }
 
-    /// A tile, with room for it.
+    /// Returns a tile, which is created if it does not exist yet.
     #[inline]
     fn make_tile(&mut self, tile: [i64; 2]) -> Result<&mut Tile, TooFar> {
         let slot = match self.slot(tile) {
@@ -146,13 +148,13 @@ impl Field {
         Ok(&mut self.tiles[self.directory[slot] as usize])
     }
 
-    /// The label of the cell of a point, if it has one.
+    /// Returns the label of the cell of a point, if it has one.
     pub(super) fn label_of(&self, point: DVec2) -> Option<u16> {
         self.place(cell_of(point * self.scale))
             .map(u16::from_le_bytes)
     }
 
-    /// The number of the share that a point is of, of so many into which the tiles are divided.
+    /// Returns the index of the share that contains a point, if the tiles are divided into `count` shares.
     #[inline]
     pub(super) fn share_of(&self, point: DVec2, count: usize) -> usize {
         let [column, row] = tile_of(cell_of(point * self.scale));
@@ -163,7 +165,7 @@ impl Field {
         }
     }
 
-    /// Takes the tiles of another field of this scale, of which this one has none.
+    /// Moves the tiles of another field of the same scale to this one, which has none of them.
     pub(super) fn take_over(&mut self, other: Self) -> Result<(), TooFar> {
         let corners: Vec<[i64; 2]> = (0..other.directory.len())
             .map(|slot| other.corner_of(slot))
@@ -178,7 +180,7 @@ impl Field {
         Ok(())
     }
 
-    /// Forgets all points.
+    /// Removes all points.
     pub(super) fn clear(&mut self) {
         if !self.bounds.is_empty() {
             for tile in &mut self.tiles {
@@ -188,7 +190,7 @@ impl Field {
         }
     }
 
-    /// Makes the directory larger, by more than it takes.
+    /// Enlarges the directory by more than a tile requires, and returns the index of the tile.
     fn make_room(&mut self, tile: [i64; 2]) -> Result<usize, TooFar> {
         if tile.iter().any(|at| at.abs() > FARTHEST) {
             return Err(TooFar);
@@ -230,7 +232,7 @@ impl Field {
         self.slot(tile).ok_or(TooFar)
     }
 
-    /// The points of all cells, but of those that another field of this scale holds.
+    /// Returns the points of all cells, except of those in which another field of the same scale holds one.
     pub(super) fn points_without(&self, other: &Self) -> Vec<DVec2> {
         let mut points = Vec::new();
         for row in self.low[1] * SIDE..(self.low[1] + self.room[1]) * SIDE {
@@ -242,7 +244,8 @@ impl Field {
         points
     }
 
-    /// The number of cells that hold a point, but of those that another field of this scale holds.
+    /// Returns the number of cells that hold a point, except of those in which another field of the same
+    /// scale does.
     pub(super) fn count_without(&self, other: &Self) -> usize {
         let mut count = 0;
         for row in self.low[1] * SIDE..(self.low[1] + self.room[1]) * SIDE {
@@ -254,7 +257,7 @@ impl Field {
         count
     }
 
-    /// The column of a tile of the directory, and its first row of cells.
+    /// Returns the column of a tile of the directory, and its first row of cells.
     fn corner_of(&self, slot: usize) -> [i64; 2] {
         let slot = i64::try_from(slot).unwrap_or(0);
         [
@@ -263,21 +266,21 @@ impl Field {
         ]
     }
 
-    /// The cells of a row of a tile, as bits.
+    /// Returns the cells of a row of a tile, as bits.
     fn word(&self, column: i64, row: i64) -> u64 {
         let tile = self.tile([column, row.div_euclid(SIDE)]);
         let row = usize::try_from(row.rem_euclid(SIDE)).unwrap_or(0);
         tile.map_or(0, |tile| tile.rows[row])
     }
 
-    /// The two bytes kept for a cell that holds a point: the place of the point, or a label.
+    /// Returns the two bytes of a cell that holds a point: the position of the point, or a label.
     fn place(&self, cell: [i64; 2]) -> Option<[u8; 2]> {
         let [column, row] = within(cell);
         let tile = self.tile(tile_of(cell))?;
         (tile.rows[row] >> column & 1 == 1).then(|| tile.places[row * WIDTH + column])
     }
 
-    /// The point of a cell that holds one.
+    /// Returns the point of a cell that holds one.
     fn point(&self, cell: [i64; 2]) -> DVec2 {
         let [x, y] = self.place(cell).unwrap_or_default();
         let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / STEPS;
@@ -294,7 +297,7 @@ impl Default for Tile {
     }
 }
 
-/// The numbers of the bits of a word that are set.
+/// Iterates over the indices of the set bits of a word.
 fn bits(mut word: u64) -> impl Iterator<Item = i64> {
     std::iter::from_fn(move || {
         let bit = word.trailing_zeros();
@@ -303,7 +306,7 @@ fn bits(mut word: u64) -> impl Iterator<Item = i64> {
     })
 }
 
-/// The cell of a point that is given in cells.
+/// Returns the cell of a point that is given in units of cells.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -317,7 +320,7 @@ fn cell_of(point: DVec2) -> [i64; 2] {
     })
 }
 
-/// The place of a point in its cell.
+/// Returns the position of a point in its cell, in steps.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -341,7 +344,7 @@ fn tile_of(cell: [i64; 2]) -> [i64; 2] {
     cell.map(|at| at.div_euclid(SIDE))
 }
 
-/// Column and row of a cell in its tile.
+/// Returns column and row of a cell in its tile.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "they are below 64")]
 fn within(cell: [i64; 2]) -> [usize; 2] {

@@ -1,16 +1,16 @@
-//! The cells of a field row by row, as they are drawn.
+//! Iteration over the cells of a field, row by row, for drawing.
 
 use super::{Field, SIDE, bits, corner};
 use crate::geometry::DVec2;
 
-/// A row of cells of a [`Field`].
+/// Row of cells of a [`Field`].
 pub(crate) struct Row<'f> {
     field: &'f Field,
     number: i64,
 }
 
 impl Field {
-    /// All rows of cells that may hold points, from the lowest on.
+    /// Iterates over all rows of cells that may hold points, from the lowest.
     pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
         let from = self.low[1] * SIDE;
         let to = (self.low[1] + self.room[1]) * SIDE;
@@ -22,19 +22,19 @@ impl Field {
 }
 
 impl Row<'_> {
-    /// The number of the row.
+    /// Returns the number of the row.
     pub(crate) fn number(&self) -> i64 {
         self.number
     }
 
-    /// Visits the cells of the row that hold points, from left to right: as runs, by the middles of
-    /// their ends.
+    /// Visits the cells of the row that hold points, from left to right, as runs given by the centres of
+    /// their end cells.
     pub(crate) fn visit_runs(&self, visit: impl FnMut([DVec2; 2])) {
         self.visit(|word, _| [word, word], visit);
     }
 
-    /// Visits the cells as [`Row::visit_runs`] does, but those with no more than two neighbours of four by
-    /// their points, and those that have all four only if inner ones are needed.
+    /// Visits the cells as [`Row::visit_runs`] does, except that cells with at most two of four neighbours
+    /// are given by their points, and cells with all four are visited only if `needs_inner` is set.
     pub(crate) fn visit_points(&self, needs_inner: bool, visit: impl FnMut([DVec2; 2])) {
         let Self { field, number } = *self;
         let sort = |word: u64, column: i64| {
@@ -45,7 +45,7 @@ impl Row<'_> {
         self.visit(sort, visit);
     }
 
-    /// Visits runs of cells that have one label, by the middles of their ends.
+    /// Visits runs of cells with equal labels, given by the centres of their end cells.
     pub(crate) fn visit_labels(&self, mut visit: impl FnMut(u16, [DVec2; 2])) {
         let Self { field, number } = *self;
         let middle = |cell: i64| (corner([cell, number]) + 0.5) / field.scale;
@@ -69,8 +69,8 @@ impl Row<'_> {
         }
     }
 
-    /// Visits those cells of each word and column that come first of what `sort` makes of them: those
-    /// that come second as runs, others by their points.
+    /// Visits the cells of each word that `sort` returns first: those that it also returns second as runs,
+    /// others by their points.
     fn visit(&self, sort: impl Fn(u64, i64) -> [u64; 2], mut visit: impl FnMut([DVec2; 2])) {
         let Self { field, number } = *self;
         let columns = field.low[0]..field.low[0] + field.room[0];

@@ -1,11 +1,12 @@
-//! Labels that spread to the cells around.
+//! Propagation of labels to neighbouring cells.
 
 use super::{Field, SIDE, TooFar, WIDTH, bits, corner, tile_of, within};
 
 impl Field {
-    /// Adds the cells of another field of this scale, by the greatest labels of the cells around them.
+    /// Adds the cells of another field of the same scale, each with the greatest label of the cells around
+    /// it.
     pub(in crate::grow::cells) fn spread_to(&mut self, other: &Self) -> Result<(), TooFar> {
-        // Words of cells that have no label, and one at least of which may get one.
+        // Words with cells that have no label yet.
         let mut open = Vec::new();
         for row in other.low[1] * SIDE..(other.low[1] + other.room[1]) * SIDE {
             for column in other.low[0]..other.low[0] + other.room[0] {
@@ -33,7 +34,7 @@ impl Field {
         }
     }
 
-    /// The cells of a word that hold points, or of which one of the eight neighbours does.
+    /// Returns the cells of a word that hold points, or have a neighbour among eight that does.
     fn reached(&self, column: i64, row: i64) -> u64 {
         let [below, own, above] = [row - 1, row, row + 1].map(|row| {
             let word = self.word(column, row);
@@ -43,7 +44,7 @@ impl Field {
         below | own | above
     }
 
-    /// The greatest label of a cell and its eight neighbours, or 0.
+    /// Returns the greatest label of a cell and its eight neighbours; 0 if they have none.
     fn greatest_around(&self, cell: [i64; 2]) -> u16 {
         let within = within(cell);
         if within.iter().any(|at| [0, WIDTH - 1].contains(at)) {
@@ -78,7 +79,7 @@ mod tests {
         corner(cell) + 0.5
     }
 
-    /// Labels spread round by round to all that is connected, across the edges of tiles, and no farther.
+    /// Labels spread in rounds to all connected cells, across the borders of tiles, and no farther.
     #[test]
     fn labels_spread_by_rounds() {
         let mut other = Field::new(1.0);
