@@ -38,7 +38,7 @@ impl Coarse {
 
     /// Returns the corners of a base element, in its unit frame, for frames that stretch a unit to at most
     /// `pixels` pixels. The inside of a closed outline lies to the left; the corners of an open one run from
-    /// end to end. `None` if the outline is to be drawn as it is: it is simple, or the finest tolerance is
+    /// end to end. `None` if the outline is drawn unchanged: it is simple, or the finest tolerance is
     /// too coarse.
     #[inline]
     pub(super) fn corners(

@@ -54,9 +54,9 @@ const ROUNDS: usize = 2;
 /// Reason why cells are not found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stopped {
-    /// The search takes more work than is allowed.
+    /// More work than is allowed.
     TooMany,
-    /// The search was cancelled.
+    /// Cancellation.
     Cancelled,
 }
 

@@ -11,7 +11,7 @@ use super::coverage::{MARGIN, Plane};
 /// Maximum total number of pixels of the buffers other than the first.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// The maximum for a picture that is drawn in bands, so that it stays within 300 MB.
+/// Maximum for a picture that is drawn in bands, so that it stays within 300 MB.
 const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
 
 /// Coverage buffers of one part of a picture, so that several threads cover it at once. The buffers are

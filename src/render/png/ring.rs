@@ -8,7 +8,7 @@ use crate::render::surface::Position;
 use super::Png;
 use super::coverage::{MOST_CORNERS, has_room};
 
-/// Number of vertices of a region after which it is covered before the path goes on.
+/// Number of vertices of a region above which it is covered before the path ends.
 const MANY_VERTICES: usize = 1 << 20;
 
 impl Png<'_, '_> {

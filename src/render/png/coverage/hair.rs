@@ -57,7 +57,7 @@ impl HairPen {
     }
 }
 
-/// Absorption by cell; without cells as long as there is none.
+/// Absorption by cell; empty until a hairline is drawn.
 ///
 /// Atomic for the same reason as the cells of samples.
 #[derive(Default)]

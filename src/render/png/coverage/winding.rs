@@ -5,7 +5,7 @@
 use super::area::{follow_side, wound};
 use super::{Plane, Position, SAMPLES, cover, index};
 
-/// A number for each sample of a pixel.
+/// Number for each sample of a pixel.
 type Samples = [i16; SAMPLES as usize];
 
 /// Scratch memory for winding numbers.
