@@ -157,13 +157,13 @@ fn orbit(graph: &Graph, count: u64) -> Vec<DVec2> {
         };
         let start = &graph.initiator(0).instances;
         let first = &start[pick(start.len())];
-        let (mut object, mut map) = (first.object, first.frame.map);
+        let (mut object, mut map) = (first.object, *first.frame.map());
         for _ in 0..400 {
             let Replacement::Fixed(production) = &graph.objects()[object].replacement else {
                 break;
             };
             let next = &production.body.instances[pick(production.body.instances.len())];
-            (object, map) = (next.object, map * next.frame.map);
+            (object, map) = (next.object, map * next.frame.map());
         }
         let outline = &graph.base_elements()[graph.objects()[object].base_element];
         map.transform_point2(outline.start())

@@ -78,7 +78,7 @@ fn assert_grows_as_expanded(structure: &Instancing, steps: u32) {
         assert!(
             element
                 .frame
-                .map
+                .map()
                 .abs_diff_eq(*map, 1e-12 * (1.0 + map.translation.length()))
         );
         assert_eq!(element.fertile, shape.is_none());
@@ -146,7 +146,7 @@ fn objects_of_levels_end_where_there_is_one_of_that_level() {
     ];
     let maps = both
         .each_ref()
-        .map(|grown| grown[0].elements.iter().map(|it| it.frame.map));
+        .map(|grown| grown[0].elements.iter().map(|it| *it.frame.map()));
     let [recursive, iterative] = maps;
     recursive
         .zip(iterative)

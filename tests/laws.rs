@@ -101,7 +101,7 @@ proptest! {
             let drawn = |item: &lists::Item| item.listed.visible;
             for (number, (element, item)) in elements.iter().zip(&list.items).enumerate() {
                 prop_assert_eq!(element.index, number as u128 + 1);
-                prop_assert_eq!(element.frame.direction, item.frame.direction);
+                prop_assert_eq!(element.frame.direction(), item.frame.direction());
                 let [from, to] = element.frame.ends();
                 let [from_, to_] = item.frame.ends();
                 prop_assert!(close(from, from_) && close(to, to_));
@@ -206,10 +206,10 @@ proptest! {
         let (plain, moved) = (walk_of(&text), walk_of(&turned));
         prop_assert_eq!(plain.elements().count(), moved.elements().count());
         for (plain, moved) in plain.elements().zip(moved.elements()) {
-            let expected = plain.frame.ends().map(|point| similarity.map.transform_point2(point));
+            let expected = plain.frame.ends().map(|point| similarity.apply(point));
             let found = moved.frame.ends();
             prop_assert!(close(expected[0], found[0]) && close(expected[1], found[1]));
-            prop_assert_eq!(plain.frame.direction, moved.frame.direction);
+            prop_assert_eq!(plain.frame.direction(), moved.frame.direction());
         }
     }
 
@@ -300,8 +300,8 @@ fn directions_multiply_like_the_klein_four_group() {
             assert!(
                 frames[0]
                     .compose(&frames[1])
-                    .map
-                    .abs_diff_eq(frames[2].map, 1e-15)
+                    .map()
+                    .abs_diff_eq(*frames[2].map(), 1e-15)
             );
         }
     }
@@ -346,7 +346,7 @@ fn blocks_agree(graph: &Graph, growth: &Growth<'_>) {
         for (element, block) in elements.iter().zip(elements_) {
             let same = |e: &Element| {
                 (
-                    e.frame.direction,
+                    e.frame.direction(),
                     e.index,
                     e.object,
                     e.born,
@@ -357,8 +357,8 @@ fn blocks_agree(graph: &Graph, growth: &Growth<'_>) {
             assert_eq!(same(element), same(block));
             let ([from, to], [from_, to_]) = (element.frame.ends(), block.frame.ends());
             assert!(close(from, from_) && close(to, to_));
-            let size = element.frame.map.matrix2.y_axis;
-            assert!(close(size, block.frame.map.matrix2.y_axis));
+            let size = element.frame.map().matrix2.y_axis;
+            assert!(close(size, block.frame.map().matrix2.y_axis));
             assert!((element.length - block.length).abs() <= 1e-12 * element.length);
         }
     }

@@ -137,7 +137,7 @@ fn walk_forecast_bounds_and_reference_agree() {
                     .points
                     .iter()
                     .map(|&point| DVec2::from(point));
-                points.for_each(|point| drawn.add(element.frame.map.transform_point2(point)));
+                points.for_each(|point| drawn.add(element.frame.apply(point)));
             }
             let base_bbox = step.base_bbox.unwrap_or(step.bbox);
             assert_same_box(&format!("{what}: end points"), &ends, step.bbox);
@@ -260,14 +260,18 @@ fn compare(entry: &Entry, steps: u32, fractals: &[Grown]) {
             let what = format!("{what}, element {rank}: {element:?}");
             assert_eq!(element.index, rank, "{what}");
             assert_eq!(element.fertile, placed.fertile, "{what}");
-            assert_eq!(element.frame.direction.number(), placed.direction, "{what}");
+            assert_eq!(
+                element.frame.direction().number(),
+                placed.direction,
+                "{what}"
+            );
             for (end, expected) in element.frame.ends().into_iter().zip(placed.ends) {
                 assert!(
                     end.abs_diff_eq(expected.into(), CLOSE),
                     "{what}, not {placed:?}"
                 );
             }
-            let top = element.frame.map.transform_point2(DVec2::Y);
+            let top = element.frame.apply(DVec2::Y);
             assert!(
                 top.abs_diff_eq(placed.map([0.0, 1.0]).into(), CLOSE),
                 "{what}, not {placed:?}"

@@ -186,7 +186,7 @@ fn approximants_are_the_images_under_all_products() {
             let key = |map: &DAffine2| map.to_cols_array().map(|value| (value * 1e9).round());
             let mut own: Vec<_> = elements(&graph, steps)
                 .iter()
-                .map(|element| key(&element.frame.map))
+                .map(|element| key(element.frame.map()))
                 .collect();
             let mut expected: Vec<_> = products(&system, steps)
                 .iter()
@@ -211,7 +211,7 @@ fn an_edge_leads_from_what_is_applied_before() {
     let maps = maps(&system);
     let all: Vec<DAffine2> = elements(&graph, 2)
         .iter()
-        .map(|element| element.frame.map)
+        .map(|element| *element.frame.map())
         .collect();
     assert_eq!(all.len(), 4);
     for [first, then] in [[0, 0], [0, 1], [1, 2], [2, 0]] {
@@ -314,7 +314,7 @@ fn condensation_sets_are_drawn_at_every_level() {
     for steps in 0..5 {
         let mut points: Vec<f64> = drawn(&graph, steps)
             .iter()
-            .map(|element| element.frame.map.transform_point2(middle).x)
+            .map(|element| element.frame.apply(middle).x)
             .collect();
         points.sort_by(f64::total_cmp);
         assert_eq!(points.len(), (1 << (steps + 1)) - 1);
@@ -439,7 +439,7 @@ fn points_may_be_in_a_file() {
         panic!("two points make two pieces")
     };
     let ends = [DVec2::ZERO, DVec2::new(3.0, 1.0)];
-    let of = |element: Element| ends.map(|end| element.frame.map.transform_point2(end));
+    let of = |element: Element| ends.map(|end| element.frame.apply(end));
     assert!((of(first)[1] - DVec2::new(1.0, 2.0)).length() < 1e-15);
     assert!((of(second)[0] - DVec2::new(1.0, 2.0)).length() < 1e-15);
     assert!(second.joined);

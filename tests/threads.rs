@@ -68,7 +68,7 @@ impl Visitor for Seen {
         let length = subtree.frame.length();
         match self.cuts {
             Some(shortest) if length < shortest => Enter::Keep,
-            Some(shortest) if length < 3.0 * shortest && subtree.frame.map.translation.x < 0.3 => {
+            Some(shortest) if length < 3.0 * shortest && subtree.frame.origin().x < 0.3 => {
                 Enter::Skip
             }
             _ => Enter::Replace,
@@ -87,8 +87,8 @@ impl Visitor for Seen {
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.fractals.last_mut().unwrap().1.push(Place {
-            map: element.frame.map.to_cols_array(),
-            direction: element.frame.direction.number(),
+            map: element.frame.map().to_cols_array(),
+            direction: element.frame.direction().number(),
             length: element.length,
             index: element.index,
             object: element.object,

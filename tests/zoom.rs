@@ -95,7 +95,7 @@ impl Seen {
         let mut seen = Self::new(graph, place, shortest);
         walk(graph, growth, &mut seen).unwrap();
         for element in &mut seen.elements {
-            element.frame.map = place * element.frame.map;
+            element.frame = Frame::from(place).compose(&element.frame);
         }
         seen
     }
@@ -122,9 +122,9 @@ impl Visitor for Seen {
     }
 
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        let middle = subtree.frame.map.transform_point2(self.middle);
+        let middle = subtree.frame.apply(self.middle);
         let middle = self.place.transform_point2(middle).abs().max_element();
-        let length = self.stretch(&subtree.frame.map);
+        let length = self.stretch(subtree.frame.map());
         if middle > self.half + 2.0 * self.reaches[subtree.object] * length {
             Enter::Skip
         } else if length < self.shortest {
@@ -172,7 +172,7 @@ impl Places {
     fn of(elements: &[Element]) -> Self {
         let mut places: HashMap<_, Vec<_>> = HashMap::new();
         for element in elements {
-            let map = element.frame.map;
+            let map = *element.frame.map();
             places.entry(cell(map.translation)).or_default().push(map);
         }
         Self(places)
@@ -204,7 +204,7 @@ fn cell(point: DVec2) -> [i64; 2] {
 /// Asserts that all elements well inside one window are in another, rotated one, and conversely.
 fn assert_same(a: &Seen, b: &Seen, turn: &DAffine2, off: f64, what: &str) {
     let near = |element: &&Element| {
-        let middle = element.frame.map.transform_point2(a.middle);
+        let middle = element.frame.apply(a.middle);
         middle.length() < f64::from(SIDE) * 0.4
     };
     let back = turn.inverse();
@@ -213,7 +213,7 @@ fn assert_same(a: &Seen, b: &Seen, turn: &DAffine2, off: f64, what: &str) {
         let places = Places::of(&to.elements);
         for element in from.elements.iter().filter(near) {
             count += 1;
-            let map = *turn * element.frame.map;
+            let map = *turn * element.frame.map();
             assert!(places.hold(&map, off), "{what}: {element:?}");
         }
     }
@@ -253,7 +253,7 @@ fn fixed_points_look_the_same_at_any_depth() {
         let graph = rule.1.compile(64).unwrap();
         let root = &graph.initiator(0).instances[0];
         let production = production(&graph, root.object);
-        let linear = production.body.instances[child].frame.map.matrix2;
+        let linear = production.body.instances[child].frame.map().matrix2;
         let child = production.body.instances[child].position;
         let turn = DAffine2::from_mat2(linear * (1.0 / linear.determinant().abs().sqrt()));
         let at = format!("0.({child})");
@@ -284,12 +284,12 @@ fn fixed_points_look_the_same_at_any_depth() {
 /// Returns the point that a path of positions leads to, in doubles.
 fn point(graph: &Graph, positions: &[usize]) -> DVec2 {
     let root = &graph.initiator(0).instances[positions[0]];
-    let (mut map, mut object) = (root.frame.map, root.object);
+    let (mut map, mut object) = (*root.frame.map(), root.object);
     for &position in positions[1..].iter().cycle().take(190) {
         let instances = &production(graph, object).body.instances;
         let child = instances.iter().find(|it| it.position as usize == position);
         let child = child.unwrap();
-        map *= child.frame.map;
+        map *= child.frame.map();
         object = child.object;
     }
     map.translation
@@ -385,14 +385,13 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
                 let off = 1e-12 * scale + 1e-6;
                 assert_same(&seen, &plain, &DAffine2::IDENTITY, off, &what);
                 for element in &seen.elements {
-                    let apart = |it: &&Element| {
-                        (it.frame.map.translation - element.frame.map.translation).length()
-                    };
+                    let apart =
+                        |it: &&Element| (it.frame.origin() - element.frame.origin()).length();
                     let twins = plain.elements.iter().filter(|it| it.born == element.born);
                     let twin = twins.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-                    if apart(&twin) < off && element.frame.map.translation.length() < 200.0 {
+                    if apart(&twin) < off && element.frame.origin().length() < 200.0 {
                         assert!((twin.length - element.length).abs() <= 1e-9 * element.length);
-                        assert_eq!(twin.frame.direction, element.frame.direction, "{what}");
+                        assert_eq!(twin.frame.direction(), element.frame.direction(), "{what}");
                     }
                 }
             }
@@ -422,7 +421,7 @@ fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
         length *= (to - from).length();
         path = path.child(position);
     }
-    frame.map.translation
+    frame.origin()
 }
 
 /// Copies with equal maps are drawn once, regardless of their number.

@@ -66,7 +66,7 @@ impl Structure {
             let paint = object.paint.filter(|_| ends);
             let paint = paint.map(|colour| Tint { colour, alpha: 1.0 });
             Placed {
-                map: instance.frame.map,
+                map: *instance.frame.map(),
                 shape: object.base_element,
                 visible: object.visible,
                 tint: object.tint.or(paint),

@@ -232,22 +232,22 @@ impl Visitor for Collector<'_> {
         let mut frame = element.frame;
         let is_in_range = frame.is_in_range();
         if affine && !place.is_identity() {
-            frame.map = place.around(&frame.map);
+            frame = frame.conjugated(place);
         }
         let mut ends = frame.ends();
         if !affine && !place.is_identity() {
             ends = ends.map(|end| place.point(end));
         }
-        if !is_in_range || !ends.iter().all(|end| end.is_finite()) || !frame.map.is_finite() {
+        if !is_in_range || !ends.iter().all(|end| end.is_finite()) || !frame.is_finite() {
             return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
         }
-        let map = affine.then(|| frame.map.to_cols_array());
+        let map = affine.then(|| frame.map().to_cols_array());
         self.rows.push(Row {
             fractal: self.fractal,
             index: element.index,
             ends,
             fertile: element.fertile,
-            direction: element.frame.direction,
+            direction: element.frame.direction(),
             visible: self.graph.objects()[element.object].visible,
             map,
         });

@@ -2,7 +2,7 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::Direction;
+use super::{Direction, Homothety};
 
 /// Message for an element whose frame is not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
@@ -10,13 +10,11 @@ pub const BEYOND: &str = "an element lies beyond the range of numbers";
 /// The frame of an element: the map from the unit frame, and the direction along the element's path.
 ///
 /// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of traversal p0
-/// and p1 and the direction d, the map is M(z) = p0 + (p1 − p0)·τ_d(z).
+/// and p1 and the direction d, the map of a similarity is M(z) = p0 + (p1 − p0)·τ_d(z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The map from the unit frame to the plane.
-    pub map: DAffine2,
-    /// The product of the directions along the path.
-    pub direction: Direction,
+    map: DAffine2,
+    direction: Direction,
 }
 
 impl Frame {
@@ -26,13 +24,69 @@ impl Frame {
         direction: Direction::Normal,
     };
 
-    /// Returns the frame of an element that runs from `from` to `to`, as listed, with a direction.
+    /// Creates a frame from the map of the unit frame to the plane and the product of the directions along
+    /// the element's path.
+    #[inline]
+    #[must_use]
+    pub const fn new(map: DAffine2, direction: Direction) -> Self {
+        Self { map, direction }
+    }
+
+    /// Returns the frame of an element that runs from `from` to `to`, as listed, with a direction: the map is
+    /// the similarity z → from + (to − from)·τ_d(z).
     #[must_use]
     pub fn between(from: DVec2, to: DVec2, direction: Direction) -> Self {
-        Self {
-            map: placement(from, to, direction),
-            direction,
-        }
+        let along = to - from;
+        let across = along.perp();
+        let (x_axis, y_axis, origin) = match direction {
+            Direction::Normal => (along, across, from),
+            Direction::YReflected => (along, -across, from),
+            Direction::XReflected => (-along, across, to),
+            Direction::BothReflected => (-along, -across, to),
+        };
+        let linear = DMat2::from_cols(x_axis, y_axis);
+        Self::new(DAffine2::from_mat2_translation(linear, origin), direction)
+    }
+
+    /// Returns the map from the unit frame to the plane.
+    ///
+    /// Only code that is bound to the plane needs it: outlines, drawing, and exact or numeric measures. Other
+    /// code asks the frame itself, as for [`apply`](Self::apply), [`origin`](Self::origin) and
+    /// [`stretch`](Self::stretch).
+    #[inline]
+    #[must_use]
+    pub fn map(&self) -> &DAffine2 {
+        &self.map
+    }
+
+    /// Returns the product of the directions along the element's path.
+    #[inline]
+    #[must_use]
+    pub fn direction(&self) -> Direction {
+        self.direction
+    }
+
+    /// Returns the image of (0, 0).
+    #[inline]
+    #[must_use]
+    pub fn origin(&self) -> DVec2 {
+        self.map.translation
+    }
+
+    /// Returns the image of a point of the unit frame.
+    #[inline]
+    #[must_use]
+    pub fn apply(&self, point: DVec2) -> DVec2 {
+        self.map.transform_point2(point)
+    }
+
+    /// Returns the pullback Aᵀv of a linear functional x → v·x, where A is the linear part of the map.
+    ///
+    /// The support function of the image of a set K is v·M(0) + h(Aᵀv), where h is that of K.
+    #[inline]
+    #[must_use]
+    pub fn pullback(&self, functional: DVec2) -> DVec2 {
+        self.map.matrix2.transpose() * functional
     }
 
     /// Returns the frame, in the plane, of an element whose frame relative to this one is `inner`.
@@ -42,6 +96,43 @@ impl Frame {
         Self {
             map: self.map * inner.map,
             direction: self.direction * inner.direction,
+        }
+    }
+
+    /// Returns the frame with another direction and an unchanged map.
+    #[inline]
+    #[must_use]
+    pub fn with_direction(&self, direction: Direction) -> Self {
+        Self { direction, ..*self }
+    }
+
+    /// Returns the frame translated to another origin.
+    #[inline]
+    #[must_use]
+    pub fn moved_to(&self, origin: DVec2) -> Self {
+        Self {
+            map: DAffine2::from_mat2_translation(self.map.matrix2, origin),
+            ..*self
+        }
+    }
+
+    /// Returns the frame with the conjugate h M h⁻¹ of its map M; see [`Homothety::around`].
+    #[must_use]
+    pub fn conjugated(&self, homothety: &Homothety) -> Self {
+        Self {
+            map: homothety.around(&self.map),
+            ..*self
+        }
+    }
+
+    /// Returns the frame that a homothety h maps to this one: its map is h⁻¹ M.
+    #[must_use]
+    pub fn preimage(&self, homothety: &Homothety) -> Self {
+        let linear = homothety.backwards().matrix2 * self.map.matrix2;
+        let origin = homothety.origin_of(self.map.translation);
+        Self {
+            map: DAffine2::from_mat2_translation(linear, origin),
+            ..*self
         }
     }
 
@@ -71,6 +162,13 @@ impl Frame {
         largest < LARGEST && self.map.is_finite()
     }
 
+    /// Returns `true` if no entry of the map is infinite or NaN.
+    #[inline]
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.map.is_finite()
+    }
+
     /// Returns |p1 − p0|.
     #[inline]
     #[must_use]
@@ -85,12 +183,27 @@ impl Frame {
         }
     }
 
+    /// Returns the area of the image of the unit square: the factor by which the map changes areas.
+    #[inline]
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.map.matrix2.determinant().abs()
+    }
+
     /// Returns the largest factor by which the map lengthens a vector: its larger singular value. For a
     /// similarity it is the length.
     #[inline]
     #[must_use]
     pub fn stretch(&self) -> f64 {
         stretch(&self.map.matrix2)
+    }
+}
+
+impl From<DAffine2> for Frame {
+    /// Creates a frame from a map, with the direction [`Normal`](Direction::Normal).
+    #[inline]
+    fn from(map: DAffine2) -> Self {
+        Self::new(map, Direction::Normal)
     }
 }
 
@@ -106,18 +219,4 @@ pub(crate) fn stretch(matrix: &DMat2) -> f64 {
     } else {
         (kept.sqrt() + reversed.sqrt()) / 2.0
     }
-}
-
-/// Returns the similarity z → from + (to − from)·τ_d(z) that puts an element of a generator into place.
-#[must_use]
-pub fn placement(from: DVec2, to: DVec2, direction: Direction) -> DAffine2 {
-    let along = to - from;
-    let across = along.perp();
-    let (x_axis, y_axis, origin) = match direction {
-        Direction::Normal => (along, across, from),
-        Direction::YReflected => (along, -across, from),
-        Direction::XReflected => (-along, across, to),
-        Direction::BothReflected => (-along, -across, to),
-    };
-    DAffine2::from_mat2_translation(DMat2::from_cols(x_axis, y_axis), origin)
 }

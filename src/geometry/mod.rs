@@ -12,7 +12,7 @@ mod hull;
 
 pub use bounds::Bounds;
 pub use direction::Direction;
-pub use frame::{BEYOND, Frame, placement};
+pub use frame::{BEYOND, Frame};
 pub use glam::{DAffine2, DMat2, DVec2};
 pub use homothety::Homothety;
 

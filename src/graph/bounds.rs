@@ -233,7 +233,7 @@ impl Graph {
         };
         let mut constant = (0..self.objects.len()).map(shape).fold(0.0, f64::max);
         for (_, instance) in self.instances() {
-            let shift = instance.frame.map.translation.length();
+            let shift = instance.frame.origin().length();
             let kept = matches!(self.objects[instance.object].replacement, Replacement::Kept);
             let own = if kept {
                 instance.length * shape(instance.object)
@@ -396,15 +396,14 @@ fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<b
 }
 
 fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
-    let map = &instance.frame.map;
-    let shift = vector.dot(map.translation);
+    let shift = vector.dot(instance.frame.origin());
     // Knuth's exact sum of two doubles (TwoSum) keeps the errors of many levels from accumulating.
     let sum = offset + shift;
     let rounded = sum - offset;
     let error = (offset - (sum - rounded)) + (shift - rounded);
     State {
         object: instance.object,
-        vector: map.matrix2.transpose() * vector,
+        vector: instance.frame.pullback(vector),
         offset: sum,
         lost: lost + error,
     }

@@ -49,7 +49,7 @@ impl Graph {
         let away = |object: usize| {
             let away = self
                 .fertile(object)
-                .map(|instance| (instance.frame.map.transform_point2(centre) - centre).length());
+                .map(|instance| (instance.frame.apply(centre) - centre).length());
             away.fold(0.0, f64::max) + own
         };
         let far = weights.iter().enumerate();

@@ -255,7 +255,7 @@ impl<'g> Forecast<'g> {
                     parted: 0.0,
                     length: instance.length,
                     square,
-                    signed: square * orientation * side(instance.frame.direction),
+                    signed: square * orientation * side(instance.frame.direction()),
                     root_length: instance.length,
                     root_square: square,
                     area: 0.0,
@@ -268,7 +268,7 @@ impl<'g> Forecast<'g> {
     /// Returns the factor by which an instance changes areas.
     fn square(&self, instance: &Instance) -> f64 {
         if self.graph.affine {
-            instance.frame.map.matrix2.determinant().abs()
+            instance.frame.area()
         } else {
             instance.length * instance.length
         }
@@ -477,7 +477,7 @@ impl<'g> Forecast<'g> {
                 parted: if is_first { parent.parted } else { 0.0 },
                 length: parent.length * instance.length,
                 square: parent.square * square,
-                signed: side(instance.frame.direction) * parent.signed * square,
+                signed: side(instance.frame.direction()) * parent.signed * square,
                 ..parent
             };
             self.add(instance.object, number, sums);

@@ -87,7 +87,7 @@ impl Hulls {
         let extents = instances.iter().map(|instance| {
             let mut bounds = Bounds::EMPTY;
             for corner in self.corners(instance.object) {
-                bounds.add(instance.frame.map.transform_point2(*corner));
+                bounds.add(instance.frame.apply(*corner));
             }
             let within = self.within[self.of[instance.object]];
             bounds.size().max_element() - 2.0 * instance.length * within
@@ -237,9 +237,8 @@ impl Graph {
             for (_, instance) in self.children(number) {
                 if !self.is_replaced(instance.object) {
                     let corners = hulls.corners(instance.object).iter();
-                    let map = instance.frame.map;
-                    points[object.behaviour]
-                        .extend(corners.map(|corner| map.transform_point2(*corner)));
+                    let frame = instance.frame;
+                    points[object.behaviour].extend(corners.map(|corner| frame.apply(*corner)));
                 }
             }
         }
@@ -260,7 +259,7 @@ impl Graph {
         for (number, object) in self.behaviours_by_number() {
             for (_, instance) in self.children(number) {
                 let child = &self.objects[instance.object];
-                let image = (instance.frame.map, child.behaviour);
+                let image = (*instance.frame.map(), child.behaviour);
                 let is_new = || !images[object.behaviour].contains(&image);
                 if self.is_replaced(instance.object) && counts(instance.object) && is_new() {
                     images[object.behaviour].push(image);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Homothety};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame, Homothety};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
@@ -52,7 +52,7 @@ impl Graph {
         let initial = ifs.initial().map_or_else(|| filling(limit), outline);
         let mut whole = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() {
-            initial.add_to(&mut whole, &DAffine2::IDENTITY, 0.0);
+            initial.add_to(&mut whole, &Frame::UNIT, 0.0);
         }
         let mut base_elements = graph.base_elements.to_vec();
         base_elements[INITIAL] = initial;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame, Homothety};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame, Homothety};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
@@ -114,10 +114,7 @@ impl Graph {
 
 /// Creates an instance with a map, not joined to any other.
 pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
-    let frame = Frame {
-        map: *map,
-        direction: Direction::Normal,
-    };
+    let frame = Frame::from(*map);
     Instance {
         length: frame.stretch(),
         frame,

@@ -100,7 +100,7 @@ mod tests {
     /// Returns the largest distance of end points in the subtree of an element from its middle, down to
     /// elements of length 0.01.
     fn reached(graph: &Graph, standing: &Standing, object: usize, level: u32) -> f64 {
-        let middle = standing.frame.map.transform_point2(graph.middle());
+        let middle = standing.frame.apply(graph.middle());
         let mut evaluator = Evaluator::default();
         let mut farthest: f64 = 0.0;
         let mut open = vec![(*standing, object, level, level)];
@@ -153,7 +153,7 @@ mod tests {
         let object = graph.initiator(0).instances[0].object;
         for seed in 0..2_000 {
             let mut standing = Standing::whole(seed);
-            standing.frame.map.translation = DVec2::new(0.5, 0.25);
+            standing.frame = standing.frame.moved_to(DVec2::new(0.5, 0.25));
             let reached = reached(&graph, &standing, object, 0);
             assert!(reached <= reaches[object], "{seed}: {reached}");
             farthest = farthest.max(reached);

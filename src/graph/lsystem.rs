@@ -80,7 +80,7 @@ impl Graph {
         })?;
         for (position, instance) in (0..).zip(&mut instances) {
             instance.position = position;
-            if !instance.frame.map.is_finite() {
+            if !instance.frame.is_finite() {
                 return Err(CompileError::TooFar);
             }
         }
@@ -92,7 +92,7 @@ impl Graph {
         let mut bounds = Bounds::EMPTY;
         for instance in &initiator.instances {
             let base_element = strings.objects[instance.object].base_element;
-            strings.base_elements[base_element].add_to(&mut bounds, &instance.frame.map, 0.0);
+            strings.base_elements[base_element].add_to(&mut bounds, &instance.frame, 0.0);
         }
         let mut graph = Self {
             evaluated: None,

@@ -327,9 +327,8 @@ impl Graph {
     pub fn is_similar(&self) -> bool {
         const ROUNDING: f64 = 1e-12;
         let similar = |instance: &Instance| {
-            let linear = instance.frame.map.matrix2;
             let square = instance.length * instance.length;
-            (linear.determinant().abs() - square).abs() <= ROUNDING * square
+            (instance.frame.area() - square).abs() <= ROUNDING * square
         };
         !self.affine || self.instances().all(|(_, instance)| similar(instance))
     }

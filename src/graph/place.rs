@@ -25,12 +25,9 @@ impl Graph {
         if place.is_identity() {
             return self;
         }
-        let back = place.backwards();
         let within = |chain: &mut Chain| {
             for instance in &mut chain.instances {
-                let map = &mut instance.frame.map;
-                map.matrix2 = back.matrix2 * map.matrix2;
-                map.translation = place.origin_of(map.translation);
+                instance.frame = instance.frame.preimage(place);
                 instance.length = instance.frame.length();
             }
         };

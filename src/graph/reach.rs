@@ -145,7 +145,7 @@ impl Graph {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
                 let edge = |(_, instance): (_, &Instance)| Edge {
                     object: instance.object,
-                    away: (instance.frame.map.transform_point2(self.middle) - self.middle).length(),
+                    away: (instance.frame.apply(self.middle) - self.middle).length(),
                     length: instance.length,
                 };
                 return self.children(object).map(edge).collect();

@@ -23,8 +23,8 @@ use super::Element;
 /// Element of a block, relative to the object that the block replaces.
 #[derive(Clone, Copy, Debug)]
 struct Leaf {
-    map: DAffine2,
-    direction: Direction,
+    /// Frame relative to the object's.
+    frame: Frame,
     length: f64,
     coat: Coat,
     object: usize,
@@ -125,7 +125,7 @@ impl Run<'_> {
 
     /// Returns the run placed by another map, with the direction unchanged.
     pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
-        let frame = Frame { map, ..self.frame };
+        let frame = Frame::new(map, self.frame.direction());
         Self { frame, ..*self }
     }
 
@@ -144,13 +144,16 @@ impl Run<'_> {
     /// Iterates over the elements in order of traversal.
     pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element> {
         let leaves = self.block.leaves.iter().enumerate();
-        leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map * leaf.map))
+        leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.compose(&leaf.frame)))
     }
 
     /// Iterates over the elements as [`Run::elements`] does, but with the run's map instead of their own.
     pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element> {
         let leaves = self.block.leaves.iter().enumerate();
-        leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.map))
+        leaves.map(|(number, leaf)| {
+            let direction = self.frame.direction() * leaf.frame.direction();
+            self.element(number, leaf, self.frame.with_direction(direction))
+        })
     }
 
     /// Iterates over the elements that pass a test, with their numbers from 0. The test sees the run's map
@@ -162,11 +165,7 @@ impl Run<'_> {
         let elements = self.elements_in_place().enumerate();
         let chosen = elements.filter(move |(_, element)| test(element));
         chosen.map(|(number, element)| {
-            let map = self.frame.map * self.block.leaves[number].map;
-            let frame = Frame {
-                map,
-                ..element.frame
-            };
+            let frame = self.frame.compose(&self.block.leaves[number].frame);
             (number, Element { frame, ..element })
         })
     }
@@ -180,8 +179,8 @@ impl Run<'_> {
         let range = self.births(&steps);
         self.block.by_birth[range].iter().map(|&number| {
             let leaf = &self.block.leaves[number as usize];
-            let map = self.frame.map * leaf.map;
-            (number as usize, self.element(number as usize, leaf, map))
+            let frame = self.frame.compose(&leaf.frame);
+            (number as usize, self.element(number as usize, leaf, frame))
         })
     }
 
@@ -199,13 +198,9 @@ impl Run<'_> {
         before(*steps.start())..before(steps.end().saturating_add(1))
     }
 
-    fn element(&self, number: usize, leaf: &Leaf, map: DAffine2) -> Element {
-        let unit = unit(self.frame.direction.is_reversed());
+    fn element(&self, number: usize, leaf: &Leaf, frame: Frame) -> Element {
         Element {
-            frame: Frame {
-                map,
-                direction: self.frame.direction * unit * leaf.direction,
-            },
+            frame,
             length: self.length * leaf.length,
             coat: self.coat.over(leaf.coat),
             index: self.index + number as u128,
@@ -253,14 +248,14 @@ impl Run<'_> {
     /// Extends a box by the outlines of all visible elements, without strokes.
     pub fn add_to(&self, bounds: &mut Bounds) {
         if let Some(corners) = &self.block.corners {
-            corners.add_to(bounds, &self.frame.map);
+            corners.add_to(bounds, self.frame.map());
             return;
         }
         for element in self.elements() {
             let object = &self.graph.objects()[element.object];
             if object.visible {
                 let base_element = &self.graph.base_elements()[object.base_element];
-                base_element.add_to(bounds, &element.frame.map, 0.0);
+                base_element.add_to(bounds, &element.frame, 0.0);
             }
         }
     }
@@ -268,7 +263,7 @@ impl Run<'_> {
     /// Returns the map from the block's unit frame to the plane.
     #[must_use]
     pub fn map(&self) -> &DAffine2 {
-        &self.frame.map
+        self.frame.map()
     }
 }
 

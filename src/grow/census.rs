@@ -207,7 +207,7 @@ fn child(parent: &Kind, instance: &Instance) -> (Key, f64) {
     let key = Key {
         object: instance.object,
         length: rounded(length),
-        direction: parent.direction * instance.frame.direction,
+        direction: parent.direction * instance.frame.direction(),
     };
     (key, length)
 }

@@ -91,7 +91,7 @@ impl<'g> Colony<'g> {
     /// Returns the colony with the map of its frame replaced.
     pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
         let mut moved = *self;
-        moved.standing.frame.map = map;
+        moved.standing.frame = Frame::new(map, self.standing.frame.direction());
         moved
     }
 
@@ -209,8 +209,8 @@ impl ColonyKinds {
         let add = |standing: &mut Fertile, from: (Direction, DMat2, u64), chain: &Chain| {
             let (direction, linear, count) = from;
             for instance in chain.instances.iter().filter(|it| leads[it.object]) {
-                let linear = linear * instance.frame.map.matrix2;
-                let direction = direction * instance.frame.direction;
+                let linear = linear * instance.frame.map().matrix2;
+                let direction = direction * instance.frame.direction();
                 let length = round(libm::log2(stretch(&linear)) * TURNS);
                 let key = (instance.object, direction, length, turn(&linear));
                 standing.entry(key).or_insert((linear, 0)).1 += count;
@@ -236,10 +236,7 @@ impl ColonyKinds {
                 add(&mut next, from, &production.body);
                 for (number, seed) in production.seeds.iter().enumerate() {
                     add(&mut next, from, &seed.chain);
-                    let frame = Frame {
-                        map: DAffine2::from_mat2(linear),
-                        direction,
-                    };
+                    let frame = Frame::new(DAffine2::from_mat2(linear), direction);
                     let sown = ColonyKind {
                         seed: [object, number],
                         frame,
@@ -251,7 +248,7 @@ impl ColonyKinds {
                     };
                     let kind = kinds.kind(sown, &seed.chain);
                     turns.resize_with(kinds.all.len(), BTreeMap::new);
-                    let turned = turned(&frame.map, &kinds.all[kind].symmetries);
+                    let turned = turned(frame.map(), &kinds.all[kind].symmetries);
                     *turns[kind].entry(turn(&turned.matrix2)).or_default() += count;
                 }
             }
@@ -266,7 +263,7 @@ impl ColonyKinds {
 
     /// Returns the index of a kind, which is added if it is new.
     fn kind(&mut self, kind: ColonyKind, chain: &Chain) -> usize {
-        let key = (kind.seed, kind.born, kind.frame.direction);
+        let key = (kind.seed, kind.born, kind.frame.direction());
         if let Some(number) = self.find(&key, &kind.frame) {
             return number;
         }
@@ -283,7 +280,7 @@ impl ColonyKinds {
     #[inline]
     pub(crate) fn number(&self, colony: &Colony<'_>) -> Option<usize> {
         let frame = colony.frame();
-        self.find(&(colony.seed, colony.born, frame.direction), &frame)
+        self.find(&(colony.seed, colony.born, frame.direction()), &frame)
     }
 
     fn find(&self, key: &Key, frame: &Frame) -> Option<usize> {
@@ -305,17 +302,18 @@ fn symmetries(chain: &Chain) -> Vec<DAffine2> {
     let (Some(first), true) = (all.first(), is_looked_at) else {
         return vec![DAffine2::IDENTITY];
     };
-    let same =
-        |a: &Instance, b: &Instance| a.object == b.object && a.frame.direction == b.frame.direction;
+    let same = |a: &Instance, b: &Instance| {
+        a.object == b.object && a.frame.direction() == b.frame.direction()
+    };
     let is_at = |a: &DAffine2, b: &DAffine2| a.abs_diff_eq(*b, NEAR);
-    let back = first.frame.map.inverse();
+    let back = first.frame.map().inverse();
     let candidates = all.iter().filter(|instance| same(instance, first));
-    let maps = candidates.map(|instance| instance.frame.map * back);
+    let maps = candidates.map(|instance| instance.frame.map() * back);
     let stays = |map: &DAffine2| {
         all.iter().all(|from| {
-            let to = *map * from.frame.map;
+            let to = *map * from.frame.map();
             let mut all = all.iter();
-            all.any(|other| same(from, other) && is_at(&to, &other.frame.map))
+            all.any(|other| same(from, other) && is_at(&to, other.frame.map()))
         })
     };
     let mut found = vec![DAffine2::IDENTITY];

@@ -168,7 +168,7 @@ impl<'g> Descent<'g> {
             stack: vec![Entry {
                 standing: start.standing,
                 source: Source::Start,
-                reversed: start.standing.frame.direction.is_reversed(),
+                reversed: start.standing.frame.direction().is_reversed(),
                 next: 0,
                 meets_end: true,
                 level: start.born,
@@ -191,7 +191,7 @@ impl<'g> Descent<'g> {
     /// a preceding element ended where the object starts.
     pub(super) fn below(graph: &'g Graph, object: usize, steps: u32, direction: Direction) -> Self {
         let mut start = Start::initiator(graph, steps, 0);
-        start.standing.frame.direction = direction;
+        start.standing.frame = start.standing.frame.with_direction(direction);
         let mut descent = Self::new(graph, &start, steps);
         descent.stack.clear();
         descent.joined = true;
@@ -455,7 +455,7 @@ impl<'g> Descent<'g> {
             Source::Pooled(number) => &self.pool[number].body,
             Source::Start => unreachable!("a start is never pushed"),
         };
-        let reversed = standing.frame.direction.is_reversed();
+        let reversed = standing.frame.direction().is_reversed();
         let [mut first, mut end] = chain.meets_frame;
         if reversed {
             (first, end) = (end, first);

@@ -50,7 +50,7 @@ impl Visitor for Extent<'_> {
         let object = &self.graph.objects()[element.object];
         if object.visible {
             let base_element = &self.graph.base_elements()[object.base_element];
-            base_element.add_to(&mut self.bounds, &element.frame.map, 0.0);
+            base_element.add_to(&mut self.bounds, &element.frame, 0.0);
         }
         Ok(())
     }

@@ -1,14 +1,14 @@
 //! Outlines of an approximant as shapes.
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::{DVec2, Frame};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
 use super::{Element, Fractal, Growth, Visitor, WalkError, walk};
 
-/// Computes the outlines of an approximant under a map. Elements that join form one open outline; closed
-/// base elements form closed ones. If `fills` is set, a fractal that is a closed path forms one closed
-/// outline.
+/// Computes the outlines of an approximant that is placed in a frame. Elements that join form one open
+/// outline; closed base elements form closed ones. If `fills` is set, a fractal that is a closed path forms
+/// one closed outline.
 ///
 /// # Errors
 ///
@@ -17,13 +17,13 @@ use super::{Element, Fractal, Growth, Visitor, WalkError, walk};
 pub(crate) fn outlines(
     graph: &Graph,
     growth: &Growth<'_>,
-    map: DAffine2,
+    frame: Frame,
     fills: bool,
     most: usize,
 ) -> Result<Vec<BaseElement>, WalkError<OutlineError>> {
     let mut outliner = Outliner {
         graph,
-        map,
+        frame,
         fills,
         left: most,
         is_ring: false,
@@ -47,7 +47,7 @@ pub(crate) enum OutlineError {
 
 struct Outliner<'g> {
     graph: &'g Graph,
-    map: DAffine2,
+    frame: Frame,
     fills: bool,
     /// Number of pieces that may still be added.
     left: usize,
@@ -81,16 +81,16 @@ impl Visitor for Outliner<'_> {
             return Ok(());
         }
         let base_element = &self.graph.base_elements()[object.base_element];
-        let map = self.map * element.frame.map;
-        let reversed = element.frame.direction.is_reversed();
+        let frame = self.frame.compose(&element.frame);
+        let reversed = frame.direction().is_reversed();
         let (start, pieces) = base_element.outline(reversed);
         let left = self.left.checked_sub(pieces.len());
         self.left = left.ok_or(OutlineError::TooMany)?;
-        let start = map.transform_point2(start);
-        if !map.is_finite() || !start.is_finite() {
+        let start = frame.apply(start);
+        if !frame.is_finite() || !start.is_finite() {
             return Err(OutlineError::NotFinite);
         }
-        let pieces = pieces.iter().map(|piece| piece.transformed(&map));
+        let pieces = pieces.iter().map(|piece| piece.transformed(frame.map()));
         if base_element.is_closed() {
             self.done
                 .extend(BaseElement::new(start, pieces.collect(), true));
@@ -174,7 +174,7 @@ mod tests {
         let (model, _) = document.resolve(&[]).unwrap();
         let graph = model.compile(steps).unwrap();
         let growth = Growth::steps(steps);
-        outlines(&graph, &growth, DAffine2::IDENTITY, fills, 10_000).unwrap()
+        outlines(&graph, &growth, Frame::UNIT, fills, 10_000).unwrap()
     }
 
     #[test]

@@ -175,11 +175,11 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
             Enter::Keep if own.visible => {
                 let base_element = &self.graph.base_elements()[own.base_element];
                 let pad = self.reaches.pads[object] * length;
-                base_element.add_to(&mut self.bounds, &standing.frame.map, pad);
+                base_element.add_to(&mut self.bounds, &standing.frame, pad);
             }
             Enter::Keep | Enter::Skip => {}
             Enter::Replace => {
-                let middle = standing.frame.map.transform_point2(self.graph.middle());
+                let middle = standing.frame.apply(self.graph.middle());
                 let farthest =
                     middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;
                 if farthest > self.found() {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::geometry::{DAffine2, Frame};
+use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Root};
 use crate::instancing::Coat;
 use crate::rule::Placement;
@@ -156,10 +156,7 @@ pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) 
     let root = graph.initiator(0).instances[standing.root as usize].frame;
     let [origin, _] = standing.frame.ends();
     Standing {
-        frame: Frame {
-            map: DAffine2::from_mat2_translation(root.map.matrix2, origin),
-            direction: root.direction,
-        },
+        frame: root.moved_to(origin),
         length: 1.0,
         ..*standing
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{DVec2, Direction, Frame, placement};
+use crate::geometry::{DVec2, Direction, Frame};
 use crate::rule::{BaseElement, Piece};
 
 use super::word::number;
@@ -266,10 +266,7 @@ impl<'s> Turtle<'s> {
         let State { place, step, .. } = open.state;
         let along = self.compass.direction(open.state.heading) * step;
         let direction = open.state.direction();
-        let frame = Frame {
-            map: placement(place, place + along, direction),
-            direction,
-        };
+        let frame = Frame::between(place, place + along, direction);
         if open.vertices.len() < 3 || step == 0.0 {
             return;
         }
@@ -282,7 +279,7 @@ impl<'s> Turtle<'s> {
             made = *self.known.entry(self.inside.clone()).or_insert(number);
         }
         if made == number {
-            let inverse = frame.map.inverse();
+            let inverse = frame.map().inverse();
             let mut vertices = open.vertices.iter().map(|v| inverse.transform_point2(*v));
             let start = vertices.next().unwrap_or(DVec2::ZERO);
             let pieces = vertices.map(Piece::Line).collect();

@@ -62,7 +62,7 @@ impl Copies {
         let start = graph.initiator(0).instances.iter();
         let start = start.map(|instance| {
             let set = graph.objects()[instance.object].behaviour;
-            (set, instance.frame.map)
+            (set, *instance.frame.map())
         });
         let all = Self {
             size: graph.behaviours().count(),
@@ -425,7 +425,7 @@ pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)
                 return None;
             }
             let to = graph.objects()[instance.object].behaviour;
-            copies.push((object.behaviour, to, instance.frame.map));
+            copies.push((object.behaviour, to, *instance.frame.map()));
         }
     }
     Some(copies)

@@ -149,7 +149,7 @@ impl LimitSet {
         }
         let lasting = lasting(graph);
         let kept = |instance: &&Instance| lasting[instance.object];
-        let placed = |instance: &Instance| Placed::new(instance.frame.map, instance.object);
+        let placed = |instance: &Instance| Placed::new(*instance.frame.map(), instance.object);
         let children = |object| fertile(graph, object).filter(kept).map(placed).collect();
         let children = (0..graph.objects().len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();

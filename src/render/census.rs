@@ -13,10 +13,7 @@ use super::Survey;
 /// Returns an element of a kind, at an arbitrary place.
 fn element(kind: &Kind, born: u32) -> Element {
     Element {
-        frame: Frame {
-            direction: kind.direction,
-            ..Frame::UNIT
-        },
+        frame: Frame::UNIT.with_direction(kind.direction),
         length: 1.0,
         coat: Coat::NONE,
         index: 1,

@@ -104,7 +104,7 @@ impl Classes {
                 let object = &graph.objects()[element.object];
                 self.value_of_object(object).unwrap_or(0)
             }
-            ColorBy::Direction => u128::from(element.frame.direction.number()) - 1,
+            ColorBy::Direction => u128::from(element.frame.direction().number()) - 1,
         }
     }
 

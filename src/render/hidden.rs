@@ -128,10 +128,10 @@ impl Hidden {
     #[inline]
     pub(super) fn hides(&self, scene: &Scene<'_>, subtree: &Subtree, class: u64) -> bool {
         // The image of a disc is as wide and as high as the rows of the map are long.
-        let rows = subtree.frame.map.matrix2.transpose();
+        let rows = subtree.frame.map().matrix2.transpose();
         let [x, y] = [rows.x_axis, rows.y_axis].map(DVec2::length);
         let reach = [x, y].map(|length| self.reach(scene, subtree.object, length));
-        let middle = subtree.frame.map.transform_point2(scene.graph.middle());
+        let middle = subtree.frame.apply(scene.graph.middle());
         let length = subtree.frame.stretch() * scene.canvas.scale();
         let width = self.widths.get(subtree.object);
         if width.is_some_and(|width| width * length > WIDEST_COVERED) {

@@ -136,7 +136,7 @@ impl Standing {
         let mut stand = BTreeSet::new();
         let initiator = graph.initiator(steps).instances.iter();
         let mut born: BTreeSet<(usize, Direction, u32)> = initiator
-            .map(|instance| (instance.object, instance.frame.direction, 0))
+            .map(|instance| (instance.object, instance.frame.direction(), 0))
             .collect();
         for level in 0..=steps {
             let mut next = BTreeSet::new();
@@ -158,7 +158,7 @@ impl Standing {
                 match replacement {
                     Replacement::Fixed(production) => {
                         next.extend(production.placed_instances().map(|(placement, child)| {
-                            let direction = direction * child.frame.direction;
+                            let direction = direction * child.frame.direction();
                             let seeded = if is_sown(placement) {
                                 level + 1
                             } else {

@@ -185,7 +185,7 @@ impl Window {
     fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
         // Slack for rounding, so that subtrees which just touch the edge stay visible.
         const SLACK: f64 = 1.0 + 1e-9;
-        let middle = subtree.frame.map.transform_point2(self.middle);
+        let middle = subtree.frame.apply(self.middle);
         let nearest = middle.clamp(self.bounds.min(), self.bounds.max());
         let reach = self.reaches[subtree.object] * length * SLACK;
         middle.distance_squared(nearest) > reach * reach

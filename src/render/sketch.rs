@@ -194,7 +194,7 @@ impl<'a> Sketcher<'a> {
         } else {
             0
         };
-        let map = element.frame.map;
+        let map = *element.frame.map();
         let narrow = self.means.broadens.then(|| {
             let map = self.scene.canvas.map(&map);
             speck::width(base_element, &map)
@@ -268,8 +268,8 @@ impl<'a> Sketcher<'a> {
 
     /// Continues the outline of a filled fractal, whether it is visible there or not.
     fn area(&mut self, element: &Element, base_element: &BaseElement) {
-        let map = element.frame.map;
-        let (start, pieces) = base_element.outline(element.frame.direction.is_reversed());
+        let map = *element.frame.map();
+        let (start, pieces) = base_element.outline(element.frame.direction().is_reversed());
         let start = map.transform_point2(start);
         if self.open.is_some() {
             self.line_to(start);
@@ -284,8 +284,8 @@ impl<'a> Sketcher<'a> {
     }
 
     fn line(&mut self, element: &Element, base_element: &BaseElement) {
-        let reversed = element.frame.direction.is_reversed();
-        let map = element.frame.map;
+        let reversed = element.frame.direction().is_reversed();
+        let map = *element.frame.map();
         let look = Look {
             kind: self.kind(),
             width: self.width_class(element),
@@ -413,12 +413,12 @@ impl<'a> Sketcher<'a> {
             (true, true) => self.polygon(element, base_element),
             (true, false) => self.line(element, base_element),
             (false, false) if object.visible => {
-                let reversed = element.frame.direction.is_reversed();
+                let reversed = element.frame.direction().is_reversed();
                 let [_, meets_frame] = meets_frame(base_element, reversed);
                 self.pass_by(Mark::Skip { meets_frame });
                 let (start, pieces) = base_element.outline(reversed);
                 let end = pieces.last().map_or(start, Piece::end);
-                self.start_at(element.frame.map.transform_point2(end));
+                self.start_at(element.frame.apply(end));
             }
             _ => self.pass_by(Mark::Break),
         }

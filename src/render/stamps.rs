@@ -246,7 +246,7 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
     }
     let base_element = &scene.graph.base_elements()[object.base_element];
     let is_closed = base_element.is_closed();
-    let map = &element.frame.map;
+    let map = element.frame.map();
     let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
     let coarse = scene.coarse.get().and_then(Option::as_ref);
     let stretch = element.frame.stretch();

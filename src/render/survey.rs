@@ -474,11 +474,11 @@ impl Visitor for Survey<'_> {
                 match &self.shown {
                     Some(shown) if !self.is_met => {
                         let mut own = Bounds::EMPTY;
-                        base_element.add_to(&mut own, &element.frame.map, pad);
+                        base_element.add_to(&mut own, &element.frame, pad);
                         self.is_met = shown.meets(&own);
                         self.bounds.add_all(&own);
                     }
-                    _ => base_element.add_to(&mut self.bounds, &element.frame.map, pad),
+                    _ => base_element.add_to(&mut self.bounds, &element.frame, pad),
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Fractals as sets: approximants of other fractals, which are grown during resolution.
 
 use crate::document::{FractalDocument, Setting};
-use crate::geometry::DAffine2;
+use crate::geometry::Frame;
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
 
@@ -57,10 +57,10 @@ impl<K> Resolver<K> {
             seed: seed.unwrap_or(Some(0))?.into(),
             ..Growth::steps(steps)
         };
-        let map = map.unwrap_or(Some(DAffine2::IDENTITY))?;
+        let frame = map.map_or(Some(Frame::UNIT), |map| map.map(Frame::from))?;
         let fills = model.heading().style.fill.is_some();
         let most = MOST_PIECES.saturating_sub(self.pieces);
-        let message = match outlines(&graph, &growth, map, fills, most) {
+        let message = match outlines(&graph, &growth, frame, fills, most) {
             Ok(drawn) if drawn.is_empty() => {
                 "this fractal draws nothing after so many steps".into()
             }

@@ -1,7 +1,7 @@
 //! Base elements: outlines of lines and cubic Bézier curves in the unit frame, their extent and their
 //! area.
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 
 /// Piece of a base element's outline; it starts where the preceding piece ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,16 +199,16 @@ impl BaseElement {
         far.length()
     }
 
-    /// Extends `bounds` by the box of the outline's image under a map, padded by `pad` on every side.
-    pub fn add_to(&self, bounds: &mut Bounds, map: &DAffine2, pad: f64) {
-        let mut from = map.transform_point2(self.start);
+    /// Extends `bounds` by the box of the outline placed in a frame, padded by `pad` on every side.
+    pub fn add_to(&self, bounds: &mut Bounds, frame: &Frame, pad: f64) {
+        let mut from = frame.apply(self.start);
         let mut add = |point: DVec2| {
             bounds.add(point - pad);
             bounds.add(point + pad);
         };
         add(from);
         for piece in &self.pieces {
-            let piece = piece.transformed(map);
+            let piece = piece.transformed(frame.map());
             if let Piece::Cubic(a, b, end) = piece {
                 let largest = |u: DVec2| largest_of_cubic([from, a, b, end].map(|p| p.dot(u)));
                 add(DVec2::new(largest(DVec2::X), largest(DVec2::Y)));

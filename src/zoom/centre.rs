@@ -53,7 +53,7 @@ pub(super) fn centre(
     let mut standing = Standing::whole(growth.seed).root(graph, &root);
     let mut object = root.object;
     let mut maps = vec![constants.root(&root)];
-    let mut product = Product::new(root.frame.map.matrix2);
+    let mut product = Product::new(root.frame.map().matrix2);
     // Below this length, the rest of the address moves the point by less than the unit of the
     // computation.
     #[expect(clippy::cast_precision_loss, reason = "a small number")]
@@ -99,7 +99,7 @@ pub(super) fn centre(
             bits: whole((product.log2 - enough).ceil()) + SPARE,
         };
         maps.extend(constants.children(parent, &[&child]));
-        product.multiply(child.frame.map.matrix2);
+        product.multiply(child.frame.map().matrix2);
         standing = standing.child(graph, &child);
         object = child.object;
         if placement.seeds() {

@@ -106,7 +106,7 @@ impl Path {
     /// Returns the path as an open outline, or `None` if it returns to its start.
     pub(super) fn open(self) -> Option<Clipped> {
         let frame = Frame::between(self.start, self.last, Direction::Normal);
-        let back = frame.map.inverse();
+        let back = frame.map().inverse();
         let pieces = self.pieces.iter().map(|piece| piece.transformed(&back));
         let mut pieces: Vec<Piece> = pieces.collect();
         // Rounding must not move the end.

@@ -157,10 +157,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 }
                 Look::Outside => pen = false,
                 Look::Small(map) => {
-                    let frame = Frame {
-                        map,
-                        direction: node.standing.frame.direction,
-                    };
+                    let frame = Frame::new(map, node.standing.frame.direction());
                     line.add(Found::of(&node, frame, pen, Drawn::Object));
                     pen = true;
                 }
@@ -213,7 +210,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let Fixed { axes, origin } = &node.map;
         let end = [&origin[0] + &axes[0][0], &origin[1] + &axes[0][1]];
         let mut ends = [origin.clone(), end];
-        if node.standing.frame.direction.is_reversed() {
+        if node.standing.frame.direction().is_reversed() {
             ends.reverse();
         }
         let mut path = Path::new(&ends[0], self.half.length());
@@ -287,7 +284,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);
         let is_seen = |instance: &Instance| {
-            let child = map * instance.frame.map;
+            let child = map * instance.frame.map();
             !self.is_outside(&child, exponent, instance.object, doubt)
         };
         let chains = || std::iter::once(body).chain(seeds.iter().map(|seed| &seed.chain));
@@ -326,7 +323,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             };
             chain.instances.iter().map(child).collect()
         };
-        let is_reversed = node.standing.frame.direction.is_reversed();
+        let is_reversed = node.standing.frame.direction().is_reversed();
         let [mut first, mut end] = body.meets_frame;
         if is_reversed {
             (first, end) = (end, first);

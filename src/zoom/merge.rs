@@ -28,7 +28,7 @@ pub(super) fn merge(lines: &mut [Line]) {
         line.items.retain_mut(|item| {
             let stays = match item {
                 Item::Node(node) => {
-                    let direction = node.standing.frame.direction;
+                    let direction = node.standing.frame.direction();
                     known.insert((node.object, node.level, direction, key(&node.map)))
                 }
                 Item::Root(_) => true,

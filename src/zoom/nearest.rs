@@ -50,7 +50,7 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
         })
     };
     let initiator = graph.initiator(0).instances.iter();
-    open.extend(initiator.filter_map(|it| meet(it.object, it.frame.map, &mut nearest)));
+    open.extend(initiator.filter_map(|it| meet(it.object, *it.frame.map(), &mut nearest)));
     for _ in 0..MOST {
         let Some(image) = open.pop() else {
             return nearest.is_finite().then_some(nearest);
@@ -59,7 +59,7 @@ pub(crate) fn distance(graph: &Graph, point: DVec2) -> Option<f64> {
             return Some(nearest);
         }
         let children = graph.children(image.object);
-        let children = children.map(|(_, it)| (it.object, image.map * it.frame.map));
+        let children = children.map(|(_, it)| (it.object, image.map * it.frame.map()));
         open.extend(children.filter_map(|(object, map)| meet(object, map, &mut nearest)));
     }
     None

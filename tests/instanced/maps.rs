@@ -36,7 +36,7 @@ fn by_graph(graph: &Graph, steps: u32, mut choose: impl FnMut(usize) -> usize) -
     let mut maps = Vec::new();
     loop {
         let instance = &chain.instances[choose(chain.instances.len())];
-        map *= instance.frame.map;
+        map *= instance.frame.map();
         maps.push(map);
         match &graph.objects()[instance.object].replacement {
             Replacement::Fixed(production) if maps.len() <= steps as usize => {

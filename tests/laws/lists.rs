@@ -110,13 +110,13 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
                         if placement == Placement::SeedsAsInitiator {
                             let [origin, _] = item.frame.ends();
                             parent.length = 1.0;
-                            parent.frame = Frame {
-                                map: DAffine2::from_mat2_translation(item.root.map.matrix2, origin),
-                                direction: item.root.direction,
-                            };
+                            parent.frame = Frame::new(
+                                DAffine2::from_mat2_translation(item.root.map().matrix2, origin),
+                                item.root.direction(),
+                            );
                         }
                         let mut items = place(part, &points, &parent, &mut position, step + 1);
-                        turn(&mut items, parent.frame.direction);
+                        turn(&mut items, parent.frame.direction());
                         fractal.seeds.push(Grown {
                             age: 0,
                             items,
@@ -128,8 +128,8 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
             if let Some(first) = body.first_mut() {
                 first.joined = false;
             }
-            turn(&mut body, item.frame.direction);
-            if item.frame.direction.is_reversed() {
+            turn(&mut body, item.frame.direction());
+            if item.frame.direction().is_reversed() {
                 ends.reverse();
             }
             if let Some(first) = body.first_mut() {

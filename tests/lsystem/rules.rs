@@ -93,10 +93,10 @@ fn the_hilbert_curve_agrees_a_step_later() {
         let mut points = Vec::new();
         for element in &grown[0].elements {
             let number = graph.objects()[element.object].base_element;
-            let is_reversed = element.frame.direction.is_reversed();
+            let is_reversed = element.frame.direction().is_reversed();
             let (start, pieces) = graph.base_elements()[number].outline(is_reversed);
             let all = std::iter::once(start).chain(pieces.iter().map(|piece| piece.end()));
-            points.extend(all.map(|point| element.frame.map.transform_point2(point)));
+            points.extend(all.map(|point| element.frame.apply(point)));
         }
         let lines = lsystem("hilbert-lsystem", steps + 1);
         let ours: Vec<_> = { lines.iter().map(|[from, _]| *from) }

@@ -130,7 +130,7 @@ fn polygons_are_filled() {
     assert!(leaf.is_closed());
     let area = leaf.signed_area().abs();
     assert!((area - 6.75f64.sqrt()).abs() < 1e-12, "{area}");
-    assert_eq!(polygons[0].frame.map.translation, DVec2::X);
+    assert_eq!(polygons[0].frame.origin(), DVec2::X);
 }
 
 /// Equal polygons share an outline, regardless of their frames.
@@ -149,11 +149,9 @@ fn polygons_and_brackets_may_cross() {
     assert_eq!(drawing.polygons.len(), 1);
     let placed = drawing.elements[0];
     let outline = &drawing.polygons[0];
-    let start = placed.frame.map.transform_point2(outline.start());
+    let start = placed.frame.apply(outline.start());
     let others = outline.pieces().iter();
-    let all: Vec<_> = others
-        .map(|p| placed.frame.map.transform_point2(p.end()))
-        .collect();
+    let all: Vec<_> = others.map(|p| placed.frame.apply(p.end())).collect();
     assert_eq!(start, DVec2::ZERO);
     assert_eq!(all, [DVec2::X, DVec2::ONE, DVec2::ZERO]);
 }

@@ -24,7 +24,7 @@ fn is_like(graph: &Graph, chain: &Chain, listed: &[&Listed]) -> bool {
                 );
                 from.abs_diff_eq(DVec2::new(listed.0, listed.1), CLOSE)
                     && to.abs_diff_eq(DVec2::new(listed.2, listed.3), CLOSE)
-                    && instance.frame.direction.number() == listed.4
+                    && instance.frame.direction().number() == listed.4
                     && listed.is_fertile() != kept
             })
 }

@@ -21,9 +21,7 @@ fn a_fractal_is_what_it_draws() {
                 let outline = &graph.base_elements()[graph.objects()[element.object].base_element];
                 let ends = outline.pieces().iter().map(kfrac::rule::Piece::end);
                 let points = std::iter::once(outline.start()).chain(ends);
-                points
-                    .map(|point| element.frame.map.transform_point2(point))
-                    .collect()
+                points.map(|point| element.frame.apply(point)).collect()
             });
             outlines.collect::<Vec<Vec<DVec2>>>()
         });

@@ -51,7 +51,7 @@ fn the_sets_of_a_level_are_born_in_one_step() {
     let mut counts = BTreeMap::new();
     for element in drawn(&graph, 4) {
         assert!(!element.fertile);
-        let level = -element.frame.map.x_axis.x.log2();
+        let level = -element.frame.map().x_axis.x.log2();
         assert_close("level", f64::from(element.born), level, 1e-12);
         *counts.entry(element.born).or_insert(0) += 1;
     }

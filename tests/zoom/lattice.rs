@@ -88,9 +88,9 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
         let shown: Vec<[[f64; 2]; 2]> = seen
             .elements
             .iter()
-            .filter(|element| element.frame.map.translation.length() < 150.0)
+            .filter(|element| element.frame.origin().length() < 150.0)
             .map(|element| {
-                let map = element.frame.map;
+                let map = element.frame.map();
                 [map.translation, map.translation + map.matrix2.x_axis].map(|it| [it.x, it.y])
             })
             .collect();
@@ -139,7 +139,7 @@ fn is_left(graph: &kfrac::graph::Graph) -> bool {
     let root = graph.initiator(0).instances[0].object;
     super::production(graph, root).body.instances[0]
         .frame
-        .map
+        .map()
         .matrix2
         .x_axis
         .y

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use kfrac::document::Document;
-use kfrac::geometry::{DAffine2, DVec2};
+use kfrac::geometry::{DAffine2, DVec2, Frame};
 use kfrac::graph::{Graph, Instance, Production, Replacement};
 use kfrac::grow::{Element, Enter, Fractal, Subtree, Visitor, walk};
 use kfrac::model::Model;
@@ -49,13 +49,13 @@ impl Ordered {
         };
         walk(graph, growth, &mut ordered).unwrap();
         for (element, _) in &mut ordered.all {
-            element.frame.map = place * element.frame.map;
+            element.frame = Frame::from(place).compose(&element.frame);
         }
         // Elements well inside the window.
         let middle = graph.middle();
-        ordered.all.retain(|(element, _)| {
-            element.frame.map.transform_point2(middle).length() < f64::from(SIDE) * 0.4
-        });
+        ordered
+            .all
+            .retain(|(element, _)| element.frame.apply(middle).length() < f64::from(SIDE) * 0.4);
         ordered
     }
 }
@@ -100,10 +100,10 @@ fn child(graph: &Graph, object: usize, position: u32) -> &Instance {
 /// Returns the point that a path of positions leads to.
 fn point(graph: &Graph, way: &[u32]) -> DVec2 {
     let root = &graph.initiator(0).instances[way[0] as usize];
-    let (mut map, mut object) = (root.frame.map, root.object);
+    let (mut map, mut object) = (*root.frame.map(), root.object);
     for &position in way[1..].iter().cycle().take(60) {
         let child = child(graph, object, position);
-        map *= child.frame.map;
+        map *= child.frame.map();
         object = child.object;
     }
     map.translation
@@ -125,7 +125,7 @@ fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, fa
     // Large infertile elements may be clipped.
     let own = graph.objects().len();
     let is_whole = |(element, _): &(Element, u32)| {
-        let is_small = element.frame.map.matrix2.x_axis.length() < 100.0;
+        let is_small = element.frame.map().matrix2.x_axis.length() < 100.0;
         element.object < own && (element.fertile || is_small)
     };
     let mut shown = Ordered::of(&found.graph, &growth, DAffine2::IDENTITY, SHORTEST).all;
@@ -149,10 +149,10 @@ fn assert_alike(shown: &[(Element, u32)], plain: &[(Element, u32)], off: f64, wh
     assert_eq!(shown.len(), plain.len(), "{what}");
     for ((shown, shown_born), (plain, plain_born)) in shown.iter().zip(plain) {
         for corner in [DVec2::ZERO, DVec2::X, DVec2::Y] {
-            let [a, b] = [shown, plain].map(|it| it.frame.map.transform_point2(corner));
+            let [a, b] = [shown, plain].map(|it| it.frame.apply(corner));
             assert!(a.distance(b) <= off, "{what}: {shown:?}, {plain:?}");
         }
-        let told = |it: &Element| (it.born, it.frame.direction, it.fertile, it.joined);
+        let told = |it: &Element| (it.born, it.frame.direction(), it.fertile, it.joined);
         assert_eq!(told(shown), told(plain), "{what}");
         assert_eq!(shown_born, plain_born, "{what}");
         assert!(
@@ -173,7 +173,7 @@ fn place(point: DVec2) -> [i64; 2] {
 fn oldest(elements: &[(Element, u32)]) -> BTreeMap<[[i64; 2]; 2], u32> {
     let mut oldest = BTreeMap::new();
     for (element, born) in elements {
-        let map = element.frame.map;
+        let map = element.frame.map();
         let ends = [map.translation, map.transform_point2(DVec2::X)];
         let least = oldest.entry(ends.map(place)).or_insert(*born);
         *least = (*born).min(*least);
@@ -220,7 +220,7 @@ fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
         assert!(later.len() > 40, "{}", later.len());
         later.sort_by_key(|(_, born)| *born);
         for (element, _) in [later[0], later[later.len() / 2], later[later.len() - 1]] {
-            let point = element.frame.map.translation;
+            let point = element.frame.origin();
             let at = format!("{},{}", point.x, point.y);
             for factor in factors {
                 assert_window(rule, seed, point, &at, factor);
@@ -283,7 +283,7 @@ fn fixed_points_of_seeds_look_the_same_at_any_depth() {
     ] {
         let graph = rule.1.compile(64).unwrap();
         let root = graph.initiator(0).instances[0].object;
-        let linear = child(&graph, root, seed).frame.map.matrix2;
+        let linear = child(&graph, root, seed).frame.map().matrix2;
         let turn = DAffine2::from_mat2(linear * (1.0 / linear.determinant().abs().sqrt()));
         let at = format!("0.({seed})");
         let shallow = zoomed(&rule, &graph, &window("3^4", &at), 0);
@@ -372,7 +372,7 @@ fn sides_of_step_70_stand_where_whole_numbers_say() {
         for &position in &way[STEPS as usize..] {
             map *= child(&graph, root, u32::try_from(position).unwrap())
                 .frame
-                .map;
+                .map();
         }
         let limit = map.translation;
         let ways: Vec<String> = repeated.iter().map(ToString::to_string).collect();

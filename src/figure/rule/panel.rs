@@ -1,6 +1,6 @@
 //! Panels: a list of elements in place, the initiator or a generator over the side that it replaces.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, placement};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::rule::{BaseElement, ListedElement, Part};
 
 use super::super::text::Font;
@@ -145,8 +145,8 @@ impl<'a> Panel<'a> {
             return None;
         }
         let [from, to] = drawn.ends;
-        let map = placement(from, to, drawn.element.direction);
-        Some(outline(base).transformed(&map))
+        let frame = Frame::between(from, to, drawn.element.direction);
+        Some(outline(base).transformed(frame.map()))
     }
 
     fn bounds(&self, drawn: &[Drawn<'_>]) -> Bounds {
@@ -159,8 +159,8 @@ impl<'a> Panel<'a> {
             element.ends.iter().for_each(|&end| bounds.add(end));
             let [from, to] = element.ends;
             if self.outline(element).is_some() {
-                let map = placement(from, to, element.element.direction);
-                self.base(element.element).add_to(&mut bounds, &map, 0.0);
+                let frame = Frame::between(from, to, element.element.direction);
+                self.base(element.element).add_to(&mut bounds, &frame, 0.0);
             }
         }
         for kind in Kind::ALL {

@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
 use crate::render::RenderError;
@@ -100,7 +100,7 @@ impl<'a> Plan<'a> {
         let initial: Vec<_> = std::iter::once(first).chain(others).collect();
         let mut around = graph.limit_bounds().unwrap_or(Bounds::EMPTY);
         for outline in &initial {
-            outline.add_to(&mut around, &DAffine2::IDENTITY, 0.0);
+            outline.add_to(&mut around, &Frame::UNIT, 0.0);
         }
         let size = around.size();
         let flat = size.min_element() < 0.02 * size.max_element();
@@ -110,12 +110,12 @@ impl<'a> Plan<'a> {
             boxed(&around).unwrap_or_else(|| first.clone())
         };
         let mut bounds = Bounds::EMPTY;
-        shown.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
+        shown.add_to(&mut bounds, &Frame::UNIT, 0.0);
         for map in ifs.maps() {
-            shown.add_to(&mut bounds, &map.affine, 0.0);
+            shown.add_to(&mut bounds, &map.affine.into(), 0.0);
         }
         for set in sets {
-            set.add_to(&mut bounds, &DAffine2::IDENTITY, 0.0);
+            set.add_to(&mut bounds, &Frame::UNIT, 0.0);
         }
         Self {
             ifs,
@@ -180,7 +180,8 @@ impl<'a> Plan<'a> {
             for (number, it) in self.ifs.maps().iter().enumerate() {
                 let name = it.name.clone().unwrap_or_else(|| (number + 1).to_string());
                 let mut bounds = Bounds::EMPTY;
-                self.shown.add_to(&mut bounds, &(map * it.affine), 0.0);
+                self.shown
+                    .add_to(&mut bounds, &(map * it.affine).into(), 0.0);
                 let middle = (bounds.min() + bounds.max()) / 2.0;
                 let at = middle + DVec2::new(-font.width(&name, WORDS) / 2.0, 0.36 * WORDS);
                 items.push(Item::Text(name, WORDS, at, super::LABEL));

@@ -128,10 +128,8 @@ impl Pose {
             (x_axis.perp(), Direction::Normal)
         };
         let matrix = DMat2::from_cols(x_axis, y_axis);
-        Frame {
-            map: DAffine2::from_mat2_translation(matrix, self.place.over(unit)),
-            direction,
-        }
+        let map = DAffine2::from_mat2_translation(matrix, self.place.over(unit));
+        Frame::new(map, direction)
     }
 }
 

@@ -42,7 +42,7 @@ impl Visitor for Collector<'_> {
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         let object = &self.graph.objects()[element.object];
-        let map = element.frame.map;
+        let map = element.frame.map();
         let base_element = &self.graph.base_elements()[object.base_element];
         let (start, pieces) = base_element.outline(false);
         let mut points = vec![
@@ -50,12 +50,12 @@ impl Visitor for Collector<'_> {
             map.transform_point2(DVec2::X),
         ];
         points.push(map.transform_point2(start));
-        points.extend(pieces.iter().map(|piece| piece.transformed(&map).end()));
+        points.extend(pieces.iter().map(|piece| piece.transformed(map).end()));
         self.drawn.push(Drawn {
             points,
             joined: element.joined,
             fertile: element.fertile,
-            direction: element.frame.direction.number(),
+            direction: element.frame.direction().number(),
             width: element.coat.width(),
             colour: element.coat.on(Colour::BLACK),
         });

@@ -80,7 +80,7 @@ impl Blocks {
         steps: u32,
         frame: &Frame,
     ) -> Option<&Block> {
-        let reversed = frame.direction.is_reversed();
+        let reversed = frame.direction().is_reversed();
         let (slot, steps, length) = match &self.known {
             Known::BySteps(sizes) => {
                 sizes.get(object, steps)?;
@@ -121,7 +121,8 @@ impl Blocks {
             }
         };
         let start = Start::initiator(graph, steps, 0);
-        let mut descent = Descent::below(graph, object, steps, unit(reversed));
+        let unit = unit(reversed);
+        let mut descent = Descent::below(graph, object, steps, unit);
         let mut leaves = Vec::new();
         let mut sticks = Some(Vec::new());
         let mut corners = Some(Corners::default());
@@ -152,14 +153,13 @@ impl Blocks {
                 sticks = None;
             }
             if object.visible {
-                let (start, pieces) = base_element.outline(frame.direction.is_reversed());
-                corners = corners.and_then(|corners| corners.with(start, pieces, &frame.map));
+                let (start, pieces) = base_element.outline(frame.direction().is_reversed());
+                corners = corners.and_then(|corners| corners.with(start, pieces, frame.map()));
             }
             fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
             all += frame.length();
             leaves.push(Leaf {
-                map: frame.map,
-                direction: frame.direction,
+                frame: frame.with_direction(unit * frame.direction()),
                 length: found.standing.length,
                 coat: found.standing.coat,
                 object: found.object,

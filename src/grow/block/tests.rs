@@ -155,7 +155,7 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
             assert_eq!(one_by_one.runs, 0);
             assert_eq!(one_by_one.elements.len(), by_runs.elements.len(), "{what}");
             for (a, b) in one_by_one.elements.iter().zip(&by_runs.elements) {
-                let near = a.frame.map.abs_diff_eq(b.frame.map, 1e-9);
+                let near = a.frame.map().abs_diff_eq(*b.frame.map(), 1e-9);
                 assert!(
                     near && (a.length - b.length).abs() < 1e-9,
                     "{what}: {a:?} {b:?}"
@@ -175,7 +175,7 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
                         born,
                         fertile,
                         joined,
-                        element.frame.direction,
+                        element.frame.direction(),
                     )
                 };
                 assert_eq!(rest(a), rest(b), "{what}");

@@ -110,7 +110,7 @@ impl Builder<'_> {
         };
         for (number, object) in self.graph.behaviours_by_number() {
             for instance in self.children(number) {
-                add(object.behaviour, &instance.frame.map, instance.object);
+                add(object.behaviour, instance.frame.map(), instance.object);
             }
         }
         for (layer, parts) in layers.iter().enumerate() {
@@ -129,7 +129,7 @@ impl Builder<'_> {
     fn find_points(&self, net: &mut Net) {
         let parts = |(number, _): (usize, &Object)| -> Vec<(DAffine2, usize)> {
             let children = self.children(number);
-            let parts = children.map(|it| Some((it.frame.map, self.node(it.object)?)));
+            let parts = children.map(|it| Some((*it.frame.map(), self.node(it.object)?)));
             parts.flatten().collect()
         };
         let mut parts: Vec<Vec<_>> = self.graph.behaviours_by_number().map(parts).collect();

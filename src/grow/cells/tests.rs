@@ -16,7 +16,7 @@ fn sets_between_are_left_out() {
     let document = Document::read(&source, &catalogue).unwrap();
     let graph = document.resolve(&[]).unwrap().0.compile(30).unwrap();
     let parts = graph.initiator(0).instances.iter();
-    let layer = parts.map(|it| (it.frame.map, it.object)).collect();
+    let layer = parts.map(|it| (*it.frame.map(), it.object)).collect();
     let set = LimitCells::new(&graph, &[layer]);
     let search = Search {
         scale: 10.0,

@@ -55,7 +55,7 @@ impl Visitor for Collecting<'_> {
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        let map = element.frame.map;
+        let map = element.frame.map();
         let [x, y] = map.translation.to_array();
         let place = [x, y, map.matrix2.x_axis.x, map.matrix2.x_axis.y];
         let place = place.map(|part| super::round(part * 1e6));
@@ -85,7 +85,7 @@ impl Visitor for Collecting<'_> {
         *self.met.entry(number).or_default() += 1;
         self.taken += 1;
         let kind = &self.kinds.all[number];
-        let turned = colony.moved_to(kind.turned(&colony.frame().map));
+        let turned = colony.moved_to(kind.turned(colony.frame().map()));
         let (elements, _) = self.walked(&turned, matches!(taken, Taken::Whole(_)));
         elements
             .iter()

@@ -74,7 +74,7 @@ impl<E: Fn(&Subtree) -> Enter> Visitor for Walked<'_, E> {
         if object.visible {
             let base_element = &graph.base_elements()[object.base_element];
             let pad = 0.25 * element.frame.length();
-            base_element.add_to(bounds, &element.frame.map, pad);
+            base_element.add_to(bounds, &element.frame, pad);
         }
         Ok(())
     }

@@ -128,7 +128,7 @@ fn discs(graph: &Graph) -> Bounds {
     let reaches = reaches(graph);
     let mut bounds = Bounds::EMPTY;
     for instance in &graph.initiator(0).instances {
-        let middle = instance.frame.map.transform_point2(graph.middle());
+        let middle = instance.frame.apply(graph.middle());
         let reach = instance.frame.stretch() * reaches[instance.object];
         bounds.add(middle - reach);
         bounds.add(middle + reach);
@@ -160,7 +160,7 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
     let reaches = reaches(graph);
     let mut open: Vec<(usize, DAffine2)> = Vec::new();
     let initiator = graph.initiator(0).instances.iter().rev();
-    open.extend(initiator.map(|instance| (instance.object, instance.frame.map)));
+    open.extend(initiator.map(|instance| (instance.object, *instance.frame.map())));
     let (mut looked_at, mut may_be_squares) = (0, true);
     while let Some((number, map)) = open.pop() {
         looked_at += 1;
@@ -191,7 +191,7 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
             Replacement::Fixed(production) => {
                 let children = production.placed_instances();
                 open.extend(
-                    children.map(|(_, instance)| (instance.object, map * instance.frame.map)),
+                    children.map(|(_, instance)| (instance.object, map * instance.frame.map())),
                 );
                 region.work(1)?;
             }
@@ -219,7 +219,7 @@ impl Visitor for Approximant<'_, '_> {
             return Ok(());
         }
         let outline = &self.graph.base_elements()[object.base_element];
-        self.region.add_outline(outline, &element.frame.map)
+        self.region.add_outline(outline, element.frame.map())
     }
 
     fn end(&mut self, _: bool) -> Result<(), TooMany> {

@@ -124,7 +124,7 @@ impl<'g> Squares<'g> {
         let near = NEAR * region.radius;
         let kept = self.graph.initiator(0).instances.iter();
         for instance in kept.filter(|it| self.is_kept(it.object)) {
-            region.add_outline(self.outline_of(instance.object), &instance.frame.map)?;
+            region.add_outline(self.outline_of(instance.object), instance.frame.map())?;
         }
         for (number, map) in self.initiator() {
             let grid = &self.grids[number];
@@ -156,7 +156,7 @@ impl<'g> Squares<'g> {
     /// Returns the grids of the replaced instances of the initiator, and the maps of these instances.
     fn initiator(&self) -> impl Iterator<Item = (usize, &DAffine2)> {
         let instances = self.graph.initiator(0).instances.iter();
-        instances.filter_map(|it| Some((self.grid_of(it.object)?, &it.frame.map)))
+        instances.filter_map(|it| Some((self.grid_of(it.object)?, it.frame.map())))
     }
 
     fn grid_of(&self, object: usize) -> Option<usize> {
@@ -259,7 +259,7 @@ impl<'g> Squares<'g> {
                 let places = grid.places().inverse();
                 let mut mark = |point| grid.mark(places.transform_point2(point));
                 let mut region = Region::of_all(error / 2.0, most, &mut mark);
-                region.add_outline(outline, &instance.frame.map)?;
+                region.add_outline(outline, instance.frame.map())?;
             }
             let point = self.point(object);
             let grid = &mut self.grids[number];
@@ -278,7 +278,7 @@ impl<'g> Squares<'g> {
         let mut map = DAffine2::IDENTITY;
         for _ in 0..MOST_LEVELS {
             let instance = self.replaced(object).next()?;
-            map *= instance.frame.map;
+            map *= instance.frame.map();
             object = instance.object;
             if stretch(&map.matrix2) <= NEGLIGIBLE {
                 break;
@@ -331,7 +331,7 @@ impl<'g> Squares<'g> {
                 let Some(inner) = self.grid_of(instance.object) else {
                     continue;
                 };
-                let map = places * instance.frame.map * self.grids[inner].places();
+                let map = places * instance.frame.map() * self.grids[inner].places();
                 images[inner].push(Image { map, grid: number });
             }
         }

@@ -122,7 +122,7 @@ fn layers(graph: &Graph, classes: &Classes) -> Option<Vec<(u64, Layer)>> {
         _ => classes.of_object(&graph.objects()[object]),
     };
     let start = graph.initiator(0).instances.iter();
-    let mut open: Vec<(DAffine2, usize)> = start.map(|it| (it.frame.map, it.object)).collect();
+    let mut open: Vec<(DAffine2, usize)> = start.map(|it| (*it.frame.map(), it.object)).collect();
     let own: Option<Vec<u64>> = (0..graph.objects().len()).map(of_object).collect();
     let own = own?;
     let leading: Vec<Vec<bool>> = classes
@@ -145,7 +145,7 @@ fn layers(graph: &Graph, classes: &Classes) -> Option<Vec<(u64, Layer)>> {
             _ => match &graph.objects()[object].replacement {
                 Replacement::Fixed(_) => {
                     let children = graph.children(object);
-                    open.extend(children.map(|(_, it)| (map * it.frame.map, it.object)));
+                    open.extend(children.map(|(_, it)| (map * it.frame.map(), it.object)));
                 }
                 _ => return None,
             },

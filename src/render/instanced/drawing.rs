@@ -272,7 +272,7 @@ impl<'a> Drawing<'a> {
             let Some(written) = symbol.and_then(|symbol| self.named.get(&symbol)) else {
                 continue;
             };
-            let transform = text::transform(&instance.frame.map);
+            let transform = text::transform(instance.frame.map());
             let name = text::name(written.name);
             if transform.is_empty() {
                 text.push_str(&format!("<use href=\"#{name}\"/>"));

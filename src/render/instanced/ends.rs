@@ -1,6 +1,6 @@
 //! End points of expanded objects, for the lines that link neighbours.
 
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::geometry::{DVec2, Direction};
 use crate::graph::{Chain, Graph, Instance, Replacement};
 use crate::instancing::Coat;
 use crate::rule::Piece;
@@ -24,11 +24,10 @@ pub(super) struct End {
 
 impl End {
     fn within(self, instance: &Instance, coat: Coat) -> Self {
-        let Frame { map, direction } = instance.frame;
         Self {
-            point: map.transform_point2(self.point),
+            point: instance.frame.apply(self.point),
             length: self.length * instance.length,
-            direction: self.direction * direction,
+            direction: self.direction * instance.frame.direction(),
             born: self.born + 1,
             coat: coat.over(self.coat),
             ..self
@@ -84,7 +83,7 @@ impl<'g> Ends<'g> {
         let coat = self.graph.coat(instance.object);
         let within = |end: Option<End>| end.map(|end| end.within(instance, coat));
         let [start, end] = self.all[instance.object].map(within);
-        if instance.frame.direction.is_reversed() {
+        if instance.frame.direction().is_reversed() {
             [end, start]
         } else {
             [start, end]

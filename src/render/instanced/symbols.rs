@@ -158,7 +158,7 @@ impl<'g> Symbols<'g> {
     pub(super) fn child(&self, instance: &Instance, of: &Aspect, seeded: bool) -> Option<Symbol> {
         let part = match of.part {
             Part::Born(steps) => Part::Born(steps.checked_sub(1)?),
-            Part::Heading(heading) => Part::Heading(heading * instance.frame.direction),
+            Part::Heading(heading) => Part::Heading(heading * instance.frame.direction()),
             Part::Own if seeded => return None,
             Part::Seeded(1) => return self.dressed(instance, of, Part::Own).filter(|_| seeded),
             Part::Seeded(steps) => Part::Seeded(steps - 1),

@@ -396,8 +396,7 @@ impl Visitor for Cells {
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        self.0
-            .push(element.frame.map.transform_point2(DVec2::new(0.5, 0.5)));
+        self.0.push(element.frame.apply(DVec2::new(0.5, 0.5)));
         Ok(())
     }
 

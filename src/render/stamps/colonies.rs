@@ -117,7 +117,7 @@ impl Means {
             return Self::NOTHING;
         }
         let discs = instances.iter().map(|instance| {
-            let middle = instance.frame.map.transform_point2(scene.graph.middle());
+            let middle = instance.frame.apply(scene.graph.middle());
             let radius = hidden.radius(instance.object) * instance.frame.stretch();
             (middle, radius)
         });
@@ -203,7 +203,7 @@ impl Stamps<'_> {
         (number, means): (usize, &Means),
     ) -> Option<Stamped> {
         let kind = &colonies.kinds.all[number];
-        let map = scene.canvas.map(&kind.turned(&colony.frame().map));
+        let map = scene.canvas.map(&kind.turned(colony.frame().map()));
         let key = Key {
             of: Of::Colony(number),
             linear: map.matrix2.to_cols_array().map(|part| whole(part * LINEAR)),

@@ -131,8 +131,8 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
         let mut known = MixSet::default();
         sides.clear();
         for (linear, direction, instance) in standing.drain(..) {
-            let linear = linear * instance.frame.map.matrix2;
-            let direction = direction * instance.frame.direction;
+            let linear = linear * instance.frame.map().matrix2;
+            let direction = direction * instance.frame.direction();
             let length = linear.x_axis.length();
             let size = shortest.map_or(0.0, |_| libm::log2(length));
             let turn = turned(&linear).to_cols_array();

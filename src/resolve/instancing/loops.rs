@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::digraph::components;
 use crate::document::InstancingDocument;
-use crate::geometry::{DAffine2, DMat2, Direction, Frame};
+use crate::geometry::{DMat2, stretch};
 use crate::ifs::{Contraction, Verdict};
 use crate::instancing::{Instancing, Master};
 use crate::resolve::Resolver;
@@ -28,11 +28,7 @@ struct Edge {
 impl Edge {
     /// Returns the largest factor by which the instance stretches a vector.
     fn stretch(&self) -> f64 {
-        let frame = Frame {
-            map: DAffine2::from_mat2(self.linear),
-            direction: Direction::Normal,
-        };
-        frame.stretch()
+        stretch(&self.linear)
     }
 }
 

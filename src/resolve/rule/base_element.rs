@@ -22,7 +22,7 @@ impl Resolver<OfRule> {
         let (outline, frame) = (self.outline(document), self.base_frame(document));
         let made = match (outline, frame) {
             (Some((start, pieces)), Some(frame)) if self.diagnostics.len() == before => {
-                let map = frame.map.inverse();
+                let map = frame.map().inverse();
                 let pieces = pieces.iter().map(|piece| piece.transformed(&map)).collect();
                 let start = map.transform_point2(start);
                 let made = BaseElement::new(start, pieces, document.closed);

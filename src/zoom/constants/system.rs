@@ -51,7 +51,7 @@ impl<'a> OfSystem<'a> {
         let origin = graph.objects()[instance.object].origin;
         let maps = self.system.ifs().maps();
         // The instance of a condensation set may have the origin of a map without being under it.
-        let map = origin.filter(|&map| maps[map].affine == instance.frame.map);
+        let map = origin.filter(|&map| maps[map].affine == *instance.frame.map());
         map.map_or_else(
             || Arc::new(Fixed::identity(bits)),
             |map| Arc::clone(&self.maps[map]),

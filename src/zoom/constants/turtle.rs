@@ -21,6 +21,6 @@ impl OfTurtle {
         let Chords { initiator, objects } = &self.chords;
         let lines = parent.map_or(initiator, |object| &objects[object]);
         let [from, to] = &lines[instance.position as usize];
-        Fixed::between(from, to, instance.frame.direction)
+        Fixed::between(from, to, instance.frame.direction())
     }
 }
