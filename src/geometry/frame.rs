@@ -207,6 +207,9 @@ impl From<DAffine2> for Frame {
     }
 }
 
+/// Least stretch that is computed from sums of squares, of which none that matters underflows.
+const LEAST_BY_SQUARES: f64 = 1e-140;
+
 /// Returns the larger singular value of a linear map: the largest factor by which it lengthens a vector.
 #[inline]
 pub(crate) fn stretch(matrix: &DMat2) -> f64 {
@@ -214,9 +217,40 @@ pub(crate) fn stretch(matrix: &DMat2) -> f64 {
     // The components that preserve and that reverse the sense of rotation; one is zero for a similarity.
     let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
     let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
-    if reversed == 0.0 {
+    let stretch = if reversed == 0.0 {
         kept.sqrt() / 2.0
     } else {
         (kept.sqrt() + reversed.sqrt()) / 2.0
+    };
+    if (LEAST_BY_SQUARES..f64::INFINITY).contains(&stretch) {
+        stretch
+    } else {
+        scaled_stretch(matrix)
+    }
+}
+
+/// Returns the stretch of a matrix of which the squares of entries may leave the range of doubles.
+#[cold]
+fn scaled_stretch(matrix: &DMat2) -> f64 {
+    let (x, y) = (matrix.x_axis, matrix.y_axis);
+    (libm::hypot(x.x + y.y, x.y - y.x) + libm::hypot(x.x - y.y, x.y + y.x)) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_reach_to_the_ends_of_the_range() {
+        for size in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
+            let turned = DMat2::from_angle(0.7) * size;
+            let sheared = DMat2::from_cols_array(&[size, 0.0, size, size]);
+            let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+            for (matrix, expected) in [(turned, 1.0), (sheared, golden)] {
+                let ratio = stretch(&matrix) / size;
+                assert!((ratio - expected).abs() < 1e-14, "{size}: {ratio}");
+            }
+        }
+        assert_eq!(stretch(&DMat2::ZERO), 0.0);
     }
 }

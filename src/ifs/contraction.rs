@@ -2,8 +2,8 @@
 
 use super::Ifs;
 use super::Shrinking;
-use super::norm::{in_best_coordinates, spectral_radius, stretch};
-use crate::geometry::DMat2;
+use super::norm::{in_best_coordinates, spectral_radius};
+use crate::geometry::{DMat2, stretch};
 
 /// Default limit of the number of products that are formed.
 const MOST_PRODUCTS: usize = 100_000;
@@ -256,7 +256,7 @@ impl Search {
             beginning: None,
         });
         let [normed, given] = [0, 1].map(|of| self.matrices[of][map] * before.matrices[of]);
-        let size = stretch(normed);
+        let size = stretch(&normed);
         if size < f64::MIN_POSITIVE {
             return None;
         }

@@ -1,7 +1,7 @@
 //! Norms and spectral radii of matrices of the plane, and coordinates in which several matrices stretch
 //! least.
 
-use crate::geometry::{DMat2, DVec2};
+use crate::geometry::{DMat2, DVec2, stretch};
 
 /// Returns the spectral radius: the largest modulus of an eigenvalue.
 pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
@@ -14,13 +14,6 @@ pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
     } else {
         libm::hypot(middle, (-discriminant).sqrt())
     }
-}
-
-/// Returns the largest singular value: the largest factor by which a matrix lengthens a vector.
-pub(super) fn stretch(matrix: DMat2) -> f64 {
-    let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
-    let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
-    (libm::hypot(a + d, c - b) + libm::hypot(a - d, c + b)) / 2.0
 }
 
 /// Returns the matrices in coordinates in which their largest stretch is nearly minimal: the unit disc of
@@ -96,7 +89,9 @@ impl Coordinates {
     }
 
     fn stretch(&self, matrices: &[DMat2]) -> f64 {
-        let stretches = matrices.iter().map(|&matrix| stretch(self.applied(matrix)));
+        let stretches = matrices
+            .iter()
+            .map(|&matrix| stretch(&self.applied(matrix)));
         let numbers = stretches.map(|stretch| {
             if stretch.is_nan() {
                 f64::INFINITY

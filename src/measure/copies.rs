@@ -1,7 +1,7 @@
 //! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
 use crate::digraph::components;
-use crate::geometry::{DAffine2, DMat2};
+use crate::geometry::{DAffine2, DMat2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::ifs::Ifs;
 use crate::rule::Placement;
@@ -276,7 +276,7 @@ struct SingularValues([f64; 2]);
 
 impl SingularValues {
     fn of(matrix: &DMat2) -> Self {
-        let larger = norm(matrix);
+        let larger = stretch(matrix);
         let area = matrix.determinant().abs();
         Self([libm::log(larger), libm::log(area / larger)])
     }
@@ -429,15 +429,4 @@ pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)
         }
     }
     Some(copies)
-}
-
-/// Returns the largest factor by which a linear map lengthens a vector: its larger singular value.
-#[inline]
-pub(super) fn norm(matrix: &DMat2) -> f64 {
-    let (a, b) = (matrix.x_axis, matrix.y_axis);
-    let half = (a.length_squared() + b.length_squared()) / 2.0;
-    let difference = (a.length_squared() - b.length_squared()) / 2.0;
-    let product = a.dot(b);
-    let root = (difference * difference + product * product).sqrt();
-    (half + root).sqrt()
 }

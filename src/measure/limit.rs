@@ -6,12 +6,11 @@ mod moments;
 
 use std::num::NonZero;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
 
 use super::bits::Bits;
-use super::copies::norm;
 use super::cover::{Grid, Scale, least};
 
 pub use cascade::Cascade;
@@ -73,7 +72,7 @@ struct Placed {
 impl Placed {
     fn new(map: DAffine2, object: usize) -> Self {
         const TOLERANCE: f64 = 1e-12;
-        let scale = norm(&map.matrix2);
+        let scale = stretch(&map.matrix2);
         let area = map.matrix2.determinant().abs();
         Self {
             map,
@@ -98,7 +97,7 @@ impl Placed {
         let scale = if is_similar {
             self.scale * inner.scale
         } else {
-            norm(&map.matrix2)
+            stretch(&map.matrix2)
         };
         Self {
             map,
