@@ -4,14 +4,13 @@
 //!     cargo run --example build_rule -- 7 > heptagons.svg
 
 use std::error::Error;
-use std::io;
+use std::io::{self, Write};
 use std::sync::Arc;
 
+use kfrac::Fractal;
 use kfrac::build::{Element, Elements, RuleBuilder};
 use kfrac::geometry::DVec2;
-use kfrac::graph::Graph;
-use kfrac::grow::Growth;
-use kfrac::render::{self, Labels, Options, Size};
+use kfrac::model::Model;
 use kfrac::rule::{BaseElement, Piece, Rule};
 
 /// Returns the rule for polygons with `sides` sides, the first of which runs from (0, 0) to (1, 0).
@@ -50,18 +49,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     if !(3..=12).contains(&sides) {
         return Err("from 3 to 12 sides".into());
     }
-    let steps = 4;
-    let rule = Arc::new(polygons(sides)?);
-    let graph = Graph::compile(&rule, steps)?;
-    let options = Options {
-        size: Size::Long(800),
-        labels: Labels {
-            title: format!("Polygons with {sides} sides"),
-            ..Labels::default()
-        },
-        ..Options::of(rule.heading())
-    };
-    let out = &mut io::BufWriter::new(io::stdout().lock());
-    render::write(&graph, &Growth::steps(steps), &options, out)?;
+    let rule = polygons(sides)?;
+    let svg = Fractal::from(Model::Rule(Arc::new(rule)))
+        .steps(4)
+        .size(800)
+        .svg()?;
+    io::stdout().write_all(svg.as_bytes())?;
     Ok(())
 }

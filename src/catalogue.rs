@@ -285,7 +285,7 @@ impl Catalogue {
     }
 
     /// Reads the first file of the given name on the given shelves.
-    fn named(&self, shelves: &[Shelf], name: &str) -> Result<Arc<Source>, Diagnostic> {
+    pub(crate) fn named(&self, shelves: &[Shelf], name: &str) -> Result<Arc<Source>, Diagnostic> {
         let Some(entry) = self.candidates(shelves, name).into_iter().next() else {
             // A name with an extension was probably meant as a file.
             let is_file = shelves.len() > 1 && Path::new(name).extension().is_some();
@@ -436,7 +436,7 @@ pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
     a.text() == b.text() && (a.name() == b.name() || file(a).is_some() && file(a) == file(b))
 }
 
-fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
+pub(crate) fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     use std::io::Read;
     // One byte more than the limit suffices to detect a file that is too large.
     let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;

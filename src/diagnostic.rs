@@ -96,6 +96,15 @@ impl Diagnostic {
     }
 }
 
+/// Displays the message without its place and remedy; [`Diagnostics`] display all.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
 /// Length in bytes beyond which messages and help texts are cut: names in them may have any length.
 const MOST_SAID: usize = 600;
 

@@ -1,28 +1,59 @@
 //! Linear fractals: grown from production rules, drawn and measured.
 //!
 //! A *production rule* (Kaandorp, "Interactive generation of fractal objects", CWI report CS-R8706,
-//! 1987) has three components: an *initiator*, an array of *generators* and a *base element*. Step
-//! by step every fertile element is replaced by a smaller copy of a generator.
+//! 1987) has three components: an *initiator*, an array of *generators* and a *base element*. In each
+//! step every fertile element is replaced by a smaller copy of a generator. Iterated function systems,
+//! object instancing and L-systems compile to the same graph.
 //!
-//! # The way of the data
+//! [`Fractal`] is the front door:
+//!
+//! ```
+//! # fn main() -> Result<(), kfrac::Error> {
+//! use kfrac::Fractal;
+//!
+//! let tree = Fractal::named("pythagoras")?.set("angle", 30.0)?.steps(8);
+//! let svg: String = tree.svg()?;
+//! let png: Vec<u8> = tree.png(600)?;
+//! assert_eq!(tree.elements()?.count(), 765);
+//! assert_eq!(tree.dimension()?.value, 2.0);
+//!
+//! let mine = Fractal::parse("
+//! initiator: segment
+//! generator: [[0, 0], [1/3, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]
+//! ")?;
+//! println!("{:.4}", mine.dimension()?.value);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Everything that the front door does is done by the rooms behind it, which are public as far as programs
+//! need them: to build rules ([`build`]), to measure pictures and points ([`measure`]), to visit elements
+//! without an iterator ([`grow`]), or to draw into memory with all options ([`render`]).
+//!
+//! # Features
+//!
+//! `cli`, on by default, is the command line. Without it the library depends on no terminal, no signals and no
+//! temporary files, and compiles for `wasm32-unknown-unknown`.
+//!
+//! # Stages
 //!
 //! ```text
 //!  library/*.yaml, a user's file, a program (build)
-//!     │  document   what was written, with places in the file; parents and components put in
+//!     │  document   the file as written, with places; parents and components inlined
 //!     ▼
-//!  the document of its kind, under a heading that all kinds have
+//!  the document of its kind, with metadata that all kinds have
 //!     │  resolve    names looked up, expressions compiled, everything checked
 //!     ▼
 //!  model            a rule, a system of maps, a structure of objects or an L-system, validated
-//!     │  graph      dependence on the moment becomes more objects
+//!     │  graph      dependence on age and index becomes more objects
 //!     ▼
 //!  Graph            objects that instance each other: forecast, bounds
-//!     ├── measure   dimensions: exactly where they can be, and by boxes; distances
+//!     ├── measure   dimensions, exact and by boxes; distances
 //!     ├── convert   the same set as a file of another kind
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; estimate: how large they will be
+//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; estimate: their sizes
 //!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables: CSV, JSON
 //! ```
@@ -34,22 +65,23 @@
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
 //! `render` turns into pictures.
 //!
-//! What is as small as one likes is [`zoom`]ed into: a descent in long numbers, between `graph` and
-//! `grow`, finds what lies about a point, as a graph of its own that is drawn as any other.
+//! Windows of any size are [`zoom`]ed into: a descent in long numbers, between `graph` and `grow`, finds
+//! the elements about a point, as a graph of its own that is drawn like any other.
 //!
-//! Each stage builds on the ones above it. `render`, `export` and `measure` do not know each other
-//! (what is measured beside graphs, pictures and tables of points, is read by [`import`], and so are
-//! files of other programs, which become files of ours);
-//! figures are drawn on the surfaces of `render`, so they come in all its formats; [`cli`] uses what
-//! is public here and nothing else. What a program [`build`]s is written as a file and read as such.
-//! Names and files are the [`catalogue`]'s work, mistakes in files are [`diagnostic`]s, numbers in
-//! files are [`expression`]s, and [`parallel`] shares work between threads. One thread walks down to
-//! subtrees of some thousand elements, any thread walks over these, and what comes of them, text
-//! included, is put together in order: the bytes do not depend on the number of threads.
+//! Each stage builds on the ones above it. `render`, `export` and `measure` do not depend on each other;
+//! [`import`] reads pictures and tables of points to be measured, and files of other programs, which become
+//! files of kfrac. Figures are drawn on the surfaces of `render`, and have all its formats. A model that a
+//! program [`build`]s is written as a file and read as such. The [`catalogue`] resolves names, mistakes in
+//! files are [`diagnostic`]s, numbers in files are [`expression`]s, and [`parallel`] shares work between
+//! threads. One thread walks down to subtrees of some thousand elements, any thread walks over these, and
+//! results, text included, are put together in order: the bytes do not depend on the number of threads.
+//!
+#![doc = include_str!("glossary.md")]
 
 pub mod build;
 pub mod catalogue;
 pub mod chaos;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod convert;
 pub mod diagnostic;
@@ -59,6 +91,7 @@ pub mod estimate;
 pub mod export;
 pub mod expression;
 pub mod figure;
+mod fractal;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
@@ -71,13 +104,15 @@ pub mod measure;
 mod mix;
 pub mod model;
 pub mod parallel;
+mod readable;
 pub mod render;
 mod resolve;
 pub mod rule;
 pub mod style;
 mod whole;
-mod wording;
 pub mod zoom;
+
+pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
 
 /// Random rules for the tests of several modules.
 #[cfg(test)]

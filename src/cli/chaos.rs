@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 
+use super::readable::counted;
 use crate::chaos::{ClassBy, Game, GameError, Point, Points, Start, System, Window, play};
 use crate::export;
 use crate::geometry::{Bounds, DVec2, Homothety};
@@ -15,7 +16,6 @@ use crate::ifs;
 use crate::model::Model;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_density};
 use crate::style::{ColorBy, Colour, Named, Style};
-use crate::wording::counted;
 
 use super::growth::GrowthArguments;
 use super::labels::labels;
@@ -293,7 +293,7 @@ impl ChaosGame<'_> {
         write_density(&histogram, &density, &labels, out)?;
         let inside = match histogram.inside() {
             inside if inside == points => String::new(),
-            inside => format!(", {} inside", crate::wording::grouped(&inside.into())),
+            inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
         };
         let [width, height] = canvas.size();
         Ok(format!(

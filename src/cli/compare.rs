@@ -7,6 +7,7 @@ use anyhow::anyhow;
 use clap::ValueHint;
 use serde::Serialize;
 
+use super::readable;
 use crate::catalogue::Catalogue;
 use crate::document::{Document, Setting};
 use crate::figure::difference::{self, Pixels};
@@ -17,7 +18,6 @@ use crate::measure::{
 };
 use crate::render::{self, Canvas, RenderError, Size};
 use crate::style::Style;
-use crate::wording;
 
 use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
@@ -284,12 +284,12 @@ impl Arguments {
         })?;
         if !self.quiet {
             let [width, height] = canvas.size();
-            let [first, second, shared] = pixels.map(|count| wording::grouped(&count.into()));
+            let [first, second, shared] = pixels.map(|count| readable::grouped(&count.into()));
             text::say(&format!(
                 "{}: {width} x {height} pixels, {first} of A alone, {second} of B alone, \
                  {shared} of both, {}",
                 output::called(path),
-                wording::bytes(bytes),
+                readable::bytes(bytes),
             ));
         }
         Ok(())

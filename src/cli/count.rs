@@ -5,10 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::readable::{decimal, grouped};
 use crate::catalogue::Catalogue;
 use crate::geometry::BEYOND;
 use crate::grow::{Counted, count};
-use crate::wording::{decimal, grouped};
 
 use super::growth::GrowthArguments;
 use super::info::{Corners, corners};

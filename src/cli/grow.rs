@@ -7,17 +7,16 @@ use std::time::Instant;
 
 use clap::ValueHint;
 
+use super::readable;
 use crate::catalogue::Catalogue;
 use crate::export;
 use crate::geometry::Homothety;
 use crate::graph::{Graph, Object};
 use crate::render::{self, Canvas, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
-use crate::wording;
 use crate::zoom;
 
 use super::chaos::ChaosArguments;
-use super::goal::Goal;
 use super::growth::{self, GrowthArguments};
 use super::labels::labels;
 use super::length::{self, Paper};
@@ -27,6 +26,7 @@ use super::rule::{Loaded, RuleArguments};
 use super::svg::{self, SvgArguments};
 use super::zoom::ZoomArguments;
 use super::{Failure, chaos, format, help, output, steps, text};
+use crate::fractal::Goal;
 use pictured::{Pictured, Wrote};
 
 /// Grows a rule and draws it, or lists its elements
@@ -175,7 +175,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let goal = match look {
         None if arguments.svg.is_instanced() => Goal::whole(arguments.steps, &loaded)?,
-        None => Goal::choose(arguments.steps, arguments.detail, &loaded)?,
+        None => Goal::asked(arguments.steps, arguments.detail, &loaded)?,
         Some(_) => Goal::zoomed(arguments.steps, arguments.detail),
     };
     let color_by = arguments.style(&loaded).color_by;
@@ -240,7 +240,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             output::called(path),
             drawn.reached(&loaded.name, wrote.steps),
             wrote.summary(arguments.size.unit),
-            wording::bytes(bytes),
+            readable::bytes(bytes),
             start.elapsed().as_secs_f64(),
         ));
     }
@@ -381,11 +381,11 @@ impl Arguments {
         if u64::from(width) * u64::from(height) > options.in_one_piece {
             let bytes = growth::png_bytes(graph, goal, &options)
                 .map_or_else(String::new, |bytes| {
-                    format!(", to about {}", wording::rough_bytes(bytes))
+                    format!(", to about {}", readable::rough_bytes(bytes))
                 });
             text::say(&format!(
                 "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
-                wording::duration(pixels * SECONDS_A_PIXEL)
+                readable::duration(pixels * SECONDS_A_PIXEL)
             ));
         }
     }
@@ -421,7 +421,7 @@ impl Arguments {
             pens: self.plot.pens(&self.picture),
             instanced: self.svg.is_instanced(),
             threads: self.growth.threads(),
-            detail: goal.detail(unit),
+            detail: goal.detail_in(unit),
             labels: labels(loaded, &goal.described(), "grow", options),
             ..render::Options::default()
         }
@@ -487,7 +487,7 @@ impl Arguments {
             text::say(&format!(
                 "{}: {summary}, {}, {:.2} s",
                 output::called(path),
-                wording::bytes(bytes),
+                readable::bytes(bytes),
                 start.elapsed().as_secs_f64(),
             ));
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::anyhow;
 
+use super::readable::{counted, duration, grouped, rough_bytes};
 use crate::estimate::{Estimate, Estimator};
 use crate::geometry::Bounds;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
@@ -13,11 +14,10 @@ use crate::model::Model;
 use crate::parallel::all_cores;
 use crate::render::{self, RenderError, Size};
 use crate::rule::Placement;
-use crate::wording::{counted, duration, grouped, rough_bytes};
 
-use super::goal::Goal;
 use super::rule::Loaded;
 use super::{Failure, number, output};
+use crate::fractal::Goal;
 
 /// Default limit of the number of elements, where a detail in pixels bounds them: at most as many are drawn
 /// as there are pixels.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
 use crate::estimate::{Estimate, Estimator, instanced_bytes};
 use crate::geometry::Bounds;
@@ -14,7 +15,6 @@ use crate::measure::similarity_dimension;
 use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
-use crate::wording::{self, decimal};
 
 use super::dim::hausdorff;
 use super::growth::{bounds, rough_bounds};
@@ -170,7 +170,7 @@ fn rounded<S: serde::Serializer>(
     estimates: &Option<Vec<Option<f64>>>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let two_digits = |value| number(wording::two_digits(value));
+    let two_digits = |value| number(readable::two_digits(value));
     let estimates = estimates.as_ref().map(|estimates| {
         let rounded = estimates.iter().map(|estimate| estimate.map(two_digits));
         rounded.collect::<Vec<_>>()
@@ -245,7 +245,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
     let options = Options::of(loaded.model.heading());
-    let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(wording::two_digits);
+    let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(readable::two_digits);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
         let mut counts = [const { Vec::new() }; 3];
         for Row { level, .. } in rows {
@@ -399,7 +399,7 @@ fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
         line(label, &dimension);
     }
     if let Some(bytes) = info.instanced_svg_bytes {
-        let bytes = wording::rough_bytes(bytes);
+        let bytes = readable::rough_bytes(bytes);
         line(
             "instanced",
             &format!("about {bytes} of SVG at step {}", info.steps),
@@ -454,19 +454,19 @@ fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
         let at = |column: &Option<Vec<Count>>| {
             column
                 .as_ref()
-                .map_or("-".into(), |column| wording::grouped(&column[step]))
+                .map_or("-".into(), |column| readable::grouped(&column[step]))
         };
         let of = |column: &Option<Vec<Option<f64>>>| column.as_ref().and_then(|all| all[step]);
         let estimated =
             |value: Option<f64>, wording: fn(f64) -> String| value.map_or("-".into(), wording);
         rows.push([
             step.to_string(),
-            wording::grouped(&elements[step]),
+            readable::grouped(&elements[step]),
             at(&info.fertile),
             at(&info.fractals),
-            of(&info.length).map_or("-".into(), |length| wording::measure(length, unit)),
-            estimated(of(&info.svg_bytes), wording::rough_bytes),
-            estimated(of(&info.seconds), wording::duration),
+            of(&info.length).map_or("-".into(), |length| readable::measure(length, unit)),
+            estimated(of(&info.svg_bytes), readable::rough_bytes),
+            estimated(of(&info.seconds), readable::duration),
         ]);
     }
     let widths: Vec<_> = (0..rows[0].len())

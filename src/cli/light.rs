@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
+use super::readable::{bytes, grouped};
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::render::RenderError;
-use crate::wording::{bytes, grouped};
 
-use super::goal::Goal;
 use super::{Failure, text};
+use crate::fractal::Goal;
 
 /// Largest number of elements of a light SVG, or of all approximants of a sheet together.
 pub(super) const MOST_ELEMENTS: u64 = 50_000;

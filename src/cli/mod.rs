@@ -29,6 +29,7 @@ mod part;
 mod picture;
 mod plot;
 mod progress;
+mod readable;
 mod rule;
 mod schema;
 mod sheet;

@@ -2,8 +2,8 @@
 
 use std::num::NonZero;
 
+use super::readable;
 use crate::render::{Format, Pens, Plotted};
-use crate::wording;
 
 use super::Failure;
 use super::picture::PictureArguments;
@@ -84,15 +84,15 @@ fn pens(text: &str) -> Result<NonZero<usize>, String> {
 pub(super) fn described(plotted: &Plotted) -> String {
     let layers = match plotted.layers {
         1 => String::new(),
-        layers => format!(" in {}", wording::counted(&layers.into(), "layer")),
+        layers => format!(" in {}", readable::counted(&layers.into(), "layer")),
     };
     format!(
         "{}{layers} of {:.0} mm, {:.0} mm from stroke to stroke (as drawn: {:.0} mm), {} left out as \
          drawn before",
-        wording::counted(&plotted.strokes.into(), "stroke"),
+        readable::counted(&plotted.strokes.into(), "stroke"),
         plotted.drawn,
         plotted.carried,
         plotted.carried_as_drawn,
-        wording::counted(&plotted.repeated.into(), "edge"),
+        readable::counted(&plotted.repeated.into(), "edge"),
     )
 }

@@ -128,15 +128,19 @@ impl Loaded {
     }
 
     fn compiled(&self, model: &Model, steps: u32) -> Result<Graph, Failure> {
-        self.graph_of(model, steps).map_err(|error| {
-            let diagnostic = self.model.diagnostic(&error);
-            match error {
-                CompileError::Word(RewriteError::TooLong {
-                    what: "elements", ..
-                }) => diagnostic.hint("--max-elements allows more").into(),
-                _ => diagnostic.into(),
-            }
-        })
+        self.graph_of(model, steps)
+            .map_err(|error| self.failure(&error))
+    }
+
+    /// Returns an error of compiling as a mistake in the file.
+    pub(super) fn failure(&self, error: &CompileError) -> Failure {
+        let diagnostic = self.model.diagnostic(error);
+        match error {
+            CompileError::Word(RewriteError::TooLong {
+                what: "elements", ..
+            }) => diagnostic.hint("--max-elements allows more").into(),
+            _ => diagnostic.into(),
+        }
     }
 
     /// Returns the graph for pictures with a `color_by`, which may need a graph that records more.

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use clap::ValueHint;
 
+use super::readable;
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 use crate::figure::sheet;
@@ -14,7 +15,6 @@ use crate::graph::Graph;
 use crate::grow::{Growth, Progress};
 use crate::render::{self, Size};
 use crate::style::{Named, Style, Width};
-use crate::wording;
 
 use super::growth::GrowthArguments;
 use super::labels::labels;
@@ -141,10 +141,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         text::say(&format!(
             "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
             output::called(path),
-            wording::counted(&drawn.as_slice().len().into(), "approximant"),
+            readable::counted(&drawn.as_slice().len().into(), "approximant"),
             loaded.name,
-            wording::counted(&written.elements.into(), "element"),
-            wording::bytes(bytes),
+            readable::counted(&written.elements.into(), "element"),
+            readable::bytes(bytes),
             start.elapsed().as_secs_f64(),
         ));
     }
@@ -287,10 +287,10 @@ impl Arguments {
             text::say(&format!(
                 "{}: {} of {} at step {drawn}, {}, {width} x {height} pixels, {}, {:.2} s",
                 output::called(path),
-                wording::counted(&family.len().into(), "value"),
+                readable::counted(&family.len().into(), "value"),
                 names,
-                wording::counted(&written.elements.into(), "element"),
-                wording::bytes(bytes),
+                readable::counted(&written.elements.into(), "element"),
+                readable::bytes(bytes),
                 start.elapsed().as_secs_f64(),
             ));
         }

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::ValueHint;
 
+use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::document::KindDocument;
 use crate::figure::rule;
 use crate::model::Model;
 use crate::render::{self, RenderError, Size};
 use crate::style::Named;
-use crate::wording;
 
 use super::component::Component;
 use super::labels::labels;
@@ -104,7 +104,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             output::called(path),
             alone.map_or_else(|| noun(&loaded.model), Shelf::noun),
             loaded.name,
-            wording::bytes(bytes),
+            readable::bytes(bytes),
         ));
     }
     Ok(())

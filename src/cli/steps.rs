@@ -1,18 +1,15 @@
-//! How many steps a rule is grown where nobody says.
+//! Numbers of steps on the command line.
 
 use std::fmt;
 
-use crate::model::Model;
+use crate::fractal::{Goal, proposed_steps};
 
 use super::rule::Loaded;
 use super::{Failure, number};
 
-/// Numbers of steps beyond this are refused.
-pub(super) const MOST_STEPS: u32 = 1_000_000;
-
 /// Reads a number of steps.
 pub(super) fn parse(text: &str) -> Result<u32, String> {
-    number::whole("a number of steps", 0..=MOST_STEPS)(text)
+    number::whole("a number of steps", 0..=Goal::MOST_STEPS)(text)
 }
 
 /// Largest number of approximants on a sheet by default.
@@ -70,31 +67,11 @@ pub(super) fn parse_several(text: &str) -> Result<Several, String> {
     Ok(Several(all))
 }
 
-/// The number of steps that was asked for, or that the rule proposes, or else the deepest one, up
-/// to 12, that has no more than 20,000 elements; 6 where that is not known. A
-/// structure that ends with no more is grown to its end.
+/// Returns the number of steps that was given, or else the [proposed one](proposed_steps).
 pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure> {
-    const DEEPEST: u32 = 12;
-    const MOST_ELEMENTS: u64 = 20_000;
-    if let Some(steps) = asked.or(loaded.model.heading().steps) {
-        return Ok(steps);
+    match asked {
+        Some(steps) => Ok(steps),
+        None => proposed_steps(&loaded.model, |steps| loaded.graph(steps))
+            .map_err(|error| loaded.failure(&error)),
     }
-    if let Model::LSystem(system) = &loaded.model {
-        return Ok(system.deepest(DEEPEST, MOST_ELEMENTS));
-    }
-    let graph = loaded.compile(DEEPEST)?;
-    if graph.forecast().is_none() {
-        return Ok(DEEPEST / 2);
-    }
-    if let Model::Instancing(structure) = &loaded.model
-        && let Some(depth) = structure.depth()
-        && depth <= MOST_STEPS
-        && graph.check_size(depth, MOST_ELEMENTS).is_ok()
-    {
-        return Ok(depth);
-    }
-    Ok(match graph.check_size(DEEPEST, MOST_ELEMENTS) {
-        Ok(_) => DEEPEST,
-        Err(error) => error.deepest.unwrap_or(0),
-    })
 }

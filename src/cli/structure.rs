@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::readable;
 use crate::instancing::{Instancing, Master};
-use crate::wording;
 
 /// Size of a structure, and whether it ends.
 #[derive(Serialize)]
@@ -42,7 +42,7 @@ impl StructureInfo {
 
     /// Formats the information in lines, each with its label.
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
-        let counted = |count: usize, noun| wording::counted(&(count as u64).into(), noun);
+        let counted = |count: usize, noun| readable::counted(&(count as u64).into(), noun);
         vec![
             (
                 "objects",

@@ -1,8 +1,8 @@
 //! `--svg`: plain and instanced SVG files.
 
+use super::readable;
 use crate::render::Instanced;
 use crate::style::Named;
-use crate::wording;
 
 use super::picture::named;
 use super::text;
@@ -71,7 +71,7 @@ pub(super) fn warn(instanced: &Instanced) {
 pub(super) fn described(instanced: &Instanced) -> String {
     format!(
         "{}, {} when expanded",
-        wording::counted(&instanced.symbols.into(), "symbol"),
+        readable::counted(&instanced.symbols.into(), "symbol"),
         count(instanced.expanded)
     )
 }
@@ -86,7 +86,7 @@ fn count(number: f64) -> String {
     if number.is_infinite() {
         "more than 1e308".into()
     } else if number < 1e6 {
-        wording::grouped(&(number as u64).into())
+        readable::grouped(&(number as u64).into())
     } else {
         format!("about {number:.1e}")
     }

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
+use super::readable::decimal;
 use crate::geometry::{DVec2, Homothety};
 use crate::ifs::{System, Verdict};
 use crate::model::Model;
-use crate::wording::decimal;
 
 /// Maps of a system, their contraction, and the measure of random iteration.
 #[derive(Serialize)]

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::readable;
 use crate::render::{Empty, Look, Nearest};
-use crate::wording;
 use crate::zoom::{Address, Factor, Source};
 
 use super::Failure;
@@ -80,7 +80,7 @@ impl Loaded {
 /// Returns the note for a picture that shows nothing.
 pub(super) fn nothing(name: &str, empty: &Empty) -> String {
     let short = |value: f64| {
-        let value = wording::two_digits(value);
+        let value = readable::two_digits(value);
         if (1e-4..1e6).contains(&value) {
             value.to_string()
         } else {

@@ -265,3 +265,14 @@ pub struct Setting {
     /// Source span of the value, if it is written in a file.
     pub place: Option<Place>,
 }
+
+impl From<(&str, f64)> for Setting {
+    fn from((name, value): (&str, f64)) -> Self {
+        Self {
+            name: name.into(),
+            value,
+            written: None,
+            place: None,
+        }
+    }
+}

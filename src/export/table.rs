@@ -9,6 +9,7 @@ use crate::grow::{
     Division, Element, Fractal, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
 };
 use crate::parallel::with_team;
+use crate::style::Named;
 
 /// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,15 @@ pub enum Format {
     Csv,
     /// One JSON object per line.
     JsonLines,
+}
+
+impl Named for Format {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("csv", Self::Csv),
+        ("json", Self::JsonLines),
+        ("jsonl", Self::JsonLines),
+        ("ndjson", Self::JsonLines),
+    ];
 }
 
 /// Columns: the number and age of the fractal; the element's rank in it, its first and last point of

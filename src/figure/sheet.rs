@@ -11,7 +11,7 @@ use crate::render::{
 };
 use crate::style::{Colour, Style};
 
-use crate::wording::counted;
+use crate::readable::counted;
 
 use super::LABEL;
 use super::text::{Anchor, Font};

@@ -1,3 +1,5 @@
+//! The walk on one thread: the fractals of an approximant, and the elements of each.
+
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
@@ -11,18 +13,18 @@ use super::start::Start;
 use super::tally::Tally;
 use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
 
-/// How far to grow, and within what limits.
+/// Number of steps, seed and limits of growth.
 #[derive(Clone, Copy, Debug)]
 pub struct Growth<'a> {
     /// The number of steps; the graph must be compiled for at least as many.
     pub steps: u32,
-    /// What random draws depend on, beside the path.
+    /// Seed of random draws, which depend on the path as well.
     pub seed: u64,
     /// The walk ends with an error once it has more elements than this.
     pub most_elements: u64,
     /// The walk ends soon after this is set.
     pub cancel: Option<&'a AtomicBool>,
-    /// Where the walk tells how far it is.
+    /// Counter of the walk's progress.
     pub progress: Option<&'a Progress>,
 }
 
@@ -40,7 +42,7 @@ impl Growth<'_> {
     }
 }
 
-/// What a walk has met.
+/// Numbers of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Walked {
     /// The number of elements.
@@ -55,7 +57,7 @@ struct Parent<'g> {
     /// The approximant whose elements are being replaced, and the walk over it.
     step: u32,
     descent: Descent<'g>,
-    /// Whether that approximant has an element that is replaced by others that may seed.
+    /// Whether that approximant has an element whose place others take that may seed.
     is_fertile: bool,
     /// Seeds that are still to be walked, the next one last.
     queue: Vec<Start<'g>>,
@@ -72,7 +74,7 @@ impl<'g> Parent<'g> {
         }
     }
 
-    /// What has been seeded before by elements of the approximant that come before those of a root.
+    /// Queues fractals that were seeded earlier by elements of the approximant before those of a root.
     fn take_sown(&mut self, graph: &'g Graph, root: u32) {
         while let Some(number) = self.start.sown.clone().next() {
             let sown = &graph.roots.sown[number];
@@ -84,8 +86,8 @@ impl<'g> Parent<'g> {
         }
     }
 
-    /// Goes on to the next approximant that may have anything to be replaced before a number of steps;
-    /// tells whether there is one.
+    /// Proceeds to the next approximant that may have elements to replace before a number of steps;
+    /// returns whether there is one.
     fn go_on(&mut self, graph: &'g Graph, steps: u32) -> bool {
         let next = if self.is_fertile {
             Some(self.step + 1)
@@ -102,7 +104,7 @@ impl<'g> Parent<'g> {
     }
 }
 
-/// Who gets what a walk comes to.
+/// Receiver of the elements of a walk.
 pub(super) trait Sink<'g> {
     type Error: From<CompileError>;
 
@@ -110,17 +112,17 @@ pub(super) trait Sink<'g> {
     fn enter(&mut self, subtree: &Subtree) -> Enter;
     /// Returns [`Visitor::ages`].
     fn ages(&self) -> RangeInclusive<u32>;
-    /// A fractal begins that was born in a step.
+    /// Begins a fractal that was born in a step.
     fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error>;
-    /// Elements of the fractal, or what stands for them.
+    /// Receives elements of the fractal, or a block or subtree in their place.
     fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
-    /// The fractal ends.
+    /// Ends the fractal.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
-    /// Returns [`Visitor::takes`].
+    /// As [`Visitor::takes`].
     fn takes(&self, colony: &Colony<'_>) -> Taken;
-    /// Receives a colony of which a part is taken.
+    /// Receives a colony in place of the part that is taken of it.
     fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error>;
-    /// So many elements have been visited on the way.
+    /// Counts elements that were visited on the way.
     fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
 }
 
@@ -132,7 +134,7 @@ pub(super) trait Sink<'g> {
 /// # Errors
 ///
 /// If there are more elements than allowed, if a generator yields points that are not finite, if
-/// the walk is cancelled, or if the visitor says so.
+/// the walk is cancelled, or if the visitor returns an error.
 ///
 /// # Panics
 ///
@@ -154,7 +156,7 @@ pub fn walk<V: Visitor>(
     Ok(sink.tally.finish())
 }
 
-/// Walks and sends what is found to a sink. With a census ranks count what is not visited.
+/// Walks and sends elements to a sink. With a census, ranks count elements that are not visited.
 pub(super) fn send<'g, S: Sink<'g>>(
     graph: &'g Graph,
     growth: &Growth<'_>,
@@ -162,11 +164,18 @@ pub(super) fn send<'g, S: Sink<'g>>(
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    let mut walk = Walk::new(graph, growth.steps, stop, census, sink);
-    walk.run(Start::initiator(graph, growth.steps, growth.seed))
+    let first = Start::initiator(graph, growth.steps, growth.seed);
+    let mut fractals = Fractals::new(graph, growth.steps, sink.ages(), first);
+    while let Some(start) = fractals.next(sink)? {
+        let fractal = fractals.number(&start);
+        let descent = Descent::new(graph, &start, growth.steps).counting(census);
+        send_fractal(fractal, &start, descent, stop, sink)?;
+        fractals.follow(start);
+    }
+    Ok(())
 }
 
-/// Visits a seeded fractal, with all its descendant fractals if `is_whole`.
+/// Walks over a fractal that has been seeded, and over all that it seeds in turn if `is_whole`.
 pub(super) fn walk_over<V: Visitor>(
     graph: &Graph,
     steps: u32,
@@ -178,38 +187,64 @@ pub(super) fn walk_over<V: Visitor>(
         visiting: Visiting::new(graph, visitor),
         tally: Tally::new(&Growth::steps(steps)),
     };
-    let mut walk = Walk::new(graph, steps, Stop::Nowhere, None, &mut sink);
-    if is_whole {
-        walk.run(start)?;
-    } else {
-        let age = steps.saturating_sub(start.born);
-        walk.fractal(&start, age)?;
+    let mut fractals = Fractals::new(graph, steps, sink.ages(), start);
+    while let Some(start) = fractals.next(&mut sink)? {
+        let fractal = fractals.number(&start);
+        let descent = Descent::new(graph, &start, steps);
+        send_fractal(fractal, &start, descent, Stop::Nowhere, &mut sink)?;
+        if !is_whole {
+            break;
+        }
+        fractals.follow(start);
     }
     Ok(sink.tally.finish())
 }
 
-struct Walk<'g, 'v, S> {
-    graph: &'g Graph,
-    steps: u32,
-    /// Whether an object may lead to seeds, by object; empty if there are none.
-    leads_to_seeds: Vec<bool>,
-    /// Whether the elements that replace an object may lead to seeds, likewise.
-    goes_on: Vec<bool>,
-    stop: Stop<'v>,
-    census: Option<&'g Census>,
-    /// Ages of the fractals that are visited.
-    ages: RangeInclusive<u32>,
-    sink: &'v mut S,
-    fractals: u64,
+/// Sends the elements of one fractal of the last approximant to a sink.
+fn send_fractal<'g, S: Sink<'g>>(
+    fractal: Fractal,
+    start: &Start<'g>,
+    mut descent: Descent<'g>,
+    stop: Stop<'_>,
+    sink: &mut S,
+) -> Result<(), S::Error> {
+    sink.begin(fractal, start.born)?;
+    loop {
+        let enter = |subtree: &Subtree| sink.enter(subtree);
+        let found = descent.next(start, enter, stop)?;
+        sink.visit(std::mem::take(&mut descent.visited))?;
+        match found {
+            Next::End => return sink.end(descent.ends_joined()),
+            Next::Pause => {}
+            found => sink.found(found)?,
+        }
+    }
 }
 
-impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
-    fn new(
+/// Iterates over the fractals of an approximant, depth-first: every fractal is followed by those that it
+/// seeds.
+pub(super) struct Fractals<'g> {
+    graph: &'g Graph,
+    steps: u32,
+    /// Ages of the fractals that are visited.
+    ages: RangeInclusive<u32>,
+    /// By object, whether seeds may come of it; empty if the graph has none.
+    leads_to_seeds: Vec<bool>,
+    /// By object, whether they may after its own.
+    goes_on: Vec<bool>,
+    /// The next fractal, if it is known.
+    next: Option<Start<'g>>,
+    /// The fractals whose seeds are being looked for, the innermost one last.
+    parents: Vec<Parent<'g>>,
+    count: u64,
+}
+
+impl<'g> Fractals<'g> {
+    pub(super) fn new(
         graph: &'g Graph,
         steps: u32,
-        stop: Stop<'v>,
-        census: Option<&'g Census>,
-        sink: &'v mut S,
+        ages: RangeInclusive<u32>,
+        first: Start<'g>,
     ) -> Self {
         assert!(
             graph.depth().is_none_or(|depth| depth >= steps),
@@ -229,46 +264,44 @@ impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
         Self {
             graph,
             steps,
+            ages,
             goes_on: objects.map(goes_on).collect(),
             leads_to_seeds,
-            stop,
-            census,
-            ages: sink.ages(),
-            sink,
-            fractals: 0,
+            next: Some(first),
+            parents: Vec::new(),
+            count: 0,
         }
     }
 
-    fn run(&mut self, first: Start<'g>) -> Result<(), S::Error> {
-        let mut parents = Vec::new();
-        let mut next = Some(first);
-        // Later seeds are too young.
-        let last_birth = self.steps.saturating_sub(*self.ages.start());
+    /// Returns the next fractal whose elements are visited, to be [followed](Self::follow) when they have been.
+    /// Elements on the way to seeds are shown to `sink`, and colonies that it takes are given to it.
+    pub(super) fn next<S: Sink<'g>>(
+        &mut self,
+        sink: &mut S,
+    ) -> Result<Option<Start<'g>>, S::Error> {
         loop {
-            if let Some(start) = next.take() {
-                // Nothing may be left of what has been seeded before.
-                let age = self.steps.saturating_sub(start.born);
-                let taken = self.taken(&start)?;
-                if taken == Taken::Nothing && self.ages.contains(&age) {
-                    self.fractal(&start, age)?;
+            if let Some(start) = self.next.take() {
+                let taken = self.take_colony(&start, sink)?;
+                if taken == Taken::Nothing && self.ages.contains(&self.age(&start)) {
+                    return Ok(Some(start));
                 }
-                let is_whole = matches!(taken, Taken::Whole(_) | Taken::Unseen);
-                if self.graph.seeds && start.born < last_birth && !is_whole {
-                    parents.push(Parent::new(self.graph, start));
+                if !matches!(taken, Taken::Whole(_) | Taken::Unseen) {
+                    self.follow(start);
                 }
             }
-            let Some(parent) = parents.last_mut() else {
-                return Ok(());
+            let last_birth = self.last_birth();
+            let Some(parent) = self.parents.last_mut() else {
+                return Ok(None);
             };
-            next = parent.queue.pop();
-            if next.is_some() {
+            self.next = parent.queue.pop();
+            if self.next.is_some() {
                 continue;
             }
-            let step = parent.step;
+            let (graph, leads_to_seeds, step) = (self.graph, &self.leads_to_seeds, parent.step);
             let enter = |subtree: &Subtree| {
                 // Roots may not stand yet.
-                if subtree.born <= step && self.leads_to_seeds[subtree.object] {
-                    self.sink.enter(subtree)
+                if subtree.born <= step && leads_to_seeds[subtree.object] {
+                    sink.enter(subtree)
                 } else {
                     Enter::Skip
                 }
@@ -277,9 +310,9 @@ impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
             let visited = std::mem::take(&mut parent.descent.visited);
             match found {
                 Next::Element(found) => {
-                    if found.level == parent.step && self.replaces(&found) {
+                    if found.level == step && replaces(graph, leads_to_seeds, &found, sink) {
                         parent.is_fertile |= self.goes_on[found.object];
-                        parent.take_sown(self.graph, found.standing.root);
+                        parent.take_sown(graph, found.standing.root);
                         parent.queue.extend(parent.descent.seeds(&found)?);
                         parent.queue.reverse();
                     }
@@ -287,70 +320,85 @@ impl<'g, 'v, S: Sink<'g>> Walk<'g, 'v, S> {
                 Next::Run(_) | Next::Subtree(_) => unreachable!("seeds are looked for one by one"),
                 Next::Pause => {}
                 Next::End => {
-                    parent.take_sown(self.graph, u32::MAX);
+                    parent.take_sown(graph, u32::MAX);
                     parent.queue.reverse();
-                    if parent.queue.is_empty() && !parent.go_on(self.graph, last_birth) {
-                        parents.pop();
+                    if parent.queue.is_empty() && !parent.go_on(graph, last_birth) {
+                        self.parents.pop();
                     }
                 }
             }
-            self.sink.visit(visited)?;
+            sink.visit(visited)?;
         }
     }
 
-    /// Passes a colony to the sink and returns the part that the sink takes.
-    fn taken(&mut self, start: &Start<'g>) -> Result<Taken, S::Error> {
+    /// Gives a sink the part that it takes of a colony, and returns which part that is.
+    fn take_colony<S: Sink<'g>>(
+        &mut self,
+        start: &Start<'g>,
+        sink: &mut S,
+    ) -> Result<Taken, S::Error> {
         let Some(colony) = Colony::of(self.graph, start, self.steps) else {
             return Ok(Taken::Nothing);
         };
-        let taken = self.sink.takes(&colony);
+        let taken = sink.takes(&colony);
         if !matches!(taken, Taken::Nothing | Taken::Unseen) {
-            self.fractals += taken.walked().fractals;
-            self.sink.colony(colony, taken)?;
-            self.sink.visit(1)?;
+            self.count += taken.walked().fractals;
+            sink.colony(colony, taken)?;
+            sink.visit(1)?;
         }
         Ok(taken)
     }
 
-    /// The elements of one fractal of the last approximant.
-    fn fractal(&mut self, start: &Start<'g>, age: u32) -> Result<(), S::Error> {
-        let fractal = Fractal {
-            number: self.fractals,
-            age,
+    /// Numbers a fractal that begins.
+    pub(super) fn number(&mut self, start: &Start<'g>) -> Fractal {
+        let number = self.count;
+        self.count += 1;
+        Fractal {
+            number,
+            age: self.age(start),
             is_ring: start.chain().is_ring(),
-        };
-        self.fractals += 1;
-        self.sink.begin(fractal, start.born)?;
-        let mut descent = Descent::new(self.graph, start, self.steps).counting(self.census);
-        loop {
-            let enter = |subtree: &Subtree| self.sink.enter(subtree);
-            let found = descent.next(start, enter, self.stop)?;
-            self.sink.visit(std::mem::take(&mut descent.visited))?;
-            match found {
-                Next::End => return self.sink.end(descent.ends_joined()),
-                Next::Pause => {}
-                found => self.sink.found(found)?,
-            }
         }
     }
 
-    /// Whether an element of an approximant that is not the last is replaced.
-    fn replaces(&mut self, found: &Found) -> bool {
-        let object = &self.graph.objects()[found.object];
-        if matches!(object.replacement, Replacement::Kept) {
-            return false;
+    /// Proceeds to the seeds of a fractal whose elements have been visited.
+    pub(super) fn follow(&mut self, start: Start<'g>) {
+        if self.graph.seeds && start.born < self.last_birth() {
+            self.parents.push(Parent::new(self.graph, start));
         }
-        let subtree = Subtree {
-            frame: found.standing.frame,
-            object: found.object,
-            born: found.level,
-        };
-        self.graph.counts_index()
-            || self.leads_to_seeds[found.object] && self.sink.enter(&subtree) == Enter::Replace
+    }
+
+    /// Returns the age of a fractal in the approximant.
+    fn age(&self, start: &Start<'g>) -> u32 {
+        // Elements that were seeded before may all be gone.
+        self.steps.saturating_sub(start.born)
+    }
+
+    /// Returns the step after which seeds are younger than all fractals that are visited.
+    fn last_birth(&self) -> u32 {
+        self.steps.saturating_sub(*self.ages.start())
     }
 }
 
-/// A visitor, and how many elements it has seen.
+/// Returns whether an element of an approximant that is not the last is replaced.
+fn replaces<'g, S: Sink<'g>>(
+    graph: &Graph,
+    leads_to_seeds: &[bool],
+    found: &Found,
+    sink: &mut S,
+) -> bool {
+    let object = &graph.objects()[found.object];
+    if matches!(object.replacement, Replacement::Kept) {
+        return false;
+    }
+    let subtree = Subtree {
+        frame: found.standing.frame,
+        object: found.object,
+        born: found.level,
+    };
+    graph.counts_index() || leads_to_seeds[found.object] && sink.enter(&subtree) == Enter::Replace
+}
+
+/// Visitor with the number of elements that it has seen.
 pub(super) struct Visiting<'g, 'v, V> {
     graph: &'g Graph,
     pub(super) visitor: &'v mut V,
@@ -373,17 +421,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
     #[inline]
     pub(super) fn element(&mut self, found: &Found) -> Result<(), WalkError<V::Error>> {
         self.seen += 1;
-        let object = &self.graph.objects()[found.object];
-        let element = Element {
-            frame: found.standing.frame,
-            length: found.standing.length,
-            coat: found.standing.coat,
-            index: found.index,
-            object: found.object,
-            born: found.level,
-            fertile: !matches!(object.replacement, Replacement::Kept),
-            joined: found.joined,
-        };
+        let element = Element::found(self.graph, found);
         self.visitor.element(&element).map_err(WalkError::Visitor)
     }
 
@@ -419,7 +457,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
     }
 }
 
-/// Shows a visitor what is found at once.
+/// Sink that shows elements to a visitor at once.
 struct Direct<'g, 'v, V> {
     visiting: Visiting<'g, 'v, V>,
     tally: Tally<'v>,

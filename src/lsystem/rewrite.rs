@@ -2,7 +2,7 @@
 
 use crate::rule::draw::{Path, pick_by_weight};
 
-use crate::wording::grouped;
+use crate::readable::grouped;
 
 use super::surroundings::Surroundings;
 use super::word::number;

@@ -17,6 +17,18 @@ pub enum Size {
     Exactly(u32, u32),
 }
 
+impl From<u32> for Size {
+    fn from(side: u32) -> Self {
+        Self::Long(side)
+    }
+}
+
+impl From<(u32, u32)> for Size {
+    fn from((width, height): (u32, u32)) -> Self {
+        Self::Exactly(width, height)
+    }
+}
+
 /// Writes the size as on the command line: `1024` or `1024x768`.
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,23 +1,21 @@
 //! Pictures of approximants.
 //!
-//! A picture begins with a survey of what there is to draw and how large it is, which the graph
-//! tells where it can and a walk where it cannot. One walk for every class of colour follows, or one
-//! for all where no class comes after a later one, so that no element is held in memory. Spans of it
-//! are sketched by any thread; a painter puts the sketches together, in order, to paths in whole
-//! hundredths of a pixel, the same for every format.
+//! A picture begins with a prepass over the elements to draw, their number and their box, from the graph where it
+//! determines them and by a walk elsewhere. One walk for every class of colour follows, or one for all where
+//! classes do not interleave, so that no element is held in memory. Any thread sketches spans of it; a painter
+//! joins the sketches, in order, to paths in whole hundredths of a pixel, equal for every format.
 //!
-//! A plot takes these as strokes, and draws them again in another order; large PNGs are drawn in
-//! bands. An SVG of nested instances takes neither walk nor survey: it is told by the graph.
+//! A plot takes the paths as strokes, and draws them in another order; large PNGs are drawn in bands. An SVG
+//! of nested instances is made from the graph, without a walk.
 //!
-//! Limit sets to a detail whose elements would be more than pixels can tell, or have no area, are drawn
-//! without a walk: see `cells`.
+//! Limit sets are drawn without a walk, by `cells`, where a detail takes more elements than there are pixels, or
+//! elements have no area.
 //!
-//! Walks leave out what cannot be seen: what lies outside a window, what is smaller than a detail,
-//! what lies where all is covered in its colour already; and where colours tell steps, maps or
-//! generators, what nothing comes of in those that are painted. All that changes no pixel, whichever
-//! thread draws first: neither threads nor timing show in any byte. In PNGs to a
-//! detail, small runs of elements that lie alike may be drawn as stamps, which comes close: see
-//! `stamps`.
+//! Walks leave out subtrees that cannot be seen: outside a window, below a detail, or where everything is covered
+//! in their colour already; and where colours distinguish steps, maps or generators, subtrees without
+//! elements of the class that is painted. None of this changes a pixel, whichever thread draws first: neither
+//! threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
+//! drawn as sprites, with small differences: see `stamps`.
 
 mod aim;
 mod bands;
@@ -36,6 +34,7 @@ mod known;
 mod layout;
 mod painter;
 mod pdf;
+mod pixels;
 mod plot;
 mod png;
 mod scene;
@@ -54,6 +53,7 @@ pub use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
 pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
+pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
 pub use png::TooManyPixels;
 pub use survey::Survey;
@@ -83,7 +83,7 @@ use self::plot::Plot;
 use self::png::Png;
 use self::svg::Svg;
 
-/// Widths of strokes that are relative to their elements are rounded to so many steps an octave.
+/// Number of steps per octave that relative stroke widths are rounded to.
 const WIDTHS_AN_OCTAVE: f64 = 8.0;
 
 /// A format of pictures.
@@ -105,7 +105,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Whether sizes in it are lengths as well as pixels.
+    /// Returns whether sizes can be lengths as well as pixels.
     #[must_use]
     pub fn has_lengths(self) -> bool {
         self != Self::Png
@@ -121,54 +121,52 @@ impl Named for Format {
     ];
 }
 
-/// What a file says of itself beside the picture.
+/// Metadata of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Labels {
     /// The title.
     pub title: String,
-    /// What is to be seen.
+    /// Description of the picture.
     pub description: String,
-    /// What it takes to make the file again, as text.
+    /// Text from which the file can be made again.
     pub provenance: String,
 }
 
-/// How a picture is made.
+/// Options of a picture.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The format; SVG unless said otherwise.
+    /// Format; SVG by default.
     pub format: Format,
-    /// How elements are drawn.
+    /// Style of elements.
     pub style: Style,
-    /// What part of the plane is drawn; everything unless said otherwise.
+    /// Window of the plane; everything by default.
     pub view: View,
-    /// The size; 1024 pixels on the long side unless said otherwise.
+    /// Size; 1024 pixels on the long side by default.
     pub size: Size,
-    /// What size, strokes, margin and detail are counted in.
+    /// Unit of size, strokes, margin and detail.
     pub unit: Unit,
-    /// Whether it is drawn as single strokes, nothing twice, and the pen carried over short ways:
-    /// for plotters and cutters. Nothing is filled, not even the background. This is done in memory,
-    /// of some hundred bytes an edge.
+    /// Whether the picture is drawn as single strokes, none twice, in an order with short ways of the pen
+    /// between them: for plotters and cutters. Nothing is filled, not even the background. Takes some hundred
+    /// bytes of memory per edge.
     pub plot: bool,
-    /// How many pens a plot takes; one for every colour where there are few, unless said otherwise.
+    /// Number of pens of a plot; by default one for every colour where there are few.
     pub pens: Pens,
-    /// Whether an SVG is made of nested instances, so that it grows with the graph and the number of
-    /// steps and not with the elements. Other formats do not look at this; detail and plots are not
-    /// for it.
+    /// Whether an SVG is made of nested instances, so that its size depends on the graph and the number of
+    /// steps and not on the elements. Has no effect on other formats; excludes detail and plots.
     pub instanced: bool,
-    /// The most pixels of a PNG that is drawn in one piece, 2^24 unless said otherwise. A larger one
-    /// is drawn in bands, each of which leaves out what lies outside, as far as that can be told
-    /// without growing it, but of plots; and twice, unless its colours are soon known to be many.
+    /// Largest number of pixels of a PNG that is drawn in one piece; 2^24 by default. A larger one is drawn in
+    /// bands, each of which culls elements outside it, except in plots; and twice, unless its colours are
+    /// soon known to be many.
     pub in_one_piece: u64,
-    /// The pixels of a band, 2^21 unless said otherwise, with which drawing takes less than 300 MB.
-    /// The bytes do not depend on them, unless a path of many thousand vertices is drawn that is dashed,
-    /// stroked more than 4 pixels wide, or filled with a colour that is not opaque.
+    /// Number of pixels of a band; 2^21 by default, with which drawing takes less than 300 MB. The bytes do not
+    /// depend on it, unless a path of many thousand vertices is drawn that is dashed, stroked more than 4
+    /// pixels wide, or filled with a colour that is not opaque.
     pub band: u64,
-    /// Down to what size elements are replaced; to any unless said otherwise.
+    /// Size below which elements are not replaced; none by default.
     pub detail: Option<Detail>,
-    /// What the file says of itself.
+    /// Metadata of the file.
     pub labels: Labels,
-    /// The threads that grow and write it, as many as the machine has cores unless said otherwise.
-    /// The bytes do not depend on them.
+    /// Number of threads; by default that of the machine's cores. The bytes do not depend on it.
     pub threads: NonZero<usize>,
 }
 
@@ -193,12 +191,12 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Whether a PNG is drawn in one piece.
+    /// Returns whether a PNG is drawn in one piece.
     fn draws_in_one_piece(&self, [width, height]: [u32; 2]) -> bool {
         u64::from(width) * u64::from(height) <= self.in_one_piece
     }
 
-    /// The style and the view that a file proposes.
+    /// Returns options with the style and the view that a file proposes.
     #[must_use]
     pub fn of(heading: &Heading) -> Self {
         Self {
@@ -214,69 +212,67 @@ impl Options {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The number of steps: what growth says, or what it took to come to a detail; no fewer than that
-    /// where there are more elements than have been counted.
+    /// Number of steps: that of the growth, or the one that a detail took; an upper bound of the latter where
+    /// not all elements were counted.
     pub steps: u32,
-    /// The number of elements, without those outside a window that have not been visited; of a limit set,
-    /// that of the lines and dots that it is drawn with.
+    /// Number of elements, without those outside a window that were not visited; of a limit set, that of the
+    /// lines and dots that it is drawn with.
     pub elements: u64,
-    /// Whether the limit set itself is drawn, by what it meets of a grid within pixels, for its elements
-    /// are too many or become flat.
+    /// Whether the limit set itself is drawn, by the cells of a grid within pixels that it meets, because its
+    /// elements are too many or become flat.
     pub is_limit: bool,
-    /// Whether there are more: to a PNG's detail they need not be counted, for what lies where all is
-    /// covered is not grown.
+    /// Whether there are more elements: in a PNG to a detail, occluded ones are not grown.
     pub has_more: bool,
-    /// The number of fractals, likewise.
+    /// Number of fractals, with the same limits.
     pub fractals: u64,
-    /// Whether some may not have been visited because they lie outside a window.
+    /// Whether elements outside a window may not have been visited.
     pub is_part: bool,
-    /// What is known where nothing comes into its window: of that which is drawn, all outlines have
-    /// boxes that lie outside.
+    /// Present if nothing meets the window: the boxes of all outlines lie outside.
     pub empty: Option<Empty>,
-    /// What it takes as a plot, if it is one.
+    /// Lengths and strokes of a plot.
     pub plotted: Option<Plotted>,
-    /// What it is made of, if that is nested instances; its elements are then not counted.
+    /// Numbers of symbols and instances, if the picture is made of nested instances; its elements are not counted then.
     pub instanced: Option<Instanced>,
 }
 
 /// A window that shows nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Empty {
-    /// Where there is something, if that is told: about the point X,Y of a [`Look`].
+    /// Nearest visible point, if it is known: of a [`Look`].
     pub nearest: Option<Nearest>,
 }
 
-/// What is nearest to the middle of a zoomed picture that shows nothing.
+/// Point nearest to the middle of a zoomed picture that shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// How far it is, in the rule's units, to a thousandth.
+    /// Distance in the rule's units, to a thousandth.
     pub distance: f64,
-    /// How much larger than the whole the picture may be that shows it at its edge.
+    /// Largest magnification of a picture that shows the point at its edge.
     pub factor: f64,
 }
 
-/// Why a picture is not made.
+/// Error of drawing.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The walk ended early.
     #[error(transparent)]
     Walk(WalkError<Infallible>),
-    /// The picture has no room for what is to be drawn.
+    /// The picture has no room for the drawing.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
-    /// The detail cannot be come to.
+    /// The detail cannot be reached.
     #[error(transparent)]
     NoDetail(#[from] NoDetail),
     /// There is nothing to zoom into.
     #[error(transparent)]
     Zoom(#[from] ZoomError),
-    /// What the picture is to show is not told so far down.
+    /// The colours are unknown at this magnification.
     #[error(transparent)]
     NoZoom(#[from] NoZoom),
-    /// It cannot be made of nested instances.
+    /// The picture cannot be made of nested instances.
     #[error(transparent)]
     NotInstanced(#[from] NotInstanced),
-    /// The picture is larger than memory may be.
+    /// The picture is too large for memory.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
     /// The picture cannot be written.
@@ -304,15 +300,15 @@ impl From<WalkError<Infallible>> for RenderError {
     }
 }
 
-/// Something that can be drawn in any format.
+/// Drawing that any format takes.
 pub(crate) trait Drawing {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
-    /// The colour behind everything.
+    /// Colour of the background.
     fn background(&self) -> Option<Colour>;
-    /// The pen that most strokes are drawn with.
+    /// Pen of most strokes.
     fn pen(&self) -> Pen;
-    /// Draws it.
+    /// Draws onto a surface.
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError>;
 }
 
@@ -320,8 +316,8 @@ pub(crate) trait Drawing {
 ///
 /// # Errors
 ///
-/// If growing ends early, if there is nothing to draw or no room for it, if a detail cannot be come
-/// to, or if `out` fails.
+/// If growing ends early, if there is nothing to draw or no room for it, if a detail cannot be reached, or
+/// if `out` fails.
 pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
@@ -352,7 +348,7 @@ pub fn write(
     Ok(picture(&survey, canvas, growth.steps, plotted))
 }
 
-/// What has been written.
+/// Returns the numbers of a picture that has been written.
 fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
     Picture {
         size: canvas.size(),
@@ -377,7 +373,7 @@ pub(crate) fn write_drawing(
     write_in(drawing, options, None, out).map(|_| ())
 }
 
-/// Writes a drawing, as strokes if that is asked for; tells what those take.
+/// Writes a drawing, as strokes if the options ask for a plot; returns the numbers of the plot.
 fn write_in(
     drawing: &impl Drawing,
     options: &Options,
@@ -403,7 +399,7 @@ fn write_in(
     Ok(None)
 }
 
-/// The formats that any paths can be written in, one after another.
+/// Format of paths in their order.
 #[derive(Clone, Copy)]
 enum PathFormat {
     Svg,
@@ -411,7 +407,7 @@ enum PathFormat {
     Pdf,
 }
 
-/// What vector graphics begin with.
+/// Head of a vector graphic.
 #[derive(Clone, Copy)]
 struct Page<'a> {
     size: [u32; 2],
@@ -420,7 +416,7 @@ struct Page<'a> {
     /// The pen of most strokes.
     pen: Pen,
     labels: &'a Labels,
-    /// Whether every colour comes once, as a layer.
+    /// Whether every colour occurs once, as a layer.
     has_layers: bool,
 }
 
@@ -461,7 +457,7 @@ fn write_paths(
     })
 }
 
-/// The pen of a style; where widths are relative, one of a pixel.
+/// Returns the pen of a style; of one pixel where widths are relative.
 pub(crate) fn pen(style: &Style) -> Pen {
     Pen {
         width: match style.width {

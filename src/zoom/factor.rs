@@ -70,7 +70,7 @@ impl fmt::Display for Factor {
 
 impl Factor {
     /// Least factor.
-    pub(crate) const LEAST: f64 = 1e-6;
+    pub const LEAST: f64 = 1e-6;
 
     /// Returns the factor 1: no magnification.
     #[must_use]

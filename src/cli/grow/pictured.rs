@@ -3,16 +3,16 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::super::readable;
 use crate::graph::Graph;
 use crate::grow::{Progress, Walked};
 use crate::render::{self, Empty, Instanced, Look, Plotted, RenderError, Unit};
 use crate::style::ColorBy;
-use crate::wording;
 
-use super::super::goal::Goal;
 use super::super::rule::Loaded;
 use super::super::{Failure, length, light, output, plot, svg};
 use super::Arguments;
+use crate::fractal::Goal;
 
 /// Picture to be drawn, with its options.
 pub(super) struct Pictured<'a> {
@@ -37,18 +37,22 @@ impl Pictured<'_> {
             arguments, loaded, ..
         } = self;
         let options = arguments.options(loaded, goal, self.format, graph.place());
-        goal.come_to(loaded, graph, |graph, steps| {
-            let mut growth = arguments.growth.drawn_as(&options, steps, progress);
-            growth.most_elements = most.unwrap_or(growth.most_elements);
-            let written = match self.look {
-                None => render::write(graph, &growth, &options, &mut out),
-                Some(look) => {
-                    let source = loaded.source();
-                    render::write_zoomed(&source, graph, &growth, &options, look, &mut out)
-                }
-            };
-            written.map(Wrote::from)
-        })
+        goal.reach(
+            graph,
+            |steps| loaded.graph(steps),
+            |graph, steps| {
+                let mut growth = arguments.growth.drawn_as(&options, steps, progress);
+                growth.most_elements = most.unwrap_or(growth.most_elements);
+                let written = match self.look {
+                    None => render::write(graph, &growth, &options, &mut out),
+                    Some(look) => {
+                        let source = loaded.source();
+                        render::write_zoomed(&source, graph, &growth, &options, look, &mut out)
+                    }
+                };
+                written.map(Wrote::from)
+            },
+        )
     }
 
     /// Draws the light picture that comes nearest to a goal, and returns the goal that was reached.
@@ -151,10 +155,10 @@ impl Wrote {
         let mut summary = match &self.instanced {
             Some(instanced) => svg::described(instanced),
             None if self.is_limit => {
-                let marks = wording::counted(&self.elements.into(), "mark");
+                let marks = readable::counted(&self.elements.into(), "mark");
                 format!("its limit by {marks}")
             }
-            None => wording::counted(&self.elements.into(), "element"),
+            None => readable::counted(&self.elements.into(), "element"),
         };
         if self.has_more {
             summary.insert_str(0, "more than ");
@@ -164,7 +168,7 @@ impl Wrote {
         }
         if self.fractals > 1 && self.instanced.is_none() {
             summary.push_str(" in ");
-            summary.push_str(&wording::counted(&self.fractals.into(), "fractal"));
+            summary.push_str(&readable::counted(&self.fractals.into(), "fractal"));
         }
         if let Some(size) = self.pixels {
             summary.push_str(&format!(", {}", length::described(size, unit)));

@@ -37,6 +37,9 @@ impl Plane {
     }
 
     fn narrow_shape(&mut self, vertices: &[Position], longest: i64) -> bool {
+        if longest <= MOST_PIXELS * FINE && self.is_full_around(bounds(vertices)) {
+            return true;
+        }
         if longest <= LONGEST_DOT {
             if let Some(middle) = middle(vertices) {
                 self.dot(&PEN, middle);
@@ -61,6 +64,12 @@ impl Plane {
         }
     }
 
+    /// Returns whether a shape with these bounds covers nothing more: all its pixels are full, or outside.
+    fn is_full_around(&self, bounds: [Position; 2]) -> bool {
+        let pixels = self.pixels(around(bounds));
+        pixels.is_none_or(|[columns, rows]| self.is_full(columns, rows))
+    }
+
     /// Covers a convex polygon that may be narrower than a pixel.
     fn narrow_convex(&mut self, vertices: &[Position], longest: i64) -> bool {
         let width = width(vertices);
@@ -83,14 +92,9 @@ impl Plane {
     /// extended at its ends by as much.
     fn moved(&mut self, vertices: &[Position], by: f64, ends: [Position; 2]) {
         let [least, most] = bounds(vertices);
-        let reach = NARROWEST / 2;
-        let around = [least.map(|low| low - reach), most.map(|high| high + reach)];
-        let Some([columns, rows]) = self.pixels(around) else {
+        let Some([columns, rows]) = self.pixels(around([least, most])) else {
             return;
         };
-        if self.is_full(columns, rows) {
-            return;
-        }
         let sides = sides::<MOST_VERTICES>(vertices);
         let sides = &sides[..vertices.len()];
         let Some(orientation) = orientation(sides) else {
@@ -120,6 +124,12 @@ impl Plane {
         self.intersection(&mut edges[..count], columns, rows);
         self.touched.add(columns, rows);
     }
+}
+
+/// Returns the bounds of a shape that is broadened.
+fn around([least, most]: [Position; 2]) -> [Position; 2] {
+    let reach = NARROWEST / 2;
+    [least.map(|low| low - reach), most.map(|high| high + reach)]
 }
 
 /// Returns whether a polygon is certainly as wide as a pixel, or too long and with too many vertices to be
@@ -153,7 +163,7 @@ fn middle(vertices: &[Position]) -> Option<Position> {
 
 /// Returns the least distance between two parallel lines that enclose a convex polygon; 0 if it has no area.
 fn width(vertices: &[Position]) -> f64 {
-    let mut width = f64::INFINITY;
+    let mut square = f64::INFINITY;
     let mut before = vertices.last().copied().unwrap_or_default();
     for &vertex in vertices {
         let [x, y] = [vertex[0] - before[0], vertex[1] - before[1]];
@@ -162,13 +172,16 @@ fn width(vertices: &[Position]) -> f64 {
                 let area = x * (other[1] - before[1]) - y * (other[0] - before[0]);
                 area.abs()
             });
-            let [x, y] = [x as f64, y as f64];
             let farthest = across.max().unwrap_or(0) as f64;
-            width = width.min(farthest / (x * x + y * y).sqrt());
+            square = square.min(farthest * farthest / (x * x + y * y) as f64);
         }
         before = vertex;
     }
-    if width.is_finite() { width } else { 0.0 }
+    if square.is_finite() {
+        square.sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// Returns two vertices at the largest distance from each other.

@@ -1,28 +1,10 @@
 //! Numbers, sizes and times formatted for messages.
 
-use crate::graph::Count;
-
-/// Formats an integer with commas between thousands; one of more than 60 digits in scientific notation,
-/// with its first four digits.
-pub(crate) fn grouped(number: &Count) -> String {
-    const LONG: usize = 60;
-    let digits = number.to_string();
-    if digits.len() > LONG {
-        return format!("{}.{}e{}", &digits[..1], &digits[1..4], digits.len() - 1);
-    }
-    let mut text = String::with_capacity(digits.len() * 4 / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
+pub(super) use crate::readable::{counted, grouped};
 
 /// Formats a number to twelve decimals, without trailing zeros; in scientific notation if `unit`, the
 /// order of magnitude of the context, is not within 1e-3 to 1e3, or if the number reaches 1e15.
-pub(crate) fn decimal(value: f64, unit: f64) -> String {
+pub(super) fn decimal(value: f64, unit: f64) -> String {
     if is_plain(value, unit) {
         return trimmed(&format!("{value:.12}")).into();
     }
@@ -30,7 +12,7 @@ pub(crate) fn decimal(value: f64, unit: f64) -> String {
 }
 
 /// Formats a number to six decimals; in scientific notation under the conditions of [`decimal`].
-pub(crate) fn measure(value: f64, unit: f64) -> String {
+pub(super) fn measure(value: f64, unit: f64) -> String {
     if is_plain(value, unit) {
         return format!("{value:.6}");
     }
@@ -66,7 +48,7 @@ fn trimmed(text: &str) -> &str {
 
 /// Formats a number of bytes with a decimal prefix (powers of 1000), to two or three digits.
 #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
-pub(crate) fn bytes(count: u64) -> String {
+pub(super) fn bytes(count: u64) -> String {
     let (value, unit) = in_bytes(count as f64);
     if unit == "B" || value >= 99.95 {
         format!("{value:.0} {unit}")
@@ -76,7 +58,7 @@ pub(crate) fn bytes(count: u64) -> String {
 }
 
 /// Formats an estimated number of bytes to two digits.
-pub(crate) fn rough_bytes(count: f64) -> String {
+pub(super) fn rough_bytes(count: f64) -> String {
     let (value, unit) = in_bytes(two_digits(count));
     if value >= 1e6 {
         format!("{value:.0e} {unit}")
@@ -103,12 +85,12 @@ fn in_bytes(mut value: f64) -> (f64, &'static str) {
 }
 
 /// Rounds a number to two significant digits.
-pub(crate) fn two_digits(value: f64) -> f64 {
+pub(super) fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// Formats a time in the largest suitable unit, to at most two significant digits.
-pub(crate) fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     const UNITS: [(f64, &str); 5] = [
         (365.25 * 24.0 * 3600.0, "years"),
         (24.0 * 3600.0, "days"),
@@ -144,16 +126,6 @@ pub(crate) fn duration(seconds: f64) -> String {
 )]
 fn thousands(value: f64) -> String {
     grouped(&(value.round() as u64).into())
-}
-
-/// Formats a number with a noun in the singular or plural: "1 element", "2 elements".
-pub(crate) fn counted(number: &Count, noun: &str) -> String {
-    let s = if *number == Count::from(1u64) {
-        ""
-    } else {
-        "s"
-    };
-    format!("{} {noun}{s}", grouped(number))
 }
 
 #[cfg(test)]

@@ -1,0 +1,77 @@
+//! Errors of the façade.
+
+use std::convert::Infallible;
+use std::io;
+use std::path::PathBuf;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::grow::WalkError;
+use crate::render::RenderError;
+
+/// An error of [`Fractal`](super::Fractal).
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The file, or a value that is set in it, is not valid.
+    #[error("{0}")]
+    Invalid(Diagnostics),
+    /// The approximant cannot be walked.
+    #[error(transparent)]
+    Walk(WalkError<Infallible>),
+    /// The picture cannot be drawn.
+    #[error(transparent)]
+    Render(RenderError),
+    /// The file cannot be written.
+    #[error("{}: {error}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        #[source]
+        error: io::Error,
+    },
+    /// No dimension is decided or measured.
+    #[error("it has no dimension: {0}")]
+    NoDimension(String),
+}
+
+impl Error {
+    /// Returns the mistakes in the file, each with its place and its remedy, if the file is not valid.
+    #[must_use]
+    pub fn diagnostics(&self) -> Option<&Diagnostics> {
+        match self {
+            Self::Invalid(diagnostics) => Some(diagnostics),
+            _ => None,
+        }
+    }
+}
+
+impl From<Diagnostics> for Error {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::Invalid(diagnostics)
+    }
+}
+
+impl From<Diagnostic> for Error {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::Invalid(diagnostic.into())
+    }
+}
+
+impl From<WalkError<Infallible>> for Error {
+    fn from(error: WalkError<Infallible>) -> Self {
+        Self::Walk(error)
+    }
+}
+
+impl From<RenderError> for Error {
+    fn from(error: RenderError) -> Self {
+        Self::Render(error)
+    }
+}
+
+impl From<io::Error> for Error {
+    fn from(error: io::Error) -> Self {
+        Self::Render(error.into())
+    }
+}

@@ -1,0 +1,135 @@
+//! Options of a fractal, as builder methods.
+
+use std::num::NonZero;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Document, HeadingDocument, Setting};
+use crate::render::Size;
+use crate::style::{Style, View};
+
+use super::{Error, Fractal};
+
+impl Fractal {
+    /// Sets a parameter of the file.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let tree = kfrac::Fractal::named("pythagoras")?.set("angle", 30.0)?;
+    /// assert!(tree.set("angel", 30.0).is_err());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the file has no such parameter, or is not valid with this value.
+    pub fn set(self, name: &str, value: f64) -> Result<Self, Error> {
+        self.set_all([(name, value)])
+    }
+
+    /// Sets several parameters of the file together: `("angle", 30.0)`, or a [`Setting`].
+    ///
+    /// # Errors
+    ///
+    /// If the file has no such parameter, or is not valid with these values.
+    pub fn set_all<S: Into<Setting>>(
+        mut self,
+        settings: impl IntoIterator<Item = S>,
+    ) -> Result<Self, Error> {
+        for setting in settings {
+            let setting: Setting = setting.into();
+            let heading = self.document.as_ref().map(Document::heading);
+            let has = |it: &HeadingDocument| {
+                it.params
+                    .iter()
+                    .any(|param| param.name.value == setting.name)
+            };
+            if !heading.is_some_and(has) {
+                let hint = heading.map_or_else(
+                    || "it has none".into(),
+                    |heading| heading.instead_of(&setting.name),
+                );
+                let message = format!("there is no parameter '{}'", setting.name);
+                return Err(Diagnostic::error(message).hint(hint).into());
+            }
+            self.settings.retain(|known| known.name != setting.name);
+            self.settings.push(setting);
+        }
+        if let Some(document) = &self.document {
+            (self.model, self.warnings) = document.resolve(&self.settings)?;
+        }
+        Ok(self.anew())
+    }
+
+    /// Sets the number of steps: how often fertile elements are replaced.
+    #[must_use]
+    pub fn steps(mut self, steps: u32) -> Self {
+        self.steps = Some(steps);
+        self.anew()
+    }
+
+    /// Sets the length in pixels below which elements of pictures are not replaced. Without
+    /// [`steps`](Self::steps) it decides their number too.
+    #[must_use]
+    pub fn detail(mut self, pixels: f64) -> Self {
+        self.detail = Some(pixels);
+        self.anew()
+    }
+
+    /// Sets the seed of random draws; 0 by default.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self.anew()
+    }
+
+    /// Sets the largest number of elements that are grown; 50 million by default.
+    #[must_use]
+    pub fn most_elements(mut self, most_elements: u64) -> Self {
+        self.most_elements = most_elements;
+        self.anew()
+    }
+
+    /// Sets the number of threads; by default, that of the machine's cores. Results do not depend on it.
+    #[must_use]
+    pub fn threads(mut self, threads: NonZero<usize>) -> Self {
+        self.threads = threads;
+        self
+    }
+
+    /// Sets the size of [`svg`](Self::svg) and of pictures that are [written](Self::write); 1024 pixels on the
+    /// long side by default.
+    #[must_use]
+    pub fn size(mut self, size: impl Into<Size>) -> Self {
+        self.size = size.into();
+        self
+    }
+
+    /// Sets the style in place of the file's.
+    #[must_use]
+    pub fn style(mut self, style: Style) -> Self {
+        self.style = Some(style);
+        self
+    }
+
+    /// Sets the window and the margin in place of the file's.
+    #[must_use]
+    pub fn view(mut self, view: View) -> Self {
+        self.view = Some(view);
+        self
+    }
+
+    /// Sets a flag that ends growing and drawing with an error soon after it becomes true.
+    #[must_use]
+    pub fn cancel(mut self, cancel: Arc<AtomicBool>) -> Self {
+        self.cancel = Some(cancel);
+        self
+    }
+
+    fn anew(mut self) -> Self {
+        self.graph = OnceLock::new();
+        self
+    }
+}

@@ -1,0 +1,363 @@
+//! Pictures, elements and numbers of a fractal.
+
+use std::io::Write;
+use std::num::NonZero;
+use std::path::Path;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::export;
+use crate::geometry::Bounds;
+use crate::graph::{CompileError, Forecast, Graph};
+use crate::grow::{Element, Elements, Growth, WalkError, extent};
+use crate::measure::exact::dimensions_of_graph;
+use crate::measure::{BoxCounting, Grid, LimitSet};
+use crate::model::Model;
+use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
+use crate::style::{ColorBy, Named};
+
+use super::{Error, Fractal, Goal, file, proposed_steps};
+
+impl Fractal {
+    /// Returns the model: a rule, a system of maps, a structure or an L-system.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Returns the warnings about the file: what is valid, and probably not meant.
+    #[must_use]
+    pub fn warnings(&self) -> &Diagnostics {
+        &self.warnings
+    }
+
+    /// Returns the approximant as SVG.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be drawn: it has too many elements, or none.
+    pub fn svg(&self) -> Result<String, Error> {
+        let options = self.options(Format::Svg, self.size)?;
+        let mut bytes = Vec::new();
+        self.draw(&options, &mut bytes)?;
+        // SVG is written as text.
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    /// Returns the approximant as the bytes of a PNG. `size` is the long side in pixels, or width and height.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let png = kfrac::Fractal::named("gasket")?.steps(6).png(300)?;
+    /// assert!(png.starts_with(b"\x89PNG"));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be drawn: it has too many elements, or none.
+    pub fn png(&self, size: impl Into<Size>) -> Result<Vec<u8>, Error> {
+        let options = self.options(Format::Png, size.into())?;
+        let mut bytes = Vec::new();
+        self.draw(&options, &mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Returns the approximant as pixels in memory. `size` is the long side in pixels, or width and height.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let pixels = kfrac::Fractal::named("koch")?.steps(6).pixels((600, 200))?;
+    /// assert_eq!(pixels.size(), [600, 200]);
+    /// assert_eq!(pixels.premultiplied().len(), 600 * 200 * 4);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be drawn: it has too many elements, or none, or the picture is too large for memory.
+    pub fn pixels(&self, size: impl Into<Size>) -> Result<Pixels, Error> {
+        let options = self.options(Format::Png, size.into())?;
+        let pixels = self.draw_by(&options, |graph, growth, options| {
+            render::pixels(graph, growth, options)
+        })?;
+        Ok(pixels)
+    }
+
+    /// Writes a file: a picture (`svg`, `png`, `pdf`, `dxf`) or a table of elements (`csv`, `json`, `jsonl`,
+    /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// # let folder = std::env::temp_dir().join(format!("kfrac-doc-{}", std::process::id()));
+    /// # std::fs::create_dir_all(&folder).unwrap();
+    /// let dragon = kfrac::Fractal::named("dragon")?.steps(10);
+    /// dragon.write(folder.join("dragon.svg"))?;
+    /// dragon.write(folder.join("dragon.csv"))?;
+    /// # std::fs::remove_dir_all(&folder).unwrap();
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the format is unknown, the approximant cannot be drawn, or the file cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let extension = path.extension().and_then(|it| it.to_str()).unwrap_or("");
+        let extension = extension.to_ascii_lowercase();
+        if let Some(format) = Format::from_name(&extension) {
+            let options = self.options(format, self.size)?;
+            let written = file::write(path, |out| self.draw(&options, out));
+            return written.map(|_| ()).map_err(|error| at(path, error));
+        }
+        let format = export::Format::from_name(&extension).ok_or_else(|| {
+            let message = format!("'{}' has no format that is known", path.display());
+            Diagnostic::error(message)
+                .hint("names end in .svg, .png, .pdf, .dxf, .csv, .json, .jsonl or .ndjson")
+        })?;
+        let graph = self.graph()?;
+        let growth = self.growth(self.steps_grown()?);
+        let written = file::write(path, |out| {
+            let written = export::write(graph, &growth, format, self.threads, out);
+            written.map_err(|error| Error::from(RenderError::from(error)))
+        });
+        written.map(|_| ()).map_err(|error| at(path, error))
+    }
+
+    /// Returns the elements of the approximant, one after another. Memory is proportional to the number of steps.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let koch = kfrac::Fractal::named("koch")?.steps(3);
+    /// let mut length = 0.0;
+    /// for element in koch.elements()? {
+    ///     length += element?.frame.length();
+    /// }
+    /// assert!((length - (4.0_f64 / 3.0).powi(3)).abs() < 1e-12);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the model cannot be compiled. Items are errors where there are more elements than allowed, or points
+    /// that are not finite.
+    pub fn elements(
+        &self,
+    ) -> Result<impl Iterator<Item = Result<Element, Error>> + use<'_>, Error> {
+        let growth = self.growth(self.steps_grown()?);
+        let elements = Elements::of(self.graph()?, &growth);
+        Ok(elements.map(|item| item.map(|(_, element)| element).map_err(Error::from)))
+    }
+
+    /// Returns the sizes of the approximant as the graph determines them, without growing it; `None` if they depend on
+    /// draws, or on the number of all elements before one.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let koch = kfrac::Fractal::named("koch")?.steps(200);
+    /// let elements = koch.forecast()?.expect("koch is regular").elements();
+    /// assert_eq!(elements.digits(), 121);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the model cannot be compiled.
+    pub fn forecast(&self) -> Result<Option<Forecast<'_>>, Error> {
+        let steps = self.steps_grown()?;
+        let Some(mut forecast) = self.graph()?.forecast() else {
+            return Ok(None);
+        };
+        let is_known = (0..steps).all(|_| forecast.advance());
+        Ok(is_known.then_some(forecast))
+    }
+
+    /// Returns the box of the approximant in the file's units: from the graph, or else by growing it.
+    ///
+    /// # Errors
+    ///
+    /// If the model cannot be compiled, or has to be grown and has more elements than allowed.
+    pub fn bounds(&self) -> Result<Bounds, Error> {
+        let steps = self.steps_grown()?;
+        let graph = self.graph()?;
+        match graph.bounds(steps) {
+            Some(bounds) => Ok(bounds),
+            None => Ok(extent(graph, &self.growth(steps))?),
+        }
+    }
+
+    /// Returns the dimension of the limit set: exact where that is decided, and measured by boxes otherwise.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let dimension = kfrac::Fractal::named("koch")?.dimension()?;
+    /// assert_eq!(dimension.closed_form.as_deref(), Some("log(4)/log(3)"));
+    /// assert_eq!(dimension.std_error, None);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there is no limit set, or none that can be measured.
+    pub fn dimension(&self) -> Result<Dimension, Error> {
+        const STEPS: u32 = 64;
+        let model = self.model.of_limit();
+        let graph = model.compile_near(STEPS, self.seed, self.most_elements);
+        let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
+        let exact = dimensions_of_graph(&graph)
+            .dimensions
+            .map(|it| it.hausdorff);
+        if let Some(exact) = exact
+            && let Some(value) = exact.value
+        {
+            return Ok(Dimension {
+                value,
+                std_error: None,
+                closed_form: exact.closed_form,
+            });
+        }
+        let none = |reason: String| Error::NoDimension(reason);
+        let set = LimitSet::of(&graph).map_err(|error| none(error.to_string()))?;
+        let grids = Grid::spread(const { NonZero::new(8).expect("8 is not zero") });
+        let counted = BoxCounting::of_limit(&set, None, &grids, self.threads).estimate;
+        let estimate = counted.ok_or_else(|| none("too many of its copies overlap".into()))?;
+        Ok(Dimension {
+            value: estimate.value,
+            std_error: Some(estimate.std_error),
+            closed_form: None,
+        })
+    }
+}
+
+/// A dimension of a set.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Dimension {
+    /// The Hausdorff dimension where it is exact; the box dimension where it is measured.
+    pub value: f64,
+    /// The standard error of a measured value; `None` for an exact one.
+    pub std_error: Option<f64>,
+    /// An equal expression, where one is known.
+    pub closed_form: Option<String>,
+}
+
+impl Fractal {
+    fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
+        self.model
+            .compile_near(steps, self.seed, self.most_elements)
+    }
+
+    /// Compiles a graph that has what colours distinguish.
+    fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Error> {
+        if color_by == ColorBy::LastMap && matches!(self.model, Model::Ifs(_)) {
+            let graph = self.model.telling_last_maps_near();
+            let graph = graph.map_err(|error| self.invalid(&error.into()))?;
+            let message =
+                "it has too many maps and sets for colours by the map that is applied last";
+            return graph.ok_or_else(|| Diagnostic::error(message).into());
+        }
+        self.compile(steps).map_err(|error| self.invalid(&error))
+    }
+
+    fn invalid(&self, error: &CompileError) -> Error {
+        self.model.diagnostic(error).into()
+    }
+
+    fn goal(&self) -> Result<Goal, Error> {
+        let compile = |steps| self.compile(steps);
+        let goal = Goal::choose(&self.model, self.steps, self.detail, compile);
+        goal.map_err(|error| self.invalid(&error))
+    }
+
+    /// Returns the number of steps of elements and numbers, which have no pixels.
+    fn steps_grown(&self) -> Result<u32, Error> {
+        let steps = match self.steps {
+            Some(steps) => Ok(steps),
+            None => proposed_steps(&self.model, |steps| self.compile(steps)),
+        };
+        steps.map_err(|error| self.invalid(&error))
+    }
+
+    /// Returns the graph in the file's coordinates.
+    fn graph(&self) -> Result<&Graph, Error> {
+        if let Some(graph) = self.graph.get() {
+            return Ok(graph);
+        }
+        let steps = self.steps_grown()?;
+        let graph = self.model.compile_for(steps, self.seed, self.most_elements);
+        let graph = graph.map_err(|error| self.invalid(&error))?;
+        Ok(self.graph.get_or_init(|| graph))
+    }
+
+    fn growth(&self, steps: u32) -> Growth<'_> {
+        Growth {
+            seed: self.seed,
+            most_elements: self.most_elements,
+            cancel: self.cancel.as_deref(),
+            ..Growth::steps(steps)
+        }
+    }
+
+    fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
+        let heading = self.model.heading();
+        let description = &heading.description;
+        Ok(Options {
+            format,
+            size,
+            style: self.style.clone().unwrap_or_else(|| heading.style.clone()),
+            view: self.view.unwrap_or(heading.view),
+            threads: self.threads,
+            detail: self.goal()?.detail(),
+            labels: Labels {
+                title: description.title.clone().unwrap_or_default(),
+                description: description.about.clone().unwrap_or_default(),
+                provenance: String::new(),
+            },
+            ..Options::default()
+        })
+    }
+
+    fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {
+        self.draw_by(options, |graph, growth, options| {
+            render::write(graph, growth, options, &mut out)
+        })
+    }
+
+    /// Draws the approximant of the goal. The window is that of the file's coordinates.
+    fn draw_by<T>(
+        &self,
+        options: &Options,
+        mut draw: impl FnMut(&Graph, &Growth<'_>, &Options) -> Result<T, RenderError>,
+    ) -> Result<T, Error> {
+        let goal = self.goal()?;
+        let compile = |steps| self.compile(steps);
+        let graph = self.compile_for(goal.steps(), options.style.color_by)?;
+        let drawn = goal.reach(graph, compile, |graph, steps| {
+            let options = Options {
+                view: options.view.within(graph.place()),
+                ..options.clone()
+            };
+            draw(graph, &self.growth(steps), &options)
+        });
+        drawn.map_err(|error| match error {
+            RenderError::Walk(WalkError::NotFinite(error)) => self.invalid(&error),
+            error => error.into(),
+        })
+    }
+}
+
+/// Adds the path to an error of the file system.
+fn at(path: &Path, error: Error) -> Error {
+    match error {
+        Error::Render(RenderError::Io(error)) => Error::Write {
+            path: path.into(),
+            error,
+        },
+        error => error,
+    }
+}

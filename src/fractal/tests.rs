@@ -1,0 +1,132 @@
+//! The front door against the rooms behind it.
+
+use std::error::Error as _;
+use std::num::NonZero;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::catalogue::{Catalogue, Shelf};
+use crate::grow::WalkError;
+use crate::render::{self, Options, RenderError};
+
+use super::{Error, Fractal};
+
+/// Returns a fractal of the library.
+fn named(name: &str) -> Fractal {
+    match Fractal::named(name) {
+        Ok(fractal) => fractal,
+        Err(error) => panic!("{name}: {error}"),
+    }
+}
+
+#[test]
+fn every_file_of_the_library_has_pixels_like_its_png() {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries();
+    let grown = |shelf| Shelf::grown().contains(&shelf);
+    let mut drawn = 0;
+    for entry in entries.iter().filter(|entry| grown(entry.shelf)) {
+        let steps = if entry.name == "plus-sign" { 1 } else { 3 };
+        let fractal = named(&entry.name).steps(steps);
+        // Some draw nothing yet.
+        let (Ok(pixels), Ok(png)) = (fractal.pixels(64), fractal.png(64)) else {
+            continue;
+        };
+        let decoded = tiny_skia::Pixmap::decode_png(&png).expect("it is a PNG");
+        assert_eq!(pixels.size(), [decoded.width(), decoded.height()]);
+        let straight = pixels.into_straight();
+        let premultiplied = straight.chunks_exact(4).map(|pixel| {
+            tiny_skia::ColorU8::from_rgba(pixel[0], pixel[1], pixel[2], pixel[3]).premultiply()
+        });
+        let is_same = premultiplied.eq(decoded.pixels().iter().copied());
+        assert!(is_same, "{}", entry.name);
+        drawn += 1;
+    }
+    assert!(drawn > 100, "{drawn}");
+}
+
+#[test]
+fn results_are_those_of_the_rooms() -> Result<(), Error> {
+    let dragon = named("dragon").steps(6);
+    let graph = dragon.model().compile(6).expect("it is compiled");
+    let description = &dragon.model().heading().description;
+    let mut svg = Vec::new();
+    let options = Options {
+        labels: render::Labels {
+            title: description.title.clone().unwrap_or_default(),
+            description: description.about.clone().unwrap_or_default(),
+            ..render::Labels::default()
+        },
+        ..Options::of(dragon.model().heading())
+    };
+    render::write(&graph, &crate::grow::Growth::steps(6), &options, &mut svg)?;
+    assert!(dragon.svg()?.as_bytes() == svg);
+    assert_eq!(dragon.elements()?.count(), 64);
+    assert_eq!(
+        dragon.forecast()?.map(|it| it.elements().to_u64()),
+        Some(Some(64))
+    );
+    assert_eq!(dragon.bounds()?, graph.bounds(6).expect("it has a box"));
+    let one = dragon.clone().threads(NonZero::<usize>::MIN);
+    assert_eq!(one.png(300)?, dragon.png(300)?);
+    Ok(())
+}
+
+#[test]
+fn limits_and_flags_end_growing_with_an_error() {
+    let koch = named("koch").steps(12).most_elements(1000);
+    let error = koch.svg().expect_err("it has more elements");
+    assert!(matches!(
+        error,
+        Error::Render(RenderError::Walk(WalkError::TooManyElements {
+            limit: 1000
+        }))
+    ));
+    let listed = koch.elements().expect("it is compiled").last();
+    assert!(matches!(
+        listed,
+        Some(Err(Error::Walk(WalkError::TooManyElements { limit: 1000 })))
+    ));
+    let cancelled = named("koch")
+        .steps(10)
+        .cancel(Arc::new(AtomicBool::new(true)));
+    let error = cancelled.pixels(100).expect_err("it is cancelled");
+    assert!(matches!(
+        error,
+        Error::Render(RenderError::Walk(WalkError::Cancelled))
+    ));
+    assert!(error.source().is_none());
+}
+
+#[test]
+fn a_file_appears_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let path = folder.path().join("koch.svg");
+    let koch = named("koch").steps(3);
+    koch.write(&path).expect("it is written");
+    let before = std::fs::read(&path).expect("it is there");
+    assert_eq!(before, koch.svg().expect("it is drawn").into_bytes());
+    koch.most_elements(10)
+        .write(&path)
+        .expect_err("it has more elements");
+    assert_eq!(std::fs::read(&path).expect("it is there"), before);
+    let files = std::fs::read_dir(folder.path()).expect("it is there");
+    assert_eq!(files.count(), 1);
+    let error = named("koch").write(folder.path().join("koch.bmp"));
+    assert!(error.is_err_and(|error| error.diagnostics().is_some()));
+}
+
+#[test]
+fn parameters_are_checked() {
+    let error = named("pythagoras")
+        .set("angel", 1.0)
+        .expect_err("there is none");
+    assert!(
+        error.to_string().contains("did you mean 'angle'?"),
+        "{error}"
+    );
+    let error = named("koch").set("angle", 1.0).expect_err("it has none");
+    assert!(error.to_string().contains("it has none"), "{error}");
+    let model = named("pythagoras").model().clone();
+    assert!(Fractal::from(model).set("angle", 30.0).is_err());
+}

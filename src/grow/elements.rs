@@ -1,0 +1,222 @@
+//! Elements of an approximant as an iterator.
+
+use std::convert::Infallible;
+use std::ops::RangeInclusive;
+
+use crate::graph::{Graph, Replacement};
+
+use super::colony::{Colony, Taken};
+use super::descent::{Descent, Found, Next, Stop};
+use super::start::Start;
+use super::tally::Tally;
+use super::walk::{Fractals, Sink};
+use super::{Element, Enter, Fractal, Growth, Subtree, WalkError};
+
+impl Element {
+    #[inline]
+    pub(super) fn found(graph: &Graph, found: &Found) -> Self {
+        let object = &graph.objects()[found.object];
+        Self {
+            frame: found.standing.frame,
+            length: found.standing.length,
+            coat: found.standing.coat,
+            index: found.index,
+            object: found.object,
+            born: found.level,
+            fertile: !matches!(object.replacement, Replacement::Kept),
+            joined: found.joined,
+        }
+    }
+}
+
+/// Iterator over the elements of an approximant with their fractals, in the order of [`walk`](super::walk).
+///
+/// Memory is proportional to the number of steps. After an error the iterator is exhausted.
+#[must_use = "iterators are lazy"]
+pub struct Elements<'g> {
+    graph: &'g Graph,
+    fractals: Fractals<'g>,
+    steps: u32,
+    current: Option<Current<'g>>,
+    counts: Counts<'g>,
+    has_ended: bool,
+}
+
+/// The fractal whose elements are being visited.
+struct Current<'g> {
+    fractal: Fractal,
+    start: Start<'g>,
+    descent: Descent<'g>,
+}
+
+impl<'g> Elements<'g> {
+    /// Returns the elements of approximant `growth.steps`.
+    ///
+    /// # Panics
+    ///
+    /// If the graph was compiled for fewer steps.
+    pub fn of(graph: &'g Graph, growth: &Growth<'g>) -> Self {
+        let first = Start::initiator(graph, growth.steps, growth.seed);
+        Self {
+            graph,
+            fractals: Fractals::new(graph, growth.steps, 0..=u32::MAX, first),
+            steps: growth.steps,
+            current: None,
+            counts: Counts(Tally::new(growth)),
+            has_ended: false,
+        }
+    }
+
+    fn advance(&mut self) -> Result<Option<(Fractal, Element)>, WalkError<Infallible>> {
+        loop {
+            let current = match &mut self.current {
+                Some(current) => current,
+                none => {
+                    let Some(start) = self.fractals.next(&mut self.counts)? else {
+                        return Ok(None);
+                    };
+                    none.insert(Current {
+                        fractal: self.fractals.number(&start),
+                        descent: Descent::new(self.graph, &start, self.steps),
+                        start,
+                    })
+                }
+            };
+            let Current {
+                fractal,
+                start,
+                descent,
+            } = current;
+            let found = descent.next(start, |_| Enter::Replace, Stop::Nowhere)?;
+            self.counts.visit(std::mem::take(&mut descent.visited))?;
+            match found {
+                Next::Element(found) => {
+                    self.counts.0.count(1)?;
+                    return Ok(Some((*fractal, Element::found(self.graph, &found))));
+                }
+                Next::Pause => {}
+                Next::End => {
+                    if let Some(done) = self.current.take() {
+                        self.fractals.follow(done.start);
+                    }
+                }
+                Next::Run(_) | Next::Subtree(_) => unreachable!("nothing is left out"),
+            }
+        }
+    }
+}
+
+impl Iterator for Elements<'_> {
+    type Item = Result<(Fractal, Element), WalkError<Infallible>>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.has_ended {
+            return None;
+        }
+        let next = self.advance().transpose();
+        self.has_ended = !matches!(next, Some(Ok(_)));
+        next
+    }
+}
+
+impl std::iter::FusedIterator for Elements<'_> {}
+
+/// A sink that counts, for limits and cancelling.
+struct Counts<'g>(Tally<'g>);
+
+impl<'g> Sink<'g> for Counts<'_> {
+    type Error = WalkError<Infallible>;
+
+    fn enter(&mut self, _: &Subtree) -> Enter {
+        Enter::Replace
+    }
+
+    fn ages(&self) -> RangeInclusive<u32> {
+        0..=u32::MAX
+    }
+
+    fn begin(&mut self, _: Fractal, _: u32) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn found(&mut self, _: Next<'_>) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn takes(&self, _: &Colony<'_>) -> Taken {
+        Taken::Nothing
+    }
+
+    fn colony(&mut self, _: Colony<'g>, _: Taken) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn visit(&mut self, count: u64) -> Result<(), Self::Error> {
+        self.0.visit(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use crate::catalogue::{Catalogue, Shelf};
+    use crate::document::Document;
+    use crate::grow::{Element, Elements, Fractal, Growth, Visitor, walk};
+
+    #[derive(Default)]
+    struct Listed {
+        fractal: Fractal,
+        all: Vec<String>,
+    }
+
+    impl Visitor for Listed {
+        type Error = Infallible;
+
+        fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+            self.fractal = fractal;
+            Ok(())
+        }
+
+        fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+            self.all.push(format!("{:?}", (self.fractal, element)));
+            Ok(())
+        }
+
+        fn end(&mut self, _: bool) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn elements_are_those_of_a_walk() {
+        let catalogue = Catalogue::embedded();
+        for entry in catalogue.entries() {
+            if !Shelf::grown().contains(&entry.shelf) {
+                continue;
+            }
+            let source = catalogue.open(&entry).expect("it is there");
+            let document = Document::read(&source, &catalogue).expect("it is read");
+            let (model, _) = document.resolve(&[]).expect("it is right");
+            let growth = Growth {
+                seed: 7,
+                most_elements: 3_000,
+                ..Growth::steps(3)
+            };
+            let graph = model.compile_for(3, 7, 50_000_000).expect("it is compiled");
+            let mut listed = Listed::default();
+            let walked = walk(&graph, &growth, &mut listed);
+            let mut elements = Elements::of(&graph, &growth);
+            let all: Vec<_> = elements.by_ref().collect();
+            let ended = all.iter().find_map(|item| item.as_ref().err().cloned());
+            assert_eq!(ended, walked.err(), "{}", entry.name);
+            let all: Vec<_> = all.iter().flatten().map(|it| format!("{it:?}")).collect();
+            assert!(all == listed.all, "{}", entry.name);
+            assert!(elements.next().is_none());
+        }
+    }
+}
