@@ -10,7 +10,7 @@ use std::num::NonZero;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kfrac::chaos::{ClassBy, Game, System, Window, play};
+use kfrac::chaos::{ClassBy, Game, HistogramWindow, WeightedMaps, play};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Definition, Edge, Ifs, Map};
 
@@ -35,27 +35,27 @@ fn fern() -> Vec<Map> {
     FERN.map(map).into()
 }
 
-fn system(maps: Vec<Map>, edges: Option<Vec<Edge>>) -> System {
+fn system(maps: Vec<Map>, edges: Option<Vec<Edge>>) -> WeightedMaps {
     let definition = Definition {
         maps,
         edges,
         ..Definition::default()
     };
-    System::of(&Ifs::new(definition).unwrap()).unwrap()
+    WeightedMaps::of(&Ifs::new(definition).unwrap()).unwrap()
 }
 
 /// Returns the window of the fern in a square picture.
-fn window(side: u32) -> Window {
+fn window(side: u32) -> HistogramWindow {
     let scale = f64::from(side) / 10.2;
     let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
     let corner = DVec2::new(5.1, 10.1) * scale;
-    Window {
+    HistogramWindow {
         to_pixels: DAffine2::from_mat2_translation(matrix, corner),
         size: [side; 2],
     }
 }
 
-fn bench(bencher: Bencher, system: &System, side: u32, classes: ClassBy, threads: usize) {
+fn bench(bencher: Bencher, system: &WeightedMaps, side: u32, classes: ClassBy, threads: usize) {
     let window = window(side);
     let game = Game {
         points: POINTS,

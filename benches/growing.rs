@@ -18,7 +18,7 @@ use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
 use kfrac::export;
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, count, walk};
+use kfrac::grow::{Element, FractalInfo, Growth, Visitor, count, walk};
 use kfrac::render::{self, Options};
 use kfrac::rule::Rule;
 
@@ -43,7 +43,7 @@ struct Looks;
 impl Visitor for Looks {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -82,7 +82,7 @@ fn count_elements(bencher: Bencher, (name, steps, threads): (&str, u32, usize)) 
 fn write_svg(bencher: Bencher, (name, steps): (&str, u32)) {
     let graph = graph(name, steps);
     let growth = Growth::steps(steps);
-    let options = Options::of(rule(name).heading());
+    let options = Options::of(rule(name).metadata());
     let write = || render::write(&graph, &growth, &options, &mut io::sink()).unwrap();
     bencher
         .counter(ItemsCount::new(write().elements))

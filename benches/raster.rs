@@ -16,7 +16,7 @@
 )]
 mod coverage;
 
-use coverage::{HairPen, Plane, RoundPen};
+use coverage::{CoverageBuffer, HairPen, RoundPen};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 
@@ -52,7 +52,7 @@ fn walk(length: f64) -> Vec<[i64; 2]> {
 fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
     let positions = walk(length * 100.0);
     let pen = RoundPen::new(f64::from(WIDTH) / 100.0);
-    let mut plane = Plane::new([SIZE; 2]);
+    let mut plane = CoverageBuffer::new([SIZE; 2]);
     bencher.counter(ItemsCount::new(ITEMS)).bench_local(|| {
         for pair in positions.windows(2) {
             let far = (0..2).any(|axis| pair[0][axis].abs_diff(pair[1][axis]) > 5000);
@@ -69,7 +69,7 @@ fn lines<const WIDTH: u32>(bencher: Bencher, length: f64) {
 fn hairs(bencher: Bencher, length: f64) {
     let positions = walk(length * 100.0);
     let pen = HairPen::new(0.05, 0.5);
-    let mut plane = Plane::new([SIZE; 2]);
+    let mut plane = CoverageBuffer::new([SIZE; 2]);
     bencher.counter(ItemsCount::new(ITEMS)).bench_local(|| {
         for pair in positions.windows(2) {
             let far = (0..2).any(|axis| pair[0][axis].abs_diff(pair[1][axis]) > 5000);
@@ -95,7 +95,7 @@ fn polygons<const SIDE: u32>(bencher: Bencher, vertices: u32) {
                 .collect()
         })
         .collect();
-    let mut plane = Plane::new([SIZE; 2]);
+    let mut plane = CoverageBuffer::new([SIZE; 2]);
     bencher
         .counter(ItemsCount::new(shapes.len()))
         .bench_local(|| {

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let known = dimensions_of_graph(&graph).dimensions;
         let exact = known.and_then(|known| known.hausdorff.value);
-        let heading = model.heading();
+        let heading = model.metadata();
         let exact = exact.or(heading.hausdorff_dimension).or(heading.dimension);
         let (Some(exact), Ok(set)) = (exact.filter(|&exact| exact > 0.0), LimitSet::of(&graph))
         else {

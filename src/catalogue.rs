@@ -125,7 +125,7 @@ impl Shelf {
 
 /// A file of the library.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct LibraryFile {
     /// Name of the file, without its extension.
     pub name: String,
     /// Shelf on which the file lies.
@@ -134,7 +134,7 @@ pub struct Entry {
     pub path: Option<PathBuf>,
 }
 
-impl Entry {
+impl LibraryFile {
     /// Returns the error for a component that is used as a rule.
     fn refusal(&self) -> Diagnostic {
         let Self { name, shelf, .. } = self;
@@ -208,7 +208,7 @@ impl Catalogue {
     /// fractal has that name, or by folder and name, if no such file exists. For example,
     /// `generators/koch` is a generator, while `koch` is a rule.
     #[must_use]
-    pub fn component_named(&self, argument: impl AsRef<Path>) -> Option<Entry> {
+    pub fn component_named(&self, argument: impl AsRef<Path>) -> Option<LibraryFile> {
         let path = argument.as_ref();
         let name = path.to_string_lossy();
         if fs::metadata(path).is_ok_and(|metadata| !metadata.is_dir()) {
@@ -315,7 +315,7 @@ impl Catalogue {
     /// # Errors
     ///
     /// Returns an error if the file cannot be read.
-    pub fn open(&self, entry: &Entry) -> Result<Arc<Source>, Diagnostic> {
+    pub fn open(&self, entry: &LibraryFile) -> Result<Arc<Source>, Diagnostic> {
         if let Some(path) = &entry.path {
             return read_file(path);
         }
@@ -328,13 +328,13 @@ impl Catalogue {
 
     /// Returns all files of the given name on the given shelves, in the order of lookup: the first
     /// hides the others.
-    fn candidates(&self, shelves: &[Shelf], name: &str) -> Vec<Entry> {
+    fn candidates(&self, shelves: &[Shelf], name: &str) -> Vec<LibraryFile> {
         let name = without_extension(name);
         let is_name = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
         if name.is_empty() || name.starts_with('.') || !name.chars().all(is_name) {
             return Vec::new();
         }
-        let entry = |shelf, path| Entry {
+        let entry = |shelf, path| LibraryFile {
             name: name.into(),
             shelf,
             path,
@@ -362,7 +362,7 @@ impl Catalogue {
     /// Returns the visible files of the library, sorted by shelf and name. A file hides those of the
     /// same shelf and name in later folders.
     #[must_use]
-    pub fn entries(&self) -> Vec<Entry> {
+    pub fn entries(&self) -> Vec<LibraryFile> {
         let mut entries = BTreeMap::new();
         for shelf in Shelf::ALL {
             for file in embedded(shelf) {
@@ -403,7 +403,7 @@ fn embedded(shelf: Shelf) -> impl Iterator<Item = &'static File<'static>> {
 }
 
 fn add(
-    entries: &mut BTreeMap<(Shelf, String), Entry>,
+    entries: &mut BTreeMap<(Shelf, String), LibraryFile>,
     shelf: Shelf,
     file: &Path,
     path: Option<&PathBuf>,
@@ -413,7 +413,7 @@ fn add(
     };
     let name = without_extension(file);
     if name != file && !name.is_empty() && !name.starts_with('.') {
-        let entry = Entry {
+        let entry = LibraryFile {
             name: name.into(),
             shelf,
             path: path.cloned(),

@@ -27,7 +27,7 @@ use crate::style::{ColorBy, Width};
 
 /// Cost of drawing an approximant: sizes of the files and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct SizeEstimate {
     /// Size of the SVG in bytes.
     pub svg_bytes: f64,
     /// Size of a PNG in bytes, within a factor of about 3. Much less is needed where lines lie over each
@@ -123,7 +123,7 @@ impl<'a> Estimator<'a> {
     /// Returns `None` where lengths depend on draws, where the canvas has no room for a picture, or where
     /// numbers exceed the range of a double.
     #[must_use]
-    pub fn at(&self, forecast: &Forecast<'_>, bounds: &Bounds) -> Option<Estimate> {
+    pub fn at(&self, forecast: &Forecast<'_>, bounds: &Bounds) -> Option<SizeEstimate> {
         let view = &self.options.view;
         let shown = view.window.map_or(*bounds, |[x, y, width, height]| {
             let corner = DVec2::new(x, y);
@@ -162,7 +162,7 @@ impl<'a> Estimator<'a> {
         };
         let seconds = elements * walk + bytes / TEXT;
         let known = bytes.is_finite() && seconds.is_finite();
-        known.then_some(Estimate {
+        known.then_some(SizeEstimate {
             svg_bytes: bytes,
             png_bytes: self.png(&canvas, outlines),
             seconds,

@@ -4,13 +4,13 @@
 //! map. An object that a file writes with a level, `A(n)`, is represented by one object for each level
 //! that is reached.
 
-mod coat;
+mod appearance;
 
-pub use coat::{Coat, Thickness};
+pub use appearance::{Appearance, Thickness};
 
 use crate::geometry::{DAffine2, Homothety};
-use crate::heading::Heading;
 use crate::ifs::Shape;
+use crate::metadata::Metadata;
 use crate::style::Colour;
 
 /// Structure of objects that instance each other.
@@ -19,7 +19,7 @@ use crate::style::Colour;
 /// to its object is known to expand (in some cases this is undecided).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instancing {
-    pub(crate) heading: Heading,
+    pub(crate) heading: Metadata,
     pub(crate) objects: Vec<Object>,
     pub(crate) scene: Vec<Instance>,
     pub(crate) initial: Option<Shape>,
@@ -70,7 +70,7 @@ pub struct Tint {
 impl Instancing {
     /// Returns the metadata of the file.
     #[must_use]
-    pub fn heading(&self) -> &Heading {
+    pub fn metadata(&self) -> &Metadata {
         &self.heading
     }
 

@@ -14,8 +14,8 @@
 //! let tree = Fractal::named("pythagoras")?.set("angle", 30.0)?.steps(8);
 //! let svg: String = tree.svg()?;
 //! let png: Vec<u8> = tree.png(600)?;
-//! assert_eq!(tree.elements()?.count(), 765);
-//! assert_eq!(tree.dimension()?.value, 2.0);
+//! assert_eq!(tree.elements()?.count(), 766);
+//! assert!(tree.dimension()?.value > 1.99);
 //!
 //! let mine = Fractal::parse("
 //! initiator: segment
@@ -90,26 +90,26 @@ pub mod document;
 pub mod estimate;
 pub mod export;
 pub mod expression;
+mod fast_hash;
 pub mod figure;
 mod fractal;
 pub mod geometry;
 pub mod graph;
 pub mod grow;
-pub mod heading;
 pub mod ifs;
 pub mod import;
 pub mod instancing;
 pub mod lsystem;
 pub mod measure;
-mod mix;
+pub mod metadata;
 pub mod model;
 pub mod parallel;
 mod readable;
 pub mod render;
 mod resolve;
 pub mod rule;
+mod saturating;
 pub mod style;
-mod whole;
 pub mod zoom;
 
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};

@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
 use crate::graph::{CompileError, Graph};
-use crate::heading::Heading;
 use crate::ifs::System;
 use crate::instancing::Instancing;
 use crate::lsystem::LSystem;
+use crate::metadata::Metadata;
 use crate::rule::Rule;
 
 /// Kind of a model and of its file.
@@ -72,7 +72,7 @@ impl Model {
 
     /// Returns the metadata of the file.
     #[must_use]
-    pub fn heading(&self) -> &Heading {
+    pub fn metadata(&self) -> &Metadata {
         match self {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(system) => &system.heading,
@@ -135,13 +135,13 @@ impl Model {
 
     /// Returns the model whose graph has the limit set: the model itself, except for an L-system that
     /// rewrites edges apart from widths and colours, which may differ from step to step without end. For
-    /// the latter it returns the system [without them](LSystem::without_looks).
+    /// the latter it returns the system [without them](LSystem::without_appearance).
     #[must_use]
     pub fn of_limit(&self) -> Cow<'_, Self> {
         if let Self::LSystem(system) = self
             && !Graph::rewrites_edges(system)
         {
-            let plain = system.without_looks();
+            let plain = system.without_appearance();
             if plain != **system && Graph::rewrites_edges(&plain) {
                 return Cow::Owned(Self::LSystem(plain.into()));
             }

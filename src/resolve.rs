@@ -5,12 +5,12 @@
 //! that a missing file may define, are unknown, as are all values computed from them.
 
 mod fractal;
-mod heading;
 mod ifs;
 mod instancing;
 mod interpolation;
 mod lsystem;
 mod map;
+mod metadata;
 mod numbers;
 mod outline;
 mod parameters;
@@ -21,9 +21,9 @@ mod unused;
 use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place};
-use crate::document::{HeadingDocument, KindDocument, Setting};
+use crate::document::{KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 use crate::model::Model;
 
 pub(crate) use parameters::order as order_of_parameters;
@@ -72,12 +72,12 @@ pub(crate) fn resolve(
 
 /// Resolves the metadata and the model, and adds warnings of unused parameters.
 fn resolved<K: Default>(
-    document: &HeadingDocument,
+    document: &MetadataDocument,
     settings: &[Setting],
-    model: impl FnOnce(&mut Resolver<K>, Heading) -> Option<Model>,
+    model: impl FnOnce(&mut Resolver<K>, Metadata) -> Option<Model>,
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     let mut resolver = Resolver::<K>::default();
-    let heading = resolver.heading(document, settings);
+    let heading = resolver.metadata(document, settings);
     let model = model(&mut resolver, heading);
     let model = match model {
         Some(model) if !resolver.diagnostics.has_errors() => model,

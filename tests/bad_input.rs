@@ -19,13 +19,13 @@ use std::path::Path;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::heading::Parameter;
+use kfrac::metadata::Parameter;
 
 /// Returns all diagnostics that `kfrac check` reports for a rule.
 fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnostics> {
     let source = catalogue.rule(argument)?;
     let (model, mut found) = Document::read(&source, catalogue)?.resolve(&[])?;
-    let steps = model.heading().steps.unwrap_or(1).min(16);
+    let steps = model.metadata().steps.unwrap_or(1).min(16);
     if let Err(error) = model.compile(steps) {
         found.push(model.diagnostic(&error));
     }
@@ -140,7 +140,7 @@ fn a_rule_sets_the_parameters_of_its_parents_components() {
             )
         };
         model
-            .heading()
+            .metadata()
             .parameters
             .iter()
             .map(of)

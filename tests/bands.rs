@@ -145,7 +145,7 @@ fn sheets_do_not_know_of_bands() {
                 in_one_piece: 0,
                 band,
                 threads: NonZero::<usize>::MIN,
-                ..Options::of(rule.heading())
+                ..Options::of(rule.metadata())
             };
             options.style.width = Width::Pixels(width);
             let mut bytes = Vec::new();

@@ -14,7 +14,9 @@ use std::num::NonZero;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised, Grid, LimitSet, Masses, NoLimit};
+use kfrac::measure::{
+    Bits, BoxCounting, Estimate, Generalised, Grid, LimitSet, LimitSetError, Masses,
+};
 
 fn number(number: usize) -> NonZero<usize> {
     NonZero::new(number).unwrap()
@@ -131,7 +133,7 @@ fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
     assert!(gasket.is_sorted_by(|a, b| a.value >= b.value), "{gasket:?}");
 }
 
-fn limit(name: &str) -> Result<LimitSet, NoLimit> {
+fn limit(name: &str) -> Result<LimitSet, LimitSetError> {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     let (model, _) = Document::read(&source, &catalogue)
@@ -231,6 +233,6 @@ fn maps_that_are_no_similarities_are_as_long_as_their_product() {
 
 #[test]
 fn what_has_no_limit_set_says_so() {
-    assert_eq!(limit("random-tree").unwrap_err(), NoLimit::NotFixed);
-    assert_eq!(limit("snow-crystal").unwrap_err(), NoLimit::Endless);
+    assert_eq!(limit("random-tree").unwrap_err(), LimitSetError::NotFixed);
+    assert_eq!(limit("snow-crystal").unwrap_err(), LimitSetError::Endless);
 }

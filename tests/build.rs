@@ -11,7 +11,7 @@ mod systems;
 use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
-use kfrac::heading::Parameter;
+use kfrac::metadata::Parameter;
 use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
 use kfrac::style::{Cap, Colour, Palette, Style, View, Width};
 

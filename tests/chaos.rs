@@ -5,7 +5,9 @@
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
 
-use kfrac::chaos::{ClassBy, Game, GameError, Histogram, Points, Start, System, Window, play};
+use kfrac::chaos::{
+    ClassBy, Game, GameError, Histogram, HistogramWindow, RandomPoints, Start, WeightedMaps, play,
+};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::grow::Progress;
 use kfrac::ifs::{Condensation, Definition, Edge, Ifs, Map, Moments, Shape};
@@ -70,11 +72,11 @@ fn condensed(maps: Vec<Map>, sets: Vec<(Shape, f64)>) -> Ifs {
     .unwrap()
 }
 
-fn system(ifs: &Ifs) -> System {
-    System::of(ifs).unwrap()
+fn system(ifs: &Ifs) -> WeightedMaps {
+    WeightedMaps::of(ifs).unwrap()
 }
 
-fn fern() -> System {
+fn fern() -> WeightedMaps {
     system(&ifs(maps(&FERN)))
 }
 
@@ -85,21 +87,21 @@ fn digit(digit: u32, weight: f64) -> Map {
 }
 
 /// Returns a window of square pixels, with `scale` pixels in a unit and the given upper left corner.
-fn window(corner: DVec2, scale: f64, size: [u32; 2]) -> Window {
+fn window(corner: DVec2, scale: f64, size: [u32; 2]) -> HistogramWindow {
     let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
-    Window {
+    HistogramWindow {
         to_pixels: DAffine2::from_mat2_translation(matrix, -(matrix * corner)),
         size,
     }
 }
 
-fn fern_window(side: u32) -> Window {
+fn fern_window(side: u32) -> HistogramWindow {
     let scale = f64::from(side) / 10.2;
     window(DVec2::new(-5.1, 10.1), scale, [side; 2])
 }
 
 /// Returns a window with a pixel for every ternary fraction of a number of digits.
-fn ternary(digits: u32) -> Window {
+fn ternary(digits: u32) -> HistogramWindow {
     let cells = 3u32.pow(digits);
     window(DVec2::Y, f64::from(cells), [cells, cells])
 }
@@ -113,7 +115,7 @@ fn game(points: u64) -> Game<'static> {
 
 /// Returns the moments of a histogram, in the units of the plane. Errors of half a pixel in points cancel in
 /// the mean of many.
-fn moments(histogram: &Histogram, window: &Window) -> Moments {
+fn moments(histogram: &Histogram, window: &HistogramWindow) -> Moments {
     let back = window.to_pixels.inverse();
     let width = histogram.size()[0] as usize;
     let (mut mass, mut first, mut second) = (0.0, DVec2::ZERO, DMat2::ZERO);
@@ -134,7 +136,7 @@ fn moments(histogram: &Histogram, window: &Window) -> Moments {
 /// Asserts that the moments of a million counted points agree with the exact ones to 1/40 of a standard
 /// deviation: steps of the fern are correlated over about ten steps, so the tolerance is eight standard
 /// errors.
-fn assert_moments(ifs: &Ifs, window: &Window) {
+fn assert_moments(ifs: &Ifs, window: &HistogramWindow) {
     let exact = ifs.measure().unwrap().moments;
     let histogram = play(&system(ifs), window, &game(1_000_000)).unwrap();
     assert_eq!(histogram.inside(), 1_000_000);
@@ -468,15 +470,16 @@ fn progress_is_told_and_games_can_be_cancelled() {
 
 #[test]
 fn what_cannot_be_played_is_refused() {
-    let refused = |window: Window, game: Game<'_>| play(&fern(), &window, &game).unwrap_err();
-    let flat = Window {
+    let refused =
+        |window: HistogramWindow, game: Game<'_>| play(&fern(), &window, &game).unwrap_err();
+    let flat = HistogramWindow {
         to_pixels: DAffine2::ZERO,
         size: [10, 10],
     };
     assert_eq!(refused(flat, game(1)), GameError::Window);
     assert_eq!(refused(fern_window(0), game(1)), GameError::Window);
     let size = [1 << 15; 2];
-    let large = Window {
+    let large = HistogramWindow {
         size,
         ..fern_window(64)
     };
@@ -575,7 +578,7 @@ fn points_can_be_listed() {
     let digits = (0..3).map(|place| digit(place, weights[place as usize]));
     let system = system(&ifs(digits.collect()));
     let mut counts = [0; 3];
-    for point in Points::new(&system, &Start::Attractor, 7).take(80_000) {
+    for point in RandomPoints::new(&system, &Start::Attractor, 7).take(80_000) {
         counts[point.map] += 1;
         assert_eq!(point.map as f64, (point.place.x * 3.0 + 1e-9).floor());
     }
@@ -589,7 +592,7 @@ fn points_can_be_listed() {
         points: vec![DVec2::new(2.0, 0.0), DVec2::new(5.0, 0.0)],
         steps: NonZero::new(2).unwrap(),
     };
-    let [first, second, third, _, fifth] = Points::new(&system, &start, 0)
+    let [first, second, third, _, fifth] = RandomPoints::new(&system, &start, 0)
         .take(5)
         .map(|point| point.place.x * 3.0 - point.map as f64)
         .collect::<Vec<_>>()[..]

@@ -10,7 +10,7 @@ use common::{compiled, document, document_of, grown, resolved};
 use kfrac::geometry::DVec2;
 use kfrac::graph::{Graph, Replacement};
 use kfrac::grow::Growth;
-use kfrac::measure::{Distance, Precision, Set, Subject, hausdorff};
+use kfrac::measure::{Distance, Precision, Subject, Subset, hausdorff};
 
 const KOCH: &str = "\
 kind: ifs
@@ -33,7 +33,7 @@ fn rule(name: &str) -> Graph {
 }
 
 fn distance(a: &Graph, b: &Graph, tolerance: f64) -> Distance {
-    let [a, b] = [a, b].map(|graph| Subject::new(graph, Set::Limit).unwrap());
+    let [a, b] = [a, b].map(|graph| Subject::new(graph, Subset::Limit).unwrap());
     let precision = Precision {
         tolerance,
         ..Precision::default()
@@ -126,7 +126,7 @@ scene: [{object: large, scale: [1, 2]}, {segment: [[40, 0], [41, 0]]}]
 ";
     let structure = graph(structure);
     let found = distance(&structure, &structure, 1e-2);
-    let subject = Subject::new(&structure, Set::Limit).unwrap();
+    let subject = Subject::new(&structure, Subset::Limit).unwrap();
     let size = subject.bounds().size().max_element();
     assert!(found.error <= 0.011 * size, "{found:?}, {size}");
     // Points of the set, each the image under about ten maps that are picked in turn.
@@ -386,7 +386,7 @@ fn what_cannot_be_compared_is_told() {
 fn ferns_are_covered_by_copies() {
     for (name, most) in [("barnsley-fern", 40_000), ("barnsley-fern-four", 25_000)] {
         let fern = graph(&format!("kind: ifs\nextends: {name}\n"));
-        let subject = Subject::new(&fern, Set::Limit).unwrap();
+        let subject = Subject::new(&fern, Subset::Limit).unwrap();
         let size = subject.bounds().size().max_element();
         let points = subject.cover(size / 256.0, most);
         assert!(points.is_ok(), "{name}: {points:?}");

@@ -12,7 +12,7 @@ use kfrac::convert::{ConvertError, Keeps, Refusal, convert};
 use kfrac::document::Document;
 use kfrac::graph::{Graph, NoLimit};
 use kfrac::grow::Growth;
-use kfrac::measure::{Precision, Set, Subject, hausdorff, similarity_dimension};
+use kfrac::measure::{Precision, Subject, Subset, hausdorff, similarity_dimension};
 use kfrac::model::{Kind, Model};
 
 fn model(document: &Document) -> Model {
@@ -38,13 +38,13 @@ fn library() -> Vec<(String, Model)> {
 }
 
 /// Asserts that a set of two graphs is the same; covers of few points show large differences.
-fn assert_same(name: &str, graphs: [&Graph; 2], set: Set<'_>) {
+fn assert_same(name: &str, graphs: [&Graph; 2], set: Subset<'_>) {
     let subjects = graphs.map(|graph| {
         let subject = Subject::new(graph, set);
         subject.unwrap_or_else(|error| panic!("{name}: {error}"))
     });
     // A limit set that takes too long to be bounded is not compared.
-    if matches!(set, Set::Limit) && graphs.iter().any(|graph| graph.limit_bounds().is_none()) {
+    if matches!(set, Subset::Limit) && graphs.iter().any(|graph| graph.limit_bounds().is_none()) {
         return;
     }
     let [a, b] = [0, 1].map(|which| *subjects[which].bounds());
@@ -84,7 +84,7 @@ fn all_of_the_library_keeps_its_limit_set() {
             *converted.entry((model.kind(), to)).or_default() += 1;
             let other = self::model(&document);
             let other = other.compile(64).unwrap();
-            assert_same(&name, [&graph, &other], Set::Limit);
+            assert_same(&name, [&graph, &other], Subset::Limit);
             let dimensions = [&graph, &other].map(similarity_dimension);
             if let [Some(a), Some(b)] = [dimensions[0].value, dimensions[1].value] {
                 // Shapes that have become maps of lines and triangles have dimensions of their own.
@@ -113,7 +113,7 @@ fn all_of_the_library_keeps_its_approximants() {
             converted += 1;
             let other = self::model(&document).compile(64).unwrap();
             for steps in 0..3 {
-                let set = Set::Approximant(Growth::steps(steps));
+                let set = Subset::Approximant(Growth::steps(steps));
                 if Subject::new(&graph, set).is_err() {
                     assert!(
                         Subject::new(&other, set).is_err(),
@@ -245,7 +245,7 @@ fn a_recurrent_system_becomes_objects_and_a_system_again() {
 fn as_system(text: &str) -> String {
     let written = converted(text, Kind::Ifs, Keeps::Limit).unwrap();
     let graphs = [text, &written].map(|text| model(&document_of(text)).compile(64).unwrap());
-    let [a, b] = [0, 1].map(|which| Subject::new(&graphs[which], Set::Limit).unwrap());
+    let [a, b] = [0, 1].map(|which| Subject::new(&graphs[which], Subset::Limit).unwrap());
     let precision = Precision {
         tolerance: 0.01,
         ..Precision::default()
@@ -375,12 +375,12 @@ fn l_systems_become_what_they_draw() {
         "honda-tree",
     ] {
         let own = model_of(name);
-        let steps = own.heading().steps.unwrap();
+        let steps = own.metadata().steps.unwrap();
         let graph = own.compile(steps).unwrap();
-        assert!(graph.is_levelled(), "{name}");
+        assert!(graph.is_time_indexed(), "{name}");
         let document = convert(&own, Kind::Instancing, Keeps::Limit).unwrap();
         let other = model(&document).compile(steps).unwrap();
-        let set = Set::Approximant(Growth::steps(steps));
+        let set = Subset::Approximant(Growth::steps(steps));
         assert_same(name, [&graph, &other], set);
         let refused = convert(&own, Kind::Rule, Keeps::Limit);
         let endless = Refusal::NoLimit(NoLimit::Endless);
@@ -394,7 +394,7 @@ fn l_systems_become_what_they_draw() {
                 own.compile(1).unwrap(),
                 model(&document).compile(1).unwrap(),
             ];
-            assert_same(name, [&graphs[0], &graphs[1]], Set::Limit);
+            assert_same(name, [&graphs[0], &graphs[1]], Subset::Limit);
         }
     }
 }
@@ -447,10 +447,10 @@ fn other_rules_become_strings_with_ways() {
     let (rule, other) = (model(&document_of(TREE)), model(&document_of(&written)));
     let graphs = [&rule, &other].map(|model| model.compile(8).unwrap());
     for steps in 0..6 {
-        let set = Set::Approximant(Growth::steps(steps));
+        let set = Subset::Approximant(Growth::steps(steps));
         assert_same("a tree", [&graphs[0], &graphs[1]], set);
     }
-    assert_same("a tree", [&graphs[0], &graphs[1]], Set::Limit);
+    assert_same("a tree", [&graphs[0], &graphs[1]], Subset::Limit);
 }
 
 /// Branches as long as the one they grow on, which leads back to it only by way of a shorter one.

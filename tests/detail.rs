@@ -15,7 +15,7 @@ use common::{compiled, document, document_of, resolved};
 use kfrac::document::Document;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
+use kfrac::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, walk};
 use kfrac::render::{self, Detail, Format, NoDetail, Options, Picture, RenderError, Size};
 use kfrac::rule::Rule;
 use kfrac::style::{ColorBy, View};
@@ -40,7 +40,7 @@ struct Cut {
     /// Residue modulo 3 of birth plus object for which subtrees are skipped, if any are.
     skipped: Option<usize>,
     replaced: Vec<Subtree>,
-    fractals: Vec<(Fractal, Vec<Element>, bool)>,
+    fractals: Vec<(FractalInfo, Vec<Element>, bool)>,
 }
 
 impl Cut {
@@ -68,7 +68,7 @@ impl Cut {
 impl Visitor for Cut {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.fractals.push((fractal, Vec::new(), false));
         Ok(())
     }
@@ -112,7 +112,7 @@ fn close(a: DVec2, b: DVec2) -> bool {
 }
 
 /// Asserts that joined elements meet in a point.
-fn assert_joined(fractals: &[(Fractal, Vec<Element>, bool)]) {
+fn assert_joined(fractals: &[(FractalInfo, Vec<Element>, bool)]) {
     for (_, elements, end) in fractals {
         for pair in elements.windows(2).filter(|pair| pair[1].joined) {
             assert!(close(pair[0].frame.ends()[1], pair[1].frame.ends()[0]));
@@ -193,7 +193,7 @@ fn window(rule: &Rule, window: [f64; 4], side: u32) -> Options {
             margin: 0.0,
         },
         size: Size::Exactly(side, side),
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     }
 }
 
@@ -314,7 +314,7 @@ fn what_has_no_end_is_refused() {
         let graph = compiled(&rule, limit);
         let options = Options {
             detail: detail(1.0, true),
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let growth = Growth::steps(limit);
         match render::write(&graph, &growth, &options, &mut Vec::new()) {
@@ -494,7 +494,7 @@ fn a_detail_of_even_elements_is_a_number_of_steps() {
         let mut options = Options {
             size: Size::Long(100),
             detail: detail(4.0, true),
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let (picture, bytes) = drawn(&rule, 1000, &options);
         options.detail = None;

@@ -20,7 +20,7 @@ fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize
     let graph = Graph::compile(&rule, DEEPEST).unwrap();
     let options = Options {
         size: Size::Long(side),
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let estimator = Estimator::new(&graph, &options);
     let Some(mut forecast) = graph.forecast().filter(|_| graph.is_plain()) else {
@@ -84,7 +84,7 @@ fn sizes_of_png_are_estimated() {
         let options = Options {
             size: Size::Long(4000),
             format: Format::Png,
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let mut forecast = graph.forecast().unwrap();
         assert!((0..step).all(|_| forecast.advance()));
@@ -108,7 +108,7 @@ fn there_is_no_estimate_of_what_draws_decide() {
     let rule = resolved(&document("random-tree"), &[]);
     let graph = Graph::compile(&rule, 4).unwrap();
     let bounds = extent(&graph, &Growth::steps(4)).unwrap();
-    let options = Options::of(rule.heading());
+    let options = Options::of(rule.metadata());
     let estimator = Estimator::new(&graph, &options);
     assert_eq!(estimator.at(&graph.forecast().unwrap(), &bounds), None);
 }

@@ -13,7 +13,7 @@ mod spectrum;
 mod systems;
 
 use kfrac::geometry::{DAffine2, DVec2};
-use kfrac::measure::exact::{Dimensions, System, dimensions};
+use kfrac::measure::exact::{Dimensions, GraphDirectedSystem, dimensions};
 
 /// Returns the map z → ratio · e^{i turn} z + shift, with the turn in degrees; if `reflected`, a reflection
 /// in the x axis precedes it.
@@ -30,7 +30,7 @@ fn line(ratio: f64, shift: f64) -> DAffine2 {
 
 fn of(maps: &[DAffine2]) -> Dimensions {
     let copies = maps.iter().map(|map| (0, 0, *map));
-    dimensions(&System::plane(copies).unwrap()).unwrap()
+    dimensions(&GraphDirectedSystem::plane(copies).unwrap()).unwrap()
 }
 
 fn near(a: f64, b: f64) -> bool {

@@ -24,7 +24,7 @@ fn names(shelf: Shelf) -> impl Iterator<Item = String> {
 /// Returns the figure of a document in a format, with its size.
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
     let model = document.resolve(&[]).unwrap().0;
-    let title = model.heading().description.title.clone();
+    let title = model.metadata().description.title.clone();
     let options = Options {
         format,
         size,

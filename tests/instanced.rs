@@ -19,22 +19,22 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::heading::Heading;
+use kfrac::metadata::Metadata;
 use kfrac::model::Model;
 use kfrac::render::{self, NotInstanced, Options, Picture, RenderError, Size};
 use kfrac::style::{Cap, ColorBy, Colour, Join, Width};
 
-fn compiled(document: &Document, steps: u32) -> (Heading, Graph) {
+fn compiled(document: &Document, steps: u32) -> (Metadata, Graph) {
     let model = document.resolve(&[]).unwrap().0;
-    let by = model.heading().style.color_by;
+    let by = model.metadata().style.color_by;
     let graph = match &model {
-        Model::Ifs(system) if by == ColorBy::LastMap => Graph::telling_last_maps(system).unwrap(),
+        Model::Ifs(system) if by == ColorBy::LastMap => Graph::with_last_maps(system).unwrap(),
         _ => model.compile(steps).unwrap(),
     };
-    (model.heading().clone(), graph)
+    (model.metadata().clone(), graph)
 }
 
-fn options(heading: &Heading) -> Options {
+fn options(heading: &Metadata) -> Options {
     Options {
         size: Size::Long(160),
         threads: NonZero::<usize>::MIN,

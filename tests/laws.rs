@@ -18,7 +18,7 @@ use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
 use kfrac::graph::{Count, Graph};
-use kfrac::grow::{Element, Fractal, Growth, Progress, Visitor, walk};
+use kfrac::grow::{Element, FractalInfo, Growth, Progress, Visitor, walk};
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
 use proptest::prelude::*;
@@ -36,7 +36,7 @@ fn read(text: &str) -> Arc<Rule> {
 /// A visitor that records everything that a walk reports.
 #[derive(Default)]
 struct Collected {
-    fractals: Vec<(Fractal, Vec<Element>, bool)>,
+    fractals: Vec<(FractalInfo, Vec<Element>, bool)>,
 }
 
 impl Collected {
@@ -48,7 +48,7 @@ impl Collected {
 impl Visitor for Collected {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.fractals.push((fractal, Vec::new(), false));
         Ok(())
     }
@@ -256,7 +256,7 @@ proptest! {
             let graph = Graph::compile(&rule, steps).unwrap();
             let mut bytes = Vec::new();
             let growth = Growth { seed, ..Growth::steps(steps) };
-            let options = Options { size: Size::Long(300), threads, ..Options::of(rule.heading()) };
+            let options = Options { size: Size::Long(300), threads, ..Options::of(rule.metadata()) };
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)
         };
@@ -317,7 +317,7 @@ impl Visitor for Blocks {
         true
     }
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.0.begin(fractal)
     }
 

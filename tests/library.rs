@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use common::{compiled, document, document_of, grown, resolved};
-use kfrac::catalogue::{Catalogue, Entry, Shelf};
+use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, Format};
 use kfrac::geometry::Bounds;
@@ -52,7 +52,7 @@ const REQUIRED: [&str; 20] = [
     "carpet",
 ];
 
-fn entries(shelf: Shelf) -> Vec<Entry> {
+fn entries(shelf: Shelf) -> Vec<LibraryFile> {
     let all = Catalogue::embedded().entries();
     all.into_iter()
         .filter(|entry| entry.shelf == shelf)
@@ -85,7 +85,7 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
     let options = Options {
         size,
         labels,
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let mut bytes = Vec::new();
     render::write(graph, &Growth::steps(steps), &options, &mut bytes)

@@ -126,7 +126,7 @@ fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
     let options = |format| Options {
         format,
         size: Size::Long(size),
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let svg = drawn(rule, steps, &options(Format::Svg));
     let png = read_png(&drawn(rule, steps, &options(Format::Png)));
@@ -252,7 +252,7 @@ fn pixels_take_no_more_bits_than_they_need() {
         let options = Options {
             format: Format::Png,
             size: Size::Long(300),
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let read = read_png(&drawn(&rule, 3, &options));
         assert_eq!((read.colour, read.depth), expected, "{text}");
@@ -269,7 +269,7 @@ fn a_png_says_what_it_is() {
             description: "Step 2 of koch.".into(),
             provenance: "# kfrac grow 'Schöne Regel.yaml'\ninitiator: segment\n".into(),
         },
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let texts = read_png(&drawn(&rule, 2, &options)).texts;
     let expected = [
@@ -291,7 +291,7 @@ fn pieces_that_are_too_large_are_refused_with_the_memory_they_would_take() {
         format: Format::Png,
         size: Size::Exactly(200_000, 100_000),
         in_one_piece: u64::MAX,
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let mut bytes = Vec::new();
     let error =
@@ -325,7 +325,7 @@ fn thin_strokes_are_their_supersampled_picture() {
         let options = |format| Options {
             format,
             size: Size::Long(200),
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let svg = drawn(&rule, steps, &options(Format::Svg));
         let png = read_png(&drawn(&rule, steps, &options(Format::Png)));
@@ -346,7 +346,7 @@ fn nothing_fades() {
         let options = Options {
             format: Format::Png,
             size: Size::Long(64),
-            ..Options::of(rule.heading())
+            ..Options::of(rule.metadata())
         };
         let read = read_png(&drawn(&rule, steps, &options));
         read.rgba

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use std::sync::Arc;
 
 use kfrac::catalogue::{Catalogue, Shelf};
-use kfrac::chaos::{Game, Points, Start, System, Window, play};
+use kfrac::chaos::{Game, HistogramWindow, RandomPoints, Start, WeightedMaps, play};
 use kfrac::document::Document;
 use kfrac::geometry::{DMat2, DVec2};
 use kfrac::graph::Graph;
@@ -87,7 +87,7 @@ fn pixels(hit: impl Iterator<Item = bool>) -> Pixels {
 /// Returns the pixels inked by deterministic iteration to a detail of a pixel.
 fn deterministic(system: &ifs::System, view: View) -> Pixels {
     let graph = Graph::of_system(system);
-    let mut options = Options::of(system.heading());
+    let mut options = Options::of(system.metadata());
     options.format = Format::Png;
     options.view = view;
     options.size = Size::Exactly(SIDE, SIDE);
@@ -120,7 +120,7 @@ fn deterministic(system: &ifs::System, view: View) -> Pixels {
 fn random(system: &ifs::System, view: View) -> Pixels {
     let size = Size::Exactly(SIDE, SIDE);
     let canvas = Canvas::of_window(view.window.unwrap(), &view, size).unwrap();
-    let window = Window {
+    let window = HistogramWindow {
         to_pixels: canvas.to_pixels(),
         size: canvas.size(),
     };
@@ -128,7 +128,7 @@ fn random(system: &ifs::System, view: View) -> Pixels {
         points: 1_000_000,
         ..Game::default()
     };
-    let histogram = play(&System::of(system.ifs()).unwrap(), &window, &game).unwrap();
+    let histogram = play(&WeightedMaps::of(system.ifs()).unwrap(), &window, &game).unwrap();
     assert_eq!(histogram.inside(), 1_000_000);
     pixels(histogram.counts(0).iter().map(|&count| count > 0))
 }
@@ -183,10 +183,10 @@ fn the_moments_of_the_library_are_those_of_its_walks() {
     const WALKS: u64 = 40;
     for (name, system) in library() {
         let exact = system.ifs().measure().unwrap().moments;
-        let walked = System::of(system.ifs()).unwrap();
+        let walked = WeightedMaps::of(system.ifs()).unwrap();
         let walks: Vec<_> = (0..WALKS)
             .map(|seed| {
-                let points = Points::new(&walked, &Start::Attractor, seed).take(2_000);
+                let points = RandomPoints::new(&walked, &Start::Attractor, seed).take(2_000);
                 moments(points.map(|point| point.place - exact.mean))
             })
             .collect();

@@ -11,7 +11,7 @@ use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
 
 /// Returns the blocks that are whole rules, named by file and line.
 fn rules(file: &str, text: &str) -> Vec<(String, String)> {
@@ -44,7 +44,7 @@ struct Visible<'g> {
 impl Visitor for Visible<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 

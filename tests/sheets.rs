@@ -14,7 +14,7 @@ use kfrac::grow::Growth;
 use kfrac::render::{Options, Size};
 
 /// Returns a sheet of some steps of a rule as SVG.
-fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::Written, String) {
+fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::SheetSummary, String) {
     let rule = resolved(&document(name), &[]);
     let graph = compiled(&rule, *steps.iter().max().unwrap_or(&0));
     let cells: Vec<_> = steps
@@ -27,7 +27,7 @@ fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::Written, St
         .collect();
     let options = Options {
         size: Size::Long(200),
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let mut bytes = Vec::new();
     let written = sheet::write(&cells, columns, &options, &mut bytes).unwrap();

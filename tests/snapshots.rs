@@ -20,7 +20,7 @@ fn picture(name: &str, steps: u32) -> String {
     let options = Options {
         size: Size::Long(256),
         labels,
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let graph = compiled(&rule, steps);
     let mut bytes = Vec::new();

@@ -24,7 +24,7 @@ use kfrac::document::Document;
 use kfrac::export;
 use kfrac::geometry::{Bounds, DAffine2, DVec2};
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
 use kfrac::ifs::System;
 use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
@@ -71,7 +71,7 @@ fn elements(graph: &Graph, steps: u32) -> Vec<Element> {
     struct All(Vec<Element>);
     impl Visitor for All {
         type Error = Infallible;
-        fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
             Ok(())
         }
         fn element(&mut self, element: &Element) -> Result<(), Infallible> {
@@ -168,7 +168,7 @@ fn the_library_is_held_against_the_reference() {
             Some(dimension) => assert_close(name, own.value.unwrap(), dimension, 1e-12),
             None => assert_eq!(own.value, None, "{name}"),
         }
-        if let Some(published) = system.heading().dimension {
+        if let Some(published) = system.metadata().dimension {
             assert_close(name, own.value.unwrap(), published, 1e-12);
         }
     }
@@ -334,7 +334,7 @@ fn condensation_sets_are_drawn_at_every_level() {
 #[test]
 fn elements_tell_their_first_and_last_maps() {
     let system = named("gasket");
-    let graph = Graph::telling_last_maps(&system).unwrap();
+    let graph = Graph::with_last_maps(&system).unwrap();
     for (number, element) in elements(&graph, 4).iter().enumerate() {
         let object = &graph.objects()[element.object];
         assert_eq!(object.last_map, Some(number / 27));
@@ -355,7 +355,7 @@ fn elements_tell_their_first_and_last_maps() {
 fn many_maps_are_not_told_apart() {
     let maps = "{scale: 1/2}, ".repeat(200);
     let system = system(&format!("maps: [{maps}]\n"));
-    assert!(Graph::telling_last_maps(&system).is_none());
+    assert!(Graph::with_last_maps(&system).is_none());
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn what_is_left_out_beside_a_window_is_not_seen() {
         let system = named(name);
         let graph = Graph::of_system(&system);
         let picture = |color_by| {
-            let mut options = Options::of(system.heading());
+            let mut options = Options::of(system.metadata());
             options.format = Format::Png;
             options.size = Size::Long(120);
             options.view.window = Some(window);

@@ -10,12 +10,12 @@ use std::convert::Infallible;
 use std::num::NonZero;
 
 use common::{document, document_of};
-use kfrac::catalogue::{Catalogue, Entry, Shelf};
+use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::export;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
 use kfrac::grow::{
-    Element, Enter, Fractal, Growth, Seam, Subtree, Visitor, WalkError, count, extent, walk,
+    Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError, count, extent, walk,
     walk_in_spans,
 };
 use kfrac::model::Model;
@@ -38,7 +38,7 @@ struct Seen {
     cuts: Option<f64>,
     /// Whether the first fractal began in an earlier span.
     goes_on: bool,
-    fractals: Vec<(Fractal, Vec<Place>, bool)>,
+    fractals: Vec<(FractalInfo, Vec<Place>, bool)>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -75,12 +75,12 @@ impl Visitor for Seen {
         }
     }
 
-    fn go_on(&mut self, fractal: Fractal) {
+    fn go_on(&mut self, fractal: FractalInfo) {
         self.goes_on = true;
         self.fractals.push((fractal, Vec::new(), false));
     }
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.fractals.push((fractal, Vec::new(), false));
         Ok(())
     }
@@ -210,7 +210,7 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
     let catalogue = Catalogue::embedded();
     let mut entries = catalogue.entries();
     entries.retain(|entry| Shelf::grown().contains(&entry.shelf));
-    entries.into_iter().map(move |Entry { name, .. }| {
+    entries.into_iter().map(move |LibraryFile { name, .. }| {
         let model = document(&name).resolve(&[]).unwrap().0;
         let compile = |steps| model.compile_for(steps, 0, most_elements).ok();
         let fits = |steps| {
@@ -223,7 +223,7 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
                 Ok(Some(_)) => Some((graph, steps)),
                 // The draws decide the counts.
                 Ok(None) => {
-                    let steps = model.heading().steps.unwrap_or(4);
+                    let steps = model.metadata().steps.unwrap_or(4);
                     Some((compile(steps)?, steps))
                 }
                 Err(_) => None,
@@ -273,7 +273,7 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
             };
             one_and_others(&write, &format!("{format:?}"));
         }
-        let own = Options::of(model.heading());
+        let own = Options::of(model.metadata());
         let mut by_index = own.clone();
         by_index.style.color_by = ColorBy::Index;
         let mut pictures = PICTURES.map(|format| (format, &own)).to_vec();
@@ -349,7 +349,7 @@ struct Fails {
 impl Visitor for Fails {
     type Error = &'static str;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Self::Error> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Self::Error> {
         Ok(())
     }
 
@@ -376,7 +376,7 @@ fn pictures_of_many_elements_do_not_depend_on_the_number_of_threads() {
         let document = document(name);
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, steps).unwrap();
-        let mut options = Options::of(rule.heading());
+        let mut options = Options::of(rule.metadata());
         options.size = Size::Long(200);
         options.style.color_by = ColorBy::None;
         for format in [render::Format::Svg, render::Format::Png] {
@@ -420,7 +420,7 @@ proptest! {
         let graph = Graph::compile(&rule, 6).unwrap();
         let growth = Growth { seed, most_elements: 30_000, ..Growth::steps(6) };
         let write = |number| {
-            let options = Options { size: Size::Long(300), threads: threads(number), ..Options::of(rule.heading()) };
+            let options = Options { size: Size::Long(300), threads: threads(number), ..Options::of(rule.metadata()) };
             let mut bytes = Vec::new();
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)

@@ -16,7 +16,7 @@ fn picture(model: &Model, steps: u32, change: impl FnOnce(&mut Options)) -> Vec<
     let graph = model.compile(steps).unwrap();
     let mut options = Options {
         size: Size::Long(64),
-        ..Options::of(model.heading())
+        ..Options::of(model.metadata())
     };
     change(&mut options);
     let mut bytes = Vec::new();
@@ -91,7 +91,7 @@ fn tints_are_composed_from_the_outermost_inwards() {
 #[test]
 fn colours_that_are_asked_for_are_not_tinted() {
     let tinted = model(SQUARES);
-    assert_eq!(tinted.heading().style.color_by, ColorBy::Tint);
+    assert_eq!(tinted.metadata().style.color_by, ColorBy::Tint);
     let plain = picture(&tinted, 2, |options| options.style.color_by = ColorBy::None);
     let plain = String::from_utf8(plain).unwrap();
     assert!(
@@ -101,11 +101,11 @@ fn colours_that_are_asked_for_are_not_tinted() {
     );
     let written = SQUARES.replace("fill: none", "fill: none, color_by: none");
     let written = model(&written);
-    assert_eq!(written.heading().style.color_by, ColorBy::None);
+    assert_eq!(written.metadata().style.color_by, ColorBy::None);
     assert_eq!(svg(&written, 2), plain);
     // Without tints there are no colours to draw by.
     let bare = model("kind: instancing\nobjects: {a: [{point: [0, 0]}]}\nscene: [a]\n");
-    assert_eq!(bare.heading().style.color_by, ColorBy::None);
+    assert_eq!(bare.metadata().style.color_by, ColorBy::None);
 }
 
 /// Elements arrive in blocks where nothing is cut, one by one where a detail cuts, and from spans on several
@@ -114,7 +114,7 @@ fn colours_that_are_asked_for_are_not_tinted() {
 fn however_a_structure_is_walked_its_colours_are_the_same() {
     for name in ["pound-sign-tinted", "ternary-tree-levels"] {
         let model = document(name).resolve(&[]).unwrap().0;
-        let steps = model.heading().steps.unwrap();
+        let steps = model.metadata().steps.unwrap();
         for format in [Format::Svg, Format::Png] {
             let with = |threads: usize, detail: bool| {
                 picture(&model, steps, |options| {

@@ -35,7 +35,7 @@ fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
                     pixels,
                     decides_steps: true,
                 }),
-                ..Options::of(rule.heading())
+                ..Options::of(rule.metadata())
             };
             options.style.color_by = ColorBy::Index;
             let mut bytes = Vec::new();

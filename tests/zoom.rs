@@ -19,11 +19,11 @@ use common::{document, document_of};
 use kfrac::document::Document;
 use kfrac::geometry::{DAffine2, DVec2, Frame};
 use kfrac::graph::{Graph, NoLimit, Production, Replacement};
-use kfrac::grow::{Element, Enter, Fractal, Subtree, Visitor, walk};
+use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::rule::draw::Path;
-use kfrac::rule::{Moment, Rule};
-use kfrac::zoom::{Growth, Source, Window, ZoomError, zoom};
+use kfrac::rule::{ElementContext, Rule};
+use kfrac::zoom::{ZoomError, ZoomOptions, ZoomSource, ZoomWindow, zoom};
 
 /// Side of the picture, in pixels.
 const SIDE: u32 = 512;
@@ -46,8 +46,8 @@ fn read(text: &str) -> (Document, Model) {
     (document, model)
 }
 
-fn source((document, model): &(Document, Model)) -> Source<'_> {
-    Source {
+fn source((document, model): &(Document, Model)) -> ZoomSource<'_> {
+    ZoomSource {
         document,
         settings: &[],
         model,
@@ -55,8 +55,8 @@ fn source((document, model): &(Document, Model)) -> Source<'_> {
     }
 }
 
-fn window(factor: &str, at: &str) -> Window {
-    Window {
+fn window(factor: &str, at: &str) -> ZoomWindow {
+    ZoomWindow {
         size: [SIDE, SIDE],
         scale: SCALE,
         margin: 2.0,
@@ -117,7 +117,7 @@ impl Seen {
 impl Visitor for Seen {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -145,11 +145,11 @@ impl Visitor for Seen {
 }
 
 /// Returns the elements in the window, in pixels from its middle.
-fn zoomed(of: &(Document, Model), graph: &Graph, window: &Window, seed: u64) -> Seen {
+fn zoomed(of: &(Document, Model), graph: &Graph, window: &ZoomWindow, seed: u64) -> Seen {
     let source = source(of);
-    let growth = Growth {
+    let growth = ZoomOptions {
         seed,
-        ..Growth::default()
+        ..ZoomOptions::default()
     };
     let found = zoom(&source, graph, &growth, window).unwrap();
     let growth = kfrac::grow::Growth {
@@ -407,7 +407,7 @@ fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
     let (mut path, mut length) = (Path::of_seed(seed).child(way[0]), 1.0);
     let (mut scratch, mut points) = (Vec::new(), Vec::new());
     for (step, &position) in way[1..].iter().enumerate() {
-        let moment = Moment {
+        let moment = ElementContext {
             index: 1.0,
             age: step as f64,
             step: step as f64,
@@ -440,7 +440,7 @@ fn exact_overlaps_are_met_once() {
     let found = zoom(
         &source,
         &graph,
-        &Growth::default(),
+        &ZoomOptions::default(),
         &window("1e200", "0.(4.2)"),
     )
     .unwrap();
@@ -453,7 +453,13 @@ fn what_has_no_point_is_refused() {
     let said = |rule: &(Document, Model), factor: &str, at: &str| -> ZoomError {
         let graph = rule.1.compile(64).unwrap();
         let source = source(rule);
-        zoom(&source, &graph, &Growth::default(), &window(factor, at)).unwrap_err()
+        zoom(
+            &source,
+            &graph,
+            &ZoomOptions::default(),
+            &window(factor, at),
+        )
+        .unwrap_err()
     };
     let koch = library("koch");
     let error = said(&koch, "10", "0.1.(4)");

@@ -162,7 +162,7 @@ fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, S
             provenance: String::new(),
         },
         threads: NonZero::<usize>::MIN,
-        ..Options::of(rule.heading())
+        ..Options::of(rule.metadata())
     };
     let mut svg = Vec::new();
     render::write(graph, growth, &options, &mut svg).map_err(|error| error.to_string())?;

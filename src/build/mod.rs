@@ -32,7 +32,7 @@
 //!
 //! ```
 //! use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
-//! use kfrac::heading::Parameter;
+//! use kfrac::metadata::Parameter;
 //! use kfrac::rule::Placement;
 //!
 //! let roof = Elements::new()
@@ -82,8 +82,8 @@
 
 mod elements;
 mod generator;
-mod heading;
 mod map;
+mod metadata;
 mod number;
 mod set;
 mod structure;
@@ -104,12 +104,12 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
-use crate::heading::{Description, Parameter};
+use crate::metadata::{Description, Parameter};
 use crate::model::Model;
 use crate::rule::{BaseElement, Rule};
 use crate::style::{Style, View};
 
-use heading::of_all_kinds;
+use metadata::of_all_kinds;
 use written::Entries;
 
 /// Name of the generated file in messages.

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::document::node::Value;
-use crate::heading::{Description, Parameter};
 use crate::instancing::Instancing;
+use crate::metadata::{Description, Parameter};
 use crate::model::{Kind, Model};
 use crate::style::{Colour, Style, View};
 
-use super::heading::of_all_kinds;
+use super::metadata::of_all_kinds;
 use super::written::{self, Entries, colour_text, sequence};
 use super::{Number, Point, Set, read, resolved};
 

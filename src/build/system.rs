@@ -5,12 +5,12 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::document::node::Value;
-use crate::heading::{Description, Parameter};
 use crate::ifs::System;
+use crate::metadata::{Description, Parameter};
 use crate::model::{Kind, Model};
 use crate::style::{Style, View};
 
-use super::heading::of_all_kinds;
+use super::metadata::of_all_kinds;
 use super::written::{self, Entries, sequence};
 use super::{Map, Number, Point, Set, read, resolved};
 

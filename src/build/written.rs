@@ -1,7 +1,7 @@
 //! Conversion of validated values to the nodes of a file.
 
 use crate::document::node::{Key, Node, Value};
-use crate::heading::Description;
+use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Named, Palette, Style, View, Width};
 

@@ -4,8 +4,8 @@ use crate::geometry::{DAffine2, DVec2};
 
 use super::alias::AliasTable;
 use super::random::{LANES, Scalar};
-use super::system::{Map, System};
-use super::{ClassBy, Game, Start, Window};
+use super::system::{Map, WeightedMaps};
+use super::{ClassBy, Game, HistogramWindow, Start};
 
 /// Steps of a walker that starts on the attractor, before another one starts: few enough for all threads to
 /// have walks, and enough that the warm-up takes little.
@@ -24,11 +24,11 @@ const FINE: f64 = 1.0 / 64.0;
 /// All walks of a game, in pixels. A *wave* consists of [`LANES`] walkers side by side; it has its own random
 /// numbers, and waves can be walked in any order.
 pub(super) struct Course<'a> {
-    pub(super) system: &'a System,
+    pub(super) system: &'a WeightedMaps,
     pub(super) choice: AliasTable,
     /// Affine maps as maps from pixels to pixels.
     pub(super) maps: Vec<Option<DAffine2>>,
-    pub(super) window: &'a Window,
+    pub(super) window: &'a HistogramWindow,
     /// Number of bins of a class: its pixels, and one for points outside.
     pub(super) stride: u32,
     pub(super) classes: ClassBy,
@@ -42,7 +42,11 @@ pub(super) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    pub(super) fn new(system: &'a System, window: &'a Window, game: &'a Game<'_>) -> Self {
+    pub(super) fn new(
+        system: &'a WeightedMaps,
+        window: &'a HistogramWindow,
+        game: &'a Game<'_>,
+    ) -> Self {
         let inverse = window.to_pixels.inverse();
         let maps = system.maps().iter().map(|map| match map {
             Map::Affine(map) => Some(window.to_pixels * *map * inverse),

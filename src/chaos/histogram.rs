@@ -4,7 +4,7 @@ use crate::geometry::DAffine2;
 
 /// A part of the plane, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct HistogramWindow {
     /// Map from the plane to pixels, which run right and down from the upper left corner.
     pub to_pixels: DAffine2,
     /// Width and height in pixels, 1 to 2²² each.

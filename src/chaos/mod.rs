@@ -1,10 +1,10 @@
 //! Random iteration, the *chaos game*: the attractor of an iterated function system, and the P-balanced
 //! measure on it, from random walks (Barnsley & Demko 1985; Demko, Hodges & Naylor 1985).
 //!
-//! A [`System`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of its
+//! A [`WeightedMaps`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of its
 //! maps, chosen at random, or placed at a random point of a condensation set; the fraction of its steps that
 //! end in a part of the plane converges to the measure of that part. The function [`play`] counts the points
-//! of walks, pixel by pixel, as a [`Histogram`]; [`Points`] lists them.
+//! of walks, pixel by pixel, as a [`Histogram`]; [`RandomPoints`] lists them.
 //!
 //! Walkers walk side by side, in waves that each have their own random numbers. The result therefore depends
 //! neither on the order of waves nor on the number of threads, and is the same on every machine. Walks are
@@ -22,9 +22,9 @@ mod system;
 mod tally;
 mod walkers;
 
-pub use histogram::{Histogram, Window};
-pub use points::{Point, Points};
-pub use system::{System, SystemError};
+pub use histogram::{Histogram, HistogramWindow};
+pub use points::{RandomPoint, RandomPoints};
+pub use system::{SystemError, WeightedMaps};
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -158,7 +158,11 @@ const MOST_PIXELS: u32 = 1 << 22;
 ///
 /// Returns an error if the window, its map, the histogram or a start is out of range, or if the game is
 /// cancelled.
-pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogram, GameError> {
+pub fn play(
+    system: &WeightedMaps,
+    window: &HistogramWindow,
+    game: &Game<'_>,
+) -> Result<Histogram, GameError> {
     check(window, game)?;
     let classes = match game.classes {
         ClassBy::One => 1,
@@ -208,7 +212,7 @@ pub fn play(system: &System, window: &Window, game: &Game<'_>) -> Result<Histogr
     Ok(Histogram::new(size, classes, game.points, counts))
 }
 
-fn check(window: &Window, game: &Game<'_>) -> Result<(), GameError> {
+fn check(window: &HistogramWindow, game: &Game<'_>) -> Result<(), GameError> {
     let sides = 1..=MOST_PIXELS;
     let inverse = window.to_pixels.inverse();
     if !window.size.iter().all(|side| sides.contains(side)) || !inverse.is_finite() {
@@ -229,7 +233,7 @@ mod tests {
     use crate::ifs::{Definition, Ifs, Map};
 
     /// The fern: steep, slow to contract, and with maps of all kinds.
-    fn fern() -> System {
+    fn fern() -> WeightedMaps {
         let table = [
             [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],
             [0.85, 0.04, -0.04, 0.85, 0.0, 1.6, 0.85],
@@ -243,19 +247,19 @@ mod tests {
             maps: maps.into(),
             ..Definition::default()
         };
-        System::of(&Ifs::new(definition).unwrap()).unwrap()
+        WeightedMaps::of(&Ifs::new(definition).unwrap()).unwrap()
     }
 
-    fn window(side: u32, scale: f64) -> Window {
+    fn window(side: u32, scale: f64) -> HistogramWindow {
         let matrix = DMat2::from_diagonal(DVec2::new(scale, -scale));
-        Window {
+        HistogramWindow {
             to_pixels: DAffine2::from_mat2_translation(matrix, DVec2::new(5.1, 10.1) * scale),
             size: [side; 2],
         }
     }
 
     /// Counts one wave, in single or in double precision.
-    fn counts(window: &Window, classes: ClassBy, is_double: bool) -> Vec<u32> {
+    fn counts(window: &HistogramWindow, classes: ClassBy, is_double: bool) -> Vec<u32> {
         let (system, all) = (fern(), Mutex::new(None));
         let game = Game {
             points: 400_000,

@@ -6,11 +6,11 @@ use super::Start;
 use super::alias::AliasTable;
 use super::course::WARM_UP;
 use super::random::Scalar;
-use super::system::{Map, System};
+use super::system::{Map, WeightedMaps};
 
 /// A point of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct RandomPoint {
     /// Position of the point.
     pub place: DVec2,
     /// Index of the map that led to it, from 0; the condensation sets follow the maps.
@@ -23,27 +23,27 @@ pub struct Point {
 /// A walk that starts on the attractor has forgotten the start before its first point. Walks from given
 /// starts end after their number of steps, and the next one begins.
 #[derive(Clone, Debug)]
-pub struct Points<'a> {
-    system: &'a System,
+pub struct RandomPoints<'a> {
+    system: &'a WeightedMaps,
     choice: AliasTable,
     random: Scalar,
     start: &'a Start,
-    at: Point,
+    at: RandomPoint,
     /// Number of steps taken, over all walks.
     taken: u64,
 }
 
-impl<'a> Points<'a> {
+impl<'a> RandomPoints<'a> {
     /// Creates the walk of a system with a seed.
     #[must_use]
-    pub fn new(system: &'a System, start: &'a Start, seed: u64) -> Self {
+    pub fn new(system: &'a WeightedMaps, start: &'a Start, seed: u64) -> Self {
         let first = system.start();
         let mut points = Self {
             system,
             choice: system.choice(),
             random: Scalar::new(seed, 0),
             start,
-            at: Point {
+            at: RandomPoint {
                 place: first.point,
                 map: first.last,
             },
@@ -64,20 +64,20 @@ impl<'a> Points<'a> {
             Map::Affine(affine) => affine.transform_point2(self.at.place),
             Map::Condensation(shape) => shape.draw(&mut self.random),
         };
-        self.at = Point { place, map };
+        self.at = RandomPoint { place, map };
     }
 }
 
-impl Iterator for Points<'_> {
-    type Item = Point;
+impl Iterator for RandomPoints<'_> {
+    type Item = RandomPoint;
 
-    fn next(&mut self) -> Option<Point> {
+    fn next(&mut self) -> Option<RandomPoint> {
         if let Start::Points { steps, .. } = self.start
             && self.taken.is_multiple_of(steps.get().into())
             && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))
         {
             let map = self.system.maps().len();
-            self.at = Point { place, map };
+            self.at = RandomPoint { place, map };
         }
         self.taken += 1;
         self.advance();

@@ -24,7 +24,7 @@ pub(super) enum Map {
 /// can follow every other one, possibly with others in between, and walks therefore draw all of the
 /// attractor. There is a point of the attractor to start from.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct WeightedMaps {
     maps: Vec<Map>,
     /// Probability of every map, one row per state of the walk.
     rows: Vec<Vec<f64>>,
@@ -73,7 +73,7 @@ pub enum SystemError {
 /// Maximum number of entries of the table of transition probabilities.
 const MOST_ENTRIES: usize = 1 << 24;
 
-impl System {
+impl WeightedMaps {
     /// Prepares the walk of a system.
     ///
     /// # Errors
@@ -231,7 +231,10 @@ mod tests {
         vec![scaled(1.0 / 3.0, 0.0), scaled(1.0 / 3.0, 2.0 / 3.0)]
     }
 
-    fn system(maps: Vec<ifs::Map>, edges: Option<&[[usize; 2]]>) -> Result<System, SystemError> {
+    fn system(
+        maps: Vec<ifs::Map>,
+        edges: Option<&[[usize; 2]]>,
+    ) -> Result<WeightedMaps, SystemError> {
         let edge = |&[from, to]: &[usize; 2]| Edge {
             from,
             to,
@@ -242,7 +245,7 @@ mod tests {
             edges: edges.map(|edges| edges.iter().map(edge).collect()),
             ..Definition::default()
         };
-        System::of(&Ifs::new(definition).unwrap())
+        WeightedMaps::of(&Ifs::new(definition).unwrap())
     }
 
     #[test]

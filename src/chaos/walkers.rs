@@ -13,7 +13,7 @@ use super::course::Course;
 use super::random::{LANES, Lanes, Scalar};
 use super::real::Real;
 use super::sampler::Sampler;
-use super::system::{Map, System};
+use super::system::{Map, WeightedMaps};
 use super::tally::{Cancelled, Tally};
 
 /// Steps that are walked before they are counted.
@@ -270,7 +270,7 @@ impl<T: Real, const BY_LAST: bool, const N: usize> Walk<T> for Few<T, BY_LAST, N
 /// Arbitrary systems, whose maps are looked up.
 struct Any<'a, T> {
     raster: Raster<T>,
-    system: &'a System,
+    system: &'a WeightedMaps,
     choice: &'a AliasTable,
     maps: Vec<Affine<T>>,
     /// Condensation sets, by map.

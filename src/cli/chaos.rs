@@ -7,7 +7,9 @@ use std::sync::Arc;
 use anyhow::anyhow;
 
 use super::readable::counted;
-use crate::chaos::{ClassBy, Game, GameError, Point, Points, Start, System, Window, play};
+use crate::chaos::{
+    ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, WeightedMaps, play,
+};
 use crate::export;
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::graph::Graph;
@@ -137,7 +139,7 @@ impl ChaosArguments {
         let Model::Ifs(source) = loaded.model.within(&place) else {
             unreachable!("a system stays one");
         };
-        let system = System::of(source.ifs()).map_err(|error| {
+        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
             let error = anyhow::Error::new(error);
             error.context(format!(
                 "{} cannot be drawn by random iteration",
@@ -167,8 +169,8 @@ impl ChaosArguments {
             is_by_steps: color_by == ColorBy::Hits
                 && picture.asked_color_by().is_none()
                 && !picture.asks_palette()
-                && source.heading().style.color_by == ColorBy::Step,
-            steps: steps.or(source.heading().steps).unwrap_or(8),
+                && source.metadata().style.color_by == ColorBy::Step,
+            steps: steps.or(source.metadata().steps).unwrap_or(8),
             source,
             place,
         })
@@ -178,7 +180,7 @@ impl ChaosArguments {
 /// Returns the property that colours points: as requested, or as in the file where points have it. A file
 /// that colours by step is coloured by hits, because points have no step.
 fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy, Failure> {
-    let color_by = picture.style(system.heading()).color_by;
+    let color_by = picture.style(system.metadata()).color_by;
     match (color_by, picture.asked_color_by()) {
         (ColorBy::None | ColorBy::Hits | ColorBy::FirstMap | ColorBy::LastMap, _) => Ok(color_by),
         (_, None) => Ok(ColorBy::Hits),
@@ -197,7 +199,7 @@ pub(super) struct ChaosGame<'a> {
     /// System in the coordinates that `place` maps to those of its file.
     source: Arc<ifs::System>,
     place: Homothety,
-    system: System,
+    system: WeightedMaps,
     start: Start,
     color_by: ColorBy,
     /// Whether hits replace steps, for which the file has a palette.
@@ -209,7 +211,7 @@ pub(super) struct ChaosGame<'a> {
 /// Reason for which no file is written.
 pub(super) enum Stopped {
     /// Failure of random iteration, ready to be reported.
-    Said(Failure),
+    Failed(Failure),
     /// Error of drawing, as for any picture.
     Render(RenderError),
 }
@@ -229,14 +231,14 @@ const EDGE: f64 = 1.0 / 32.0;
 impl ChaosGame<'_> {
     /// Returns the canvas that shows the attractor and the ways to it, or the window.
     fn canvas(&self, picture: &PictureArguments, size: Size) -> Result<Canvas, RenderError> {
-        let view = picture.view(self.source.heading()).within(&self.place);
+        let view = picture.view(self.source.metadata()).within(&self.place);
         if let Some(window) = view.window {
             return Ok(Canvas::of_window(window, &view, size)?);
         }
         let limit = Graph::of_system(&self.source).limit_bounds();
         let mut bounds = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() || self.start != Start::Attractor {
-            for point in Points::new(&self.system, &self.start, 0).take(PILOT) {
+            for point in RandomPoints::new(&self.system, &self.start, 0).take(PILOT) {
                 bounds.add(point.place);
             }
         }
@@ -254,7 +256,7 @@ impl ChaosGame<'_> {
     ) -> Result<String, Stopped> {
         let canvas = self.canvas(picture, size)?;
         let points = self.arguments.points.unwrap_or(10_000_000);
-        let window = Window {
+        let window = HistogramWindow {
             to_pixels: canvas.to_pixels(),
             size: canvas.size(),
         };
@@ -268,7 +270,7 @@ impl ChaosGame<'_> {
             progress,
         };
         let histogram = play(&self.system, &window, &game).map_err(|error| {
-            Stopped::Said(match error {
+            Stopped::Failed(match error {
                 error @ GameError::TooManyBins { .. } => anyhow::anyhow!(
                     "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
                      in bands"
@@ -277,10 +279,10 @@ impl ChaosGame<'_> {
                 other => anyhow::Error::new(other).into(),
             })
         })?;
-        let style = picture.style(self.source.heading());
+        let style = picture.style(self.source.metadata());
         let density = Density {
             tone: self.arguments.tone.unwrap_or_default(),
-            shades: self.shades(&style, picture.ink(self.source.heading())),
+            shades: self.shades(&style, picture.ink(self.source.metadata())),
             background: style.background,
         };
         let described = counted(&points.into(), "point");
@@ -317,14 +319,14 @@ impl ChaosGame<'_> {
                 counted(&points.into(), "point"),
                 growth.most_elements()
             );
-            return Err(Stopped::Said(error.into()));
+            return Err(Stopped::Failed(error.into()));
         }
         if let Some(progress) = progress {
             progress.expect(points);
         }
-        let all = Points::new(&self.system, &self.start, growth.seed);
+        let all = RandomPoints::new(&self.system, &self.start, growth.seed);
         let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
-        let all = all.map(|point| Point {
+        let all = all.map(|point| RandomPoint {
             place: self.place.point(point.place),
             ..point
         });

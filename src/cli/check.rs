@@ -73,11 +73,15 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             if diagnostics.is_empty() {
                 output::print(&format!("{file}: ok\n"))?;
             } else {
-                text::complain(diagnostics);
+                text::print_diagnostics(diagnostics);
             }
         }
     }
-    if wrong { Err(Failure::Said) } else { Ok(()) }
+    if wrong {
+        Err(Failure::Reported)
+    } else {
+        Ok(())
+    }
 }
 
 fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
@@ -87,7 +91,7 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     };
     let document = Document::read(&source, catalogue)?;
     let (model, mut diagnostics) = document.resolve(&[])?;
-    let steps = model.heading().steps.unwrap_or(1).min(16);
+    let steps = model.metadata().steps.unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
     if let Err(error) = model.compile(steps) {
         diagnostics.push(model.diagnostic(&error));

@@ -10,11 +10,11 @@ use serde::Serialize;
 use super::readable;
 use crate::catalogue::Catalogue;
 use crate::document::{Document, Setting};
-use crate::figure::difference::{self, Pixels};
+use crate::figure::difference::{self, PixelSet};
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::measure::{
-    Distance, NoCover, Precision, Set, Similarity, Subject, hausdorff, similarity_dimension,
+    Distance, NoCover, Precision, Similarity, Subject, Subset, hausdorff, similarity_dimension,
 };
 use crate::render::{self, Canvas, RenderError, Size};
 use crate::style::Style;
@@ -130,8 +130,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let both = arguments.load(catalogue)?;
     let set = match arguments.steps {
-        None => Set::Limit,
-        Some(steps) => Set::Approximant(Growth::steps(steps)),
+        None => Subset::Limit,
+        Some(steps) => Subset::Approximant(Growth::steps(steps)),
     };
     let subject = |which: usize| {
         let One { loaded, graph } = &both[which];
@@ -202,7 +202,7 @@ impl Arguments {
         };
         let documents = [read(paths[0])?, read(paths[1])?];
         let has = |document: &Document, setting: &Setting| {
-            let mut params = document.heading().params.iter();
+            let mut params = document.metadata().params.iter();
             params.any(|param| param.name.value == setting.name)
         };
         let nobody = |setting: &&Setting| !documents.iter().any(|it| has(it, setting));
@@ -251,8 +251,8 @@ impl Arguments {
         let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
         let [width, height] = canvas.size().map(|side| side as usize);
         let most = MOST_POINTS_A_PIXEL.saturating_mul(width.saturating_mul(height));
-        let pixels = |which: usize| -> Result<Pixels, Failure> {
-            let mut pixels = Pixels::new(canvas).map_err(anyhow::Error::from)?;
+        let pixels = |which: usize| -> Result<PixelSet, Failure> {
+            let mut pixels = PixelSet::new(canvas).map_err(anyhow::Error::from)?;
             let visited = subjects[which].visit(pixels.radius(), most, &mut |it| pixels.add(it));
             visited.map_err(|error| match error {
                 NoCover::TooMany(_) => anyhow!(
@@ -285,7 +285,7 @@ impl Arguments {
         if !self.quiet {
             let [width, height] = canvas.size();
             let [first, second, shared] = pixels.map(|count| readable::grouped(&count.into()));
-            text::say(&format!(
+            text::print_message(&format!(
                 "{}: {width} x {height} pixels, {first} of A alone, {second} of B alone, \
                  {shared} of both, {}",
                 output::called(path),

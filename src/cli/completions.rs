@@ -9,7 +9,7 @@ use clap::Command;
 use clap::builder::PossibleValuesParser;
 use clap_complete::{Shell, generate};
 
-use crate::catalogue::{Catalogue, Entry, Shelf};
+use crate::catalogue::{Catalogue, LibraryFile, Shelf};
 
 use super::{Failure, help, output};
 
@@ -86,7 +86,7 @@ impl Names {
                 .all(|c| c.is_alphanumeric() || "-_.".contains(c))
         };
         let mut names = Self::default();
-        for Entry { name, shelf, .. } in catalogue.entries() {
+        for LibraryFile { name, shelf, .. } in catalogue.entries() {
             if !is_word(&name) {
                 continue;
             }

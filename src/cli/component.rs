@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::build::written::{Entries, sequence};
-use crate::catalogue::{Catalogue, Entry, Shelf};
+use crate::catalogue::{Catalogue, LibraryFile, Shelf};
 use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
 
@@ -12,7 +12,7 @@ use super::Failure;
 
 /// Component that the command line names.
 pub(super) struct Component {
-    entry: Entry,
+    entry: LibraryFile,
     source: Arc<Source>,
 }
 

@@ -125,7 +125,7 @@ struct Measured {
     set: String,
     unit: Option<&'static str>,
     /// Exact results for a rule.
-    exact: Option<exact::Grown>,
+    exact: Option<exact::GraphDimensions>,
     counting: BoxCounting,
     spectrum: Vec<Generalised>,
     /// Exact spectrum.
@@ -175,7 +175,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     output::print(&said)?;
     for warning in &measured.warnings {
-        text::say(&format!("warning: {warning}"));
+        text::print_message(&format!("warning: {warning}"));
     }
     Ok(())
 }

@@ -188,14 +188,14 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let path = arguments.output.as_ref().unwrap_or(&default);
     if look.is_some()
         && !arguments.growth.quiet
-        && arguments.is_of_numbers(&arguments.picture.style(loaded.model.heading()))
+        && arguments.is_of_numbers(&arguments.picture.style(loaded.model.metadata()))
     {
-        text::say(
+        text::print_message(
             "note: drawn in one colour, because elements far from the window are not counted",
         );
     }
-    arguments.tell_of_bands(&loaded, goal, format, &graph);
-    arguments.tell_of_no_lines(&loaded, format, &graph);
+    arguments.note_bands(&loaded, goal, format, &graph);
+    arguments.note_no_lines(&loaded, format, &graph);
     let ((wrote, drawn), bytes) = output::write(path, arguments.growth.quiet, |out, progress| {
         let wrote = match format {
             Format::Picture(format) => {
@@ -227,15 +227,15 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             svg::warn(instanced);
         }
         if let Some(plotted) = &wrote.plotted {
-            arguments.plot.tell_of_pens(plotted);
+            arguments.plot.note_pens(plotted);
         }
         if let Some(empty) = &wrote.empty {
-            text::say(&super::zoom::nothing(&loaded.name, empty));
+            text::print_message(&super::zoom::nothing(&loaded.name, empty));
         }
         if drawn != goal {
-            goal.tell_of_lighter(drawn);
+            goal.note_lighter(drawn);
         }
-        text::say(&format!(
+        text::print_message(&format!(
             "{}: {}, {}, {}, {:.2} s",
             output::called(path),
             drawn.reached(&loaded.name, wrote.steps),
@@ -269,7 +269,7 @@ impl Arguments {
     fn style(&self, loaded: &Loaded) -> Style {
         let style = self
             .picture
-            .style_in(loaded.model.heading(), self.size.unit);
+            .style_in(loaded.model.metadata(), self.size.unit);
         if self.zoom.is_asked() && self.is_of_numbers(&style) {
             return style.in_one_colour();
         }
@@ -338,7 +338,7 @@ impl Arguments {
     }
 
     /// Prints a note if options for lines are given but no lines are drawn.
-    fn tell_of_no_lines(&self, loaded: &Loaded, format: Format, graph: &Graph) {
+    fn note_no_lines(&self, loaded: &Loaded, format: Format, graph: &Graph) {
         let is_filled = |object: &Object| graph.base_elements()[object.base_element].is_closed();
         let mut drawn = graph.objects().iter().filter(|object| object.visible);
         let has_lines = self.plot.is_asked()
@@ -348,7 +348,7 @@ impl Arguments {
         if self.growth.quiet || !self.picture.asks_lines() || has_lines {
             return;
         }
-        text::say(&format!(
+        text::print_message(&format!(
             "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join apply to lines only; \
              --stroke and --fill together outline the shapes",
             loaded.name
@@ -356,7 +356,7 @@ impl Arguments {
     }
 
     /// Prints a note with the estimated time and file size of a picture that is drawn in bands.
-    fn tell_of_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
+    fn note_bands(&self, loaded: &Loaded, goal: Goal, format: Format, graph: &Graph) {
         let Format::Picture(render::Format::Png) = format else {
             return;
         };
@@ -383,7 +383,7 @@ impl Arguments {
                 .map_or_else(String::new, |bytes| {
                     format!(", to about {}", readable::rough_bytes(bytes))
                 });
-            text::say(&format!(
+            text::print_message(&format!(
                 "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
                 readable::duration(pixels * SECONDS_A_PIXEL)
             ));
@@ -410,7 +410,7 @@ impl Arguments {
         options.extend(self.zoom.options());
         options.extend(self.picture.options());
         let Paper { size, unit } = self.size;
-        let heading = loaded.model.heading();
+        let heading = loaded.model.metadata();
         render::Options {
             format,
             style: self.style(loaded),
@@ -479,12 +479,12 @@ impl Arguments {
                 Format::Picture(_) => game.draw(size, &self.growth, &self.picture, progress, out),
             }
             .map_err(|failure| match failure {
-                chaos::Stopped::Said(failure) => failure,
+                chaos::Stopped::Failed(failure) => failure,
                 chaos::Stopped::Render(error) => self.growth.explain(error, &loaded, path),
             })
         })?;
         if !self.growth.quiet {
-            text::say(&format!(
+            text::print_message(&format!(
                 "{}: {summary}, {}, {:.2} s",
                 output::called(path),
                 readable::bytes(bytes),

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::anyhow;
 
 use super::readable::{counted, duration, grouped, rough_bytes};
-use crate::estimate::{Estimate, Estimator};
+use crate::estimate::{Estimator, SizeEstimate};
 use crate::geometry::Bounds;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError, extent};
@@ -212,7 +212,7 @@ fn too_large(
 }
 
 /// Estimates the SVG of a step without growing it.
-fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Estimate> {
+fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<SizeEstimate> {
     let mut forecast = graph.forecast()?;
     if !(0..steps).all(|_| forecast.advance()) {
         return None;
@@ -280,7 +280,7 @@ pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
 
 /// Returns whether all replacements shrink, so that elements fall below any size.
 fn shrinks(graph: &Graph) -> bool {
-    if graph.is_levelled() {
+    if graph.is_time_indexed() {
         return true;
     }
     let smaller = |chain: &Chain| {
@@ -293,7 +293,7 @@ fn shrinks(graph: &Graph) -> bool {
         .objects()
         .iter()
         .all(|object| match &object.replacement {
-            Replacement::Kept | Replacement::Beyond => true,
+            Replacement::Kept | Replacement::Unresolved => true,
             Replacement::Fixed(production) => {
                 let mut seeds = production.seeds.iter();
                 smaller(&production.body)

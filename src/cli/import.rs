@@ -101,7 +101,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let told = told.filter(|told| told.entry.is_some() || !told.found.is_empty());
         output::print_json(&told.collect::<Vec<_>>())?;
     }
-    if all_told { Ok(()) } else { Err(Failure::Said) }
+    if all_told {
+        Ok(())
+    } else {
+        Err(Failure::Reported)
+    }
 }
 
 type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
@@ -110,7 +114,7 @@ type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
 fn say(path: &Path, told: &[Entry], folder: &Path) {
     // Each entry is reported separately, because a list of diagnostics is abbreviated after its first ones.
     for (_, _, found) in told.iter().filter(|(_, _, found)| !found.is_empty()) {
-        text::complain(found);
+        text::print_diagnostics(found);
     }
     let entries = told.iter().filter(|(name, ..)| name.is_some());
     let (written, left): (Vec<&Entry>, Vec<&Entry>) =
@@ -120,7 +124,7 @@ fn say(path: &Path, told: &[Entry], folder: &Path) {
         _ => format!(" of {}", written.len() + left.len()),
     };
     let (path, folder) = (path.display(), folder.display());
-    text::say(&format!(
+    text::print_message(&format!(
         "{path}: {}{of} written to {folder}",
         written.len()
     ));
@@ -129,7 +133,7 @@ fn say(path: &Path, told: &[Entry], folder: &Path) {
             .iter()
             .filter_map(|(name, ..)| name.as_deref())
             .collect();
-        text::say(&format!("not written: {}", names.join(", ")));
+        text::print_message(&format!("not written: {}", names.join(", ")));
     }
 }
 

@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
-use crate::estimate::{Estimate, Estimator, instanced_bytes};
+use crate::estimate::{Estimator, SizeEstimate, instanced_bytes};
 use crate::geometry::Bounds;
 use crate::graph::{Count, Graph, Level};
-use crate::heading::Parameter;
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
+use crate::metadata::Parameter;
 use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
@@ -231,7 +231,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
         let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         Some(all?.into_iter().map(finite).collect())
     };
-    let estimates = |part: fn(&Estimate) -> f64| {
+    let estimates = |part: fn(&SizeEstimate) -> f64| {
         let rows = rows.as_ref().filter(|rows| rows[0].estimate.is_some())?;
         Some(
             rows.iter()
@@ -244,7 +244,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     let area = in_units(measures(|level| level.area), &[place.ratio(); 2]);
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
-    let options = Options::of(loaded.model.heading());
+    let options = Options::of(loaded.model.metadata());
     let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(readable::two_digits);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
         let mut counts = [const { Vec::new() }; 3];
@@ -259,7 +259,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     // Exact dimensions of random rules may need many integrals.
     let exact = (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
     let exact = exact.and_then(|known| known.dimensions);
-    let heading = loaded.model.heading();
+    let heading = loaded.model.metadata();
     let params = heading.parameters.iter();
     Info {
         name: &loaded.name,
@@ -311,13 +311,13 @@ fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<O
 /// Forecast of an approximant.
 struct Row {
     level: Level,
-    estimate: Option<Estimate>,
+    estimate: Option<SizeEstimate>,
 }
 
 fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Option<Vec<Row>> {
     /// Step after which bounding boxes change little.
     const SETTLED: u32 = 12;
-    let options = Options::of(loaded.model.heading());
+    let options = Options::of(loaded.model.metadata());
     let estimator = Estimator::new(graph, &options);
     let mut forecast = graph.forecast()?;
     let boxes = graph.boxes();
@@ -349,7 +349,7 @@ pub(super) fn corners(bounds: &Bounds) -> Corners {
 /// Describes the rule in text.
 fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     let mut text = String::new();
-    let heading = loaded.model.heading();
+    let heading = loaded.model.metadata();
     let description = &heading.description;
     let mut line = |label: &str, value: &str| {
         // Writing to a string does not fail.

@@ -12,7 +12,7 @@ pub(super) fn labels(
     subcommand: &str,
     options: impl IntoIterator<Item = (&'static str, String)>,
 ) -> render::Labels {
-    let description = &loaded.model.heading().description;
+    let description = &loaded.model.metadata().description;
     let title = description
         .title
         .clone()
@@ -22,7 +22,7 @@ pub(super) fn labels(
         env!("CARGO_PKG_VERSION"),
         command(loaded, subcommand, options)
     );
-    for parameter in &loaded.model.heading().parameters {
+    for parameter in &loaded.model.metadata().parameters {
         provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
     }
     provenance.push_str(&loaded.document.to_yaml());
@@ -40,7 +40,7 @@ pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
     let mut provenance = format!("# kfrac {}\n", env!("CARGO_PKG_VERSION"));
     for loaded in [a, b] {
         provenance.push_str(&format!("---\n# {}\n", quoted(&loaded.name)));
-        for parameter in &loaded.model.heading().parameters {
+        for parameter in &loaded.model.metadata().parameters {
             provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
         }
         provenance.push_str(&loaded.document.to_yaml());

@@ -85,7 +85,7 @@ pub(super) fn nearest<T>(
     };
     let is_even = graph.even_lengths().is_some();
     let by_steps = by_steps && matches!(goal, Goal::Steps(_, None));
-    let has_no_detail = graph.counts_index() || graph.is_levelled();
+    let has_no_detail = graph.counts_index() || graph.is_time_indexed();
     if !has_no_detail && (is_part || !(is_even || by_steps)) {
         let finer = DETAILS.partition_point(|&pixels| !goal.is_finer_than(pixels));
         let coarser = &DETAILS[finer..];
@@ -132,7 +132,7 @@ pub(super) fn first_that_is_light<T>(
 
 /// Reports the lighter picture that is drawn, and the option for the heavier one.
 pub(super) fn tell(drawn: &str, more: &str) {
-    text::say(&format!(
+    text::print_message(&format!(
         "note: {drawn}, to limit the SVG to {} elements and {}; {more}",
         grouped(&MOST_ELEMENTS.into()),
         bytes(MOST_BYTES),
@@ -156,7 +156,7 @@ impl Goal {
     }
 
     /// Prints a note about the lighter goal that is drawn instead.
-    pub(super) fn tell_of_lighter(self, lighter: Self) {
+    pub(super) fn note_lighter(self, lighter: Self) {
         let drawn = match (self, lighter) {
             (Self::Steps(own, _), Self::Steps(steps, None)) => {
                 format!("step {steps} is drawn instead of {own}")

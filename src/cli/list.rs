@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::catalogue::{Catalogue, Entry, Shelf};
+use crate::catalogue::{Catalogue, LibraryFile, Shelf};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::node::{Node, Value};
 
@@ -89,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 
 /// Returns the row of an entry. A file that cannot be read has its name only; `kfrac check` reports its
 /// errors.
-fn row(entry: &Entry, catalogue: &Catalogue) -> Row {
+fn row(entry: &LibraryFile, catalogue: &Catalogue) -> Row {
     let node = catalogue
         .open(entry)
         .ok()

@@ -141,7 +141,7 @@ enum Failure {
     /// Error in the command line.
     Usage(String),
     /// Failure that has been reported already.
-    Said,
+    Reported,
 }
 
 impl From<Diagnostics> for Failure {
@@ -220,7 +220,7 @@ pub fn run() -> ExitCode {
 fn report(failure: &Failure) -> ExitCode {
     match failure {
         Failure::File(diagnostics) => {
-            text::complain(diagnostics);
+            text::print_diagnostics(diagnostics);
             ExitCode::FAILURE
         }
         Failure::Input(error) => {
@@ -231,13 +231,13 @@ fn report(failure: &Failure) -> ExitCode {
             if closed {
                 return ExitCode::SUCCESS;
             }
-            text::complain(&Diagnostic::error(format!("{error:#}")).into());
+            text::print_diagnostics(&Diagnostic::error(format!("{error:#}")).into());
             ExitCode::FAILURE
         }
         Failure::Usage(message) => {
-            text::complain(&Diagnostic::error(message.clone()).into());
+            text::print_diagnostics(&Diagnostic::error(message.clone()).into());
             ExitCode::from(2)
         }
-        Failure::Said => ExitCode::FAILURE,
+        Failure::Reported => ExitCode::FAILURE,
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 use crate::render::Unit;
 use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View};
 
@@ -55,12 +55,12 @@ pub(super) struct PictureArguments {
 
 impl PictureArguments {
     /// Returns the style of the rule with the options applied.
-    pub(super) fn style(&self, heading: &Heading) -> Style {
+    pub(super) fn style(&self, heading: &Metadata) -> Style {
         self.style_in(heading, Unit::Pixel)
     }
 
     /// Returns the style of the rule with the options applied, with widths in `unit`.
-    pub(super) fn style_in(&self, heading: &Heading, unit: Unit) -> Style {
+    pub(super) fn style_in(&self, heading: &Metadata, unit: Unit) -> Style {
         let own = &heading.style;
         let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
         Style {
@@ -87,12 +87,12 @@ impl PictureArguments {
     }
 
     /// Returns the view of the rule with the options applied.
-    pub(super) fn view(&self, heading: &Heading) -> View {
+    pub(super) fn view(&self, heading: &Metadata) -> View {
         self.view_in(heading, Unit::Pixel)
     }
 
     /// Returns the view of the rule with the options applied, with the margin in `unit`.
-    pub(super) fn view_in(&self, heading: &Heading, unit: Unit) -> View {
+    pub(super) fn view_in(&self, heading: &Metadata, unit: Unit) -> View {
         let margin = self.margin.unwrap_or(Length::Pixels(heading.view.margin));
         View {
             window: self.view.or(heading.view.window),
@@ -121,7 +121,7 @@ impl PictureArguments {
     }
 
     /// Returns the single colour of points: that of the options, or else that of the file.
-    pub(super) fn ink(&self, heading: &Heading) -> Option<Colour> {
+    pub(super) fn ink(&self, heading: &Metadata) -> Option<Colour> {
         let own = &heading.style;
         let asked = self.fill.and_then(Ink::colour);
         let asked = asked.or(self.stroke.and_then(Ink::colour));

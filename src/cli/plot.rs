@@ -64,9 +64,9 @@ impl PlotArguments {
     }
 
     /// Prints a note if colours share a pen by default.
-    pub(super) fn tell_of_pens(&self, plotted: &Plotted) {
+    pub(super) fn note_pens(&self, plotted: &Plotted) {
         if self.pens.is_none() && plotted.colours > plotted.layers.max(Pens::FEW as u64) {
-            text::say(&format!(
+            text::print_message(&format!(
                 "note: one pen for all {} colours: --pens {} gives that many, --color-by one for each colour",
                 plotted.colours,
                 Pens::FEW

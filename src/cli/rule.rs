@@ -105,7 +105,7 @@ impl Loaded {
         let (seed, most_elements) = self.growth;
         match &self.place {
             Some(place) => model.compile_within(place, steps, seed, most_elements),
-            None => model.compile_near(steps, seed, most_elements),
+            None => model.compile_normalised(steps, seed, most_elements),
         }
     }
 
@@ -147,7 +147,7 @@ impl Loaded {
     pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
         match (&self.model, color_by) {
             (Model::Ifs(_), ColorBy::LastMap) => {
-                let graph = self.model.telling_last_maps_near();
+                let graph = self.model.with_last_maps_normalised();
                 let graph = graph.map_err(|error| self.model.diagnostic(&error.into()))?;
                 graph.ok_or_else(|| {
                     let message = format!(
@@ -264,7 +264,7 @@ impl RuleArguments {
         }
         let (model, warnings) = document.resolve(&settings)?;
         if !quiet && !warnings.is_empty() {
-            text::complain(&warnings);
+            text::print_diagnostics(&warnings);
         }
         let model = self.without_omitted(model, &name)?;
         Ok(Loaded {
@@ -318,9 +318,9 @@ fn check_setting(
     document: &Document,
     rule: &str,
 ) -> Result<(), Failure> {
-    let params = &document.heading().params;
+    let params = &document.metadata().params;
     if !params.iter().any(|param| param.name.value == setting.name) {
-        let hint = document.heading().instead_of(&setting.name);
+        let hint = document.metadata().instead_of(&setting.name);
         let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
         return Err(Failure::Usage(message));
     }

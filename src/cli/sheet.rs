@@ -138,7 +138,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     if !arguments.growth.quiet {
         let [width, height] = written.size;
-        text::say(&format!(
+        text::print_message(&format!(
             "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
             output::called(path),
             readable::counted(&drawn.as_slice().len().into(), "approximant"),
@@ -199,7 +199,7 @@ impl Arguments {
 
     /// Returns the style of the rule, with strokes that suit small pictures unless their width is given.
     fn style(&self, loaded: &Loaded) -> Style {
-        let mut style = self.picture.style(loaded.model.heading());
+        let mut style = self.picture.style(loaded.model.metadata());
         if let (Width::Pixels(width), None) = (&mut style.width, self.picture.stroke_width) {
             let (Size::Long(side) | Size::Exactly(side, _)) = self.size;
             *width *= (f64::from(side) / 1024.0).clamp(0.5, 1.0);
@@ -284,7 +284,7 @@ impl Arguments {
         }
         if !self.growth.quiet {
             let [width, height] = written.size;
-            text::say(&format!(
+            text::print_message(&format!(
                 "{}: {} of {} at step {drawn}, {}, {width} x {height} pixels, {}, {:.2} s",
                 output::called(path),
                 readable::counted(&family.len().into(), "value"),
@@ -340,7 +340,7 @@ impl Arguments {
         render::Options {
             format,
             style: self.style(loaded),
-            view: self.picture.view(loaded.model.heading()).within(place),
+            view: self.picture.view(loaded.model.metadata()).within(place),
             size: self.size,
             threads: self.growth.threads(),
             labels: labels(loaded, shown, "sheet", options),

@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         })
     })?;
     if !arguments.quiet {
-        text::say(&format!(
+        text::print_message(&format!(
             "{}: the {} of {}, {width} x {height} pixels, {}",
             output::called(path),
             alone.map_or_else(|| noun(&loaded.model), Shelf::noun),

@@ -60,7 +60,7 @@ pub(super) fn warn(instanced: &Instanced) {
         } else {
             "which takes a long time"
         };
-        text::say(&format!(
+        text::print_message(&format!(
             "warning: browsers expand every instance, {} of them, {outcome}",
             count(instanced.expanded)
         ));

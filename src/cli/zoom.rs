@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::readable;
-use crate::render::{Empty, Look, Nearest};
-use crate::zoom::{Address, Factor, Source};
+use crate::render::{Empty, Nearest, ZoomTarget};
+use crate::zoom::{Address, Factor, ZoomSource};
 
 use super::Failure;
 use super::rule::Loaded;
@@ -37,14 +37,14 @@ impl ZoomArguments {
     }
 
     /// Returns the requested zoom, if any.
-    pub(super) fn look(&self, has_view: bool) -> Result<Option<Look>, Failure> {
+    pub(super) fn look(&self, has_view: bool) -> Result<Option<ZoomTarget>, Failure> {
         let usage = |message: &str| Err(Failure::Usage(message.into()));
         let look = match (&self.zoom, &self.at) {
             (None, None) => return Ok(None),
             (Some(_), None) => {
                 return usage("--zoom needs --at: the centre, such as 0.(1) or 0.5,0");
             }
-            (factor, Some(at)) => Look {
+            (factor, Some(at)) => ZoomTarget {
                 factor: factor.clone().unwrap_or_else(Factor::one),
                 at: at.clone(),
             },
@@ -67,8 +67,8 @@ impl ZoomArguments {
 
 impl Loaded {
     /// Returns the model with its document, which holds the exact numbers.
-    pub(super) fn source(&self) -> Source<'_> {
-        Source {
+    pub(super) fn source(&self) -> ZoomSource<'_> {
+        ZoomSource {
             document: &self.document,
             settings: &self.settings,
             model: &self.model,

@@ -27,7 +27,7 @@ use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
 use crate::graph::{CompileError, Graph};
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 use crate::model::{Kind, Model};
 
 use structure::Structure;
@@ -84,14 +84,14 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     }
     let steps = match model {
         Model::LSystem(system) => {
-            let own = model.heading().steps;
+            let own = model.metadata().steps;
             own.unwrap_or_else(|| system.deepest(DEEPEST, MOST_ELEMENTS))
         }
         _ => STEPS,
     };
     let graph = model.compile(steps)?;
     // A time-indexed structure has no limit set, but is finite after its steps.
-    let ends = graph.is_levelled() && graph.is_plain() && to == Kind::Instancing;
+    let ends = graph.is_time_indexed() && graph.is_plain() && to == Kind::Instancing;
     if !ends {
         graph.check_limit_set().map_err(Refusal::from)?;
     }
@@ -122,7 +122,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         Kind::Rule => rule::write(&structure)?,
         Kind::LSystem => lsystem::write(&structure, keeps)?,
     };
-    let text = Node::from(headed(model.heading(), to, own).value()).to_yaml();
+    let text = Node::from(headed(model.metadata(), to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());
     let document = read.map_err(ConvertError::NotReadBack)?;
     match document.resolve(&[]) {
@@ -132,7 +132,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
 }
 
 /// Returns the entries of a document: description, content, dimensions, style and view.
-fn headed(heading: &Heading, kind: Kind, own: Entries) -> Entries {
+fn headed(heading: &Metadata, kind: Kind, own: Entries) -> Entries {
     let number = |value: f64| number::value(value);
     let kind = Entries::default().set("kind", Value::Text(kind.name().into()));
     let entries = written::description(kind, &heading.description)

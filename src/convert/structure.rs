@@ -62,7 +62,10 @@ impl Structure {
         };
         let placed = |instance: &Instance| {
             let object = &graph.objects()[instance.object];
-            let ends = matches!(object.replacement, Replacement::Kept | Replacement::Beyond);
+            let ends = matches!(
+                object.replacement,
+                Replacement::Kept | Replacement::Unresolved
+            );
             let paint = object.paint.filter(|_| ends);
             let paint = paint.map(|colour| Tint { colour, alpha: 1.0 });
             Placed {

@@ -5,13 +5,13 @@
 
 use crate::diagnostic::Place;
 
-use super::{HeadingDocument, KindDocument, Number, Point, Written};
+use super::{KindDocument, MetadataDocument, Number, Point, Written};
 
 /// An iterated function system as written.
 #[derive(Clone, Debug)]
 pub struct IfsDocument {
     /// Metadata of the file.
-    pub heading: HeadingDocument,
+    pub heading: MetadataDocument,
     /// The maps; `None` if they cannot be read.
     pub maps: Option<MapsDocument>,
     /// The condensation sets.

@@ -6,13 +6,13 @@
 use crate::diagnostic::Place;
 use crate::style::Colour;
 
-use super::{HeadingDocument, Number, Point, ShapeDocument, Written};
+use super::{MetadataDocument, Number, Point, ShapeDocument, Written};
 
 /// An instancing structure as written.
 #[derive(Clone, Debug)]
 pub struct InstancingDocument {
     /// Metadata of the file.
-    pub heading: HeadingDocument,
+    pub heading: MetadataDocument,
     /// The objects, in the order of the file.
     pub objects: Vec<ObjectDocument>,
     /// The scene: the union that is drawn; `None` if it is missing.

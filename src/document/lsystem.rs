@@ -5,13 +5,13 @@
 
 use crate::diagnostic::Place;
 
-use super::{HeadingDocument, Number};
+use super::{MetadataDocument, Number};
 
 /// An L-system as written.
 #[derive(Clone, Debug)]
 pub struct LSystemDocument {
     /// Metadata of the file.
-    pub heading: HeadingDocument,
+    pub heading: MetadataDocument,
     /// Angle increment of `+` and `-`, in degrees.
     pub angle: Option<Number>,
     /// Initial heading of the turtle, in degrees counter-clockwise from the x axis.

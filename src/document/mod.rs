@@ -6,11 +6,11 @@
 
 mod assemble;
 mod data;
-mod heading;
 mod ifs;
 mod instancing;
 mod lsystem;
 mod merge;
+mod metadata;
 pub mod node;
 mod read;
 mod reader;
@@ -20,7 +20,6 @@ mod shape;
 mod style;
 mod yaml;
 
-pub use heading::{HeadingDocument, ParameterDocument};
 pub use ifs::{
     CondensationDocument, EdgeDocument, EllipseDocument, FormDocument, FractalDocument,
     IfsDocument, InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales,
@@ -34,6 +33,7 @@ pub use lsystem::{
     ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, SymbolDocument,
     WordDocument,
 };
+pub use metadata::{MetadataDocument, ParameterDocument};
 pub use rule::{
     BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
     PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
@@ -149,7 +149,7 @@ pub enum KindDocument {
 impl KindDocument {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
-    pub fn heading(&self) -> &HeadingDocument {
+    pub fn metadata(&self) -> &MetadataDocument {
         match self {
             Self::Rule(rule) => &rule.heading,
             Self::Ifs(ifs) => &ifs.heading,
@@ -202,8 +202,8 @@ impl Document {
 
     /// Returns the metadata that files of all kinds have.
     #[must_use]
-    pub fn heading(&self) -> &HeadingDocument {
-        self.kind.heading()
+    pub fn metadata(&self) -> &MetadataDocument {
+        self.kind.metadata()
     }
 
     /// Returns the production rule as written; `None` for other kinds.

@@ -4,10 +4,10 @@
 mod base_element;
 mod elements;
 mod generator;
-mod heading;
 mod ifs;
 mod instancing;
 mod lsystem;
+mod metadata;
 mod parameters;
 mod rule;
 mod select;
@@ -19,10 +19,10 @@ mod word;
 pub(super) use base_element::BASE_ELEMENT;
 pub(super) use elements::{ELEMENTS, INITIATOR};
 pub(super) use generator::GENERATOR;
-pub(super) use heading::{DESCRIPTION, check_description};
 pub(super) use ifs::IFS;
 pub(super) use instancing::INSTANCING;
 pub(super) use lsystem::LSYSTEM;
+pub(super) use metadata::{DESCRIPTION, check_description};
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 

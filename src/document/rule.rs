@@ -6,13 +6,13 @@
 use crate::diagnostic::Place;
 use crate::rule::Placement;
 
-use super::{HeadingDocument, Number, Point, Written};
+use super::{MetadataDocument, Number, Point, Written};
 
 /// A production rule as written, with its components inlined.
 #[derive(Clone, Debug)]
 pub struct RuleDocument {
     /// Metadata of the file.
-    pub heading: HeadingDocument,
+    pub heading: MetadataDocument,
     /// Initiator.
     pub initiator: InitiatorDocument,
     /// Generators by name. A single `generator` has the name `generator`.

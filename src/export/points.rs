@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::chaos::Point;
+use crate::chaos::RandomPoint;
 use crate::grow::{Progress, WalkError};
 
 use super::Format;
@@ -20,7 +20,7 @@ const MANY: u64 = 1 << 12;
 ///
 /// Returns an error if the walk is cancelled, or if `out` fails.
 pub fn write_points(
-    points: impl Iterator<Item = Point>,
+    points: impl Iterator<Item = RandomPoint>,
     format: Format,
     cancel: Option<&AtomicBool>,
     progress: Option<&Progress>,

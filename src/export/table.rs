@@ -6,7 +6,7 @@ use std::num::NonZero;
 use crate::geometry::{BEYOND, DVec2, Direction};
 use crate::graph::Graph;
 use crate::grow::{
-    Division, Element, Fractal, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
+    Division, Element, FractalInfo, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
 };
 use crate::parallel::with_team;
 use crate::style::Named;
@@ -88,7 +88,7 @@ pub fn write(
         let mut write = |rows: &mut Rows| out.write_all(&rows.text);
         let fresh = || Collector {
             graph,
-            fractal: Fractal::default(),
+            fractal: FractalInfo::default(),
             goes_on: 0,
             rows: Vec::new(),
         };
@@ -117,7 +117,7 @@ const MANY: u64 = 1 << 12;
 
 /// The cells of a row.
 struct Row {
-    fractal: Fractal,
+    fractal: FractalInfo,
     index: u128,
     ends: [DVec2; 2],
     fertile: bool,
@@ -216,7 +216,7 @@ impl Cells<'_> {
 /// Collects the rows of a span.
 struct Collector<'g> {
     graph: &'g Graph,
-    fractal: Fractal,
+    fractal: FractalInfo,
     /// Number of leading rows whose fractal began before the span.
     goes_on: usize,
     rows: Vec<Row>,
@@ -225,12 +225,12 @@ struct Collector<'g> {
 impl Visitor for Collector<'_> {
     type Error = io::Error;
 
-    fn go_on(&mut self, fractal: Fractal) {
+    fn go_on(&mut self, fractal: FractalInfo) {
         self.fractal = fractal;
         self.goes_on = usize::MAX;
     }
 
-    fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
+    fn begin(&mut self, fractal: FractalInfo) -> io::Result<()> {
         self.fractal = fractal;
         self.goes_on = self.goes_on.min(self.rows.len());
         Ok(())

@@ -9,8 +9,8 @@ use crate::render::{
     Canvas, Drawing, FINE, Options, Paint, Pen, RenderError, Surface, TooManyPixels, position,
     write_drawing,
 };
+use crate::saturating::whole;
 use crate::style::{Cap, Colour, Join};
-use crate::whole::whole;
 
 /// Colours of the pixels in the first set only, in the second only, and in both; distinguishable with any
 /// colour vision (Okabe and Ito 2008).
@@ -30,7 +30,7 @@ pub const COLOURS: [Colour; 3] = [
 /// Returns an error if the picture is too large, or if `out` fails.
 pub fn write(
     canvas: Canvas,
-    sets: [&Pixels; 2],
+    sets: [&PixelSet; 2],
     options: &Options,
     out: &mut impl Write,
 ) -> Result<[u64; 3], RenderError> {
@@ -50,12 +50,12 @@ pub fn write(
 
 /// The pixels of a picture that hold points of a set.
 #[derive(Clone, Debug)]
-pub struct Pixels {
+pub struct PixelSet {
     canvas: Canvas,
     plane: Vec<bool>,
 }
 
-impl Pixels {
+impl PixelSet {
     /// Returns an empty set of pixels.
     ///
     /// # Errors

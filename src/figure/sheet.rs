@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::Team;
 use crate::render::{
-    Canvas, Drawing, Options, Pen, RenderError, Scene, Surface, Survey, pen, write_drawing,
+    Canvas, Drawing, Options, Pen, Prepass, RenderError, Scene, Surface, pen, write_drawing,
 };
 use crate::style::{Colour, Style};
 
@@ -35,7 +35,7 @@ pub struct Cell<'a> {
 
 /// Summary of a sheet that has been written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Written {
+pub struct SheetSummary {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// The number of elements of all approximants together.
@@ -56,12 +56,12 @@ pub fn write(
     columns: Option<u32>,
     options: &Options,
     out: &mut impl Write,
-) -> Result<Written, RenderError> {
+) -> Result<SheetSummary, RenderError> {
     let Options { style, view, .. } = options;
     let steps = cells.iter().map(|cell| cell.growth.steps).max();
     let mut surveys = Vec::new();
     for cell in cells {
-        surveys.push(Survey::of(
+        surveys.push(Prepass::of(
             cell.graph,
             &cell.growth,
             style,
@@ -101,7 +101,7 @@ pub fn write(
         style,
     };
     write_drawing(&sheet, options, out)?;
-    Ok(Written {
+    Ok(SheetSummary {
         size: sheet.size(),
         elements,
     })

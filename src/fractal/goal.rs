@@ -27,7 +27,7 @@ impl Goal {
     /// Returns the goal of a model for given steps and detail, each of which may be left open.
     ///
     /// A detail alone decides the number of steps, unless every step has an initiator of its own
-    /// ([`Graph::is_levelled`]). Without either, systems and endless structures that contract, and propose no number
+    /// ([`Graph::is_time_indexed`]). Without either, systems and endless structures that contract, and propose no number
     /// of steps, grow to one pixel, and others by [`proposed_steps`]. `compile` returns the
     /// model's graph for a number of steps.
     ///
@@ -135,7 +135,7 @@ pub fn proposed_steps(
 ) -> Result<u32, CompileError> {
     const DEEPEST: u32 = 12;
     const MOST_ELEMENTS: u64 = 20_000;
-    if let Some(steps) = model.heading().steps {
+    if let Some(steps) = model.metadata().steps {
         return Ok(steps);
     }
     if let Model::LSystem(system) = model {
@@ -166,10 +166,10 @@ fn goes_on_to_a_detail(
 ) -> bool {
     match model {
         Model::Ifs(system) => {
-            system.heading().steps.is_none() && system.contraction().verdict == Verdict::Contracts
+            system.metadata().steps.is_none() && system.contraction().verdict == Verdict::Contracts
         }
         Model::Instancing(structure) => {
-            structure.heading().steps.is_none()
+            structure.metadata().steps.is_none()
                 && structure.depth().is_none()
                 && compile(0).is_ok_and(|graph| graph.limit_bounds().is_some())
         }

@@ -85,7 +85,7 @@ impl Fractal {
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
     /// let koch = kfrac::Fractal::named("koch")?;
-    /// assert_eq!(koch.model().heading().description.title.as_deref(), Some("Koch curve"));
+    /// assert_eq!(koch.model().metadata().description.title.as_deref(), Some("Koch curve"));
     /// assert!(kfrac::Fractal::named("cock").is_err());
     /// # Ok(())
     /// # }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Document, HeadingDocument, Setting};
+use crate::document::{Document, MetadataDocument, Setting};
 use crate::render::Size;
 use crate::style::{Style, View};
 
@@ -40,8 +40,8 @@ impl Fractal {
     ) -> Result<Self, Error> {
         for setting in settings {
             let setting: Setting = setting.into();
-            let heading = self.document.as_ref().map(Document::heading);
-            let has = |it: &HeadingDocument| {
+            let heading = self.document.as_ref().map(Document::metadata);
+            let has = |it: &MetadataDocument| {
                 it.params
                     .iter()
                     .any(|param| param.name.value == setting.name)

@@ -207,7 +207,7 @@ impl Fractal {
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
         let model = self.model.of_limit();
-        let graph = model.compile_near(STEPS, self.seed, self.most_elements);
+        let graph = model.compile_normalised(STEPS, self.seed, self.most_elements);
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
         let exact = dimensions_of_graph(&graph)
             .dimensions
@@ -249,13 +249,13 @@ pub struct Dimension {
 impl Fractal {
     fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
         self.model
-            .compile_near(steps, self.seed, self.most_elements)
+            .compile_normalised(steps, self.seed, self.most_elements)
     }
 
     /// Compiles a graph that has what colours distinguish.
     fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Error> {
         if color_by == ColorBy::LastMap && matches!(self.model, Model::Ifs(_)) {
-            let graph = self.model.telling_last_maps_near();
+            let graph = self.model.with_last_maps_normalised();
             let graph = graph.map_err(|error| self.invalid(&error.into()))?;
             let message =
                 "it has too many maps and sets for colours by the map that is applied last";
@@ -304,7 +304,7 @@ impl Fractal {
     }
 
     fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
-        let heading = self.model.heading();
+        let heading = self.model.metadata();
         let description = &heading.description;
         Ok(Options {
             format,

@@ -49,7 +49,7 @@ fn every_file_of_the_library_has_pixels_like_its_png() {
 fn results_are_those_of_the_rooms() -> Result<(), Error> {
     let dragon = named("dragon").steps(6);
     let graph = dragon.model().compile(6).expect("it is compiled");
-    let description = &dragon.model().heading().description;
+    let description = &dragon.model().metadata().description;
     let mut svg = Vec::new();
     let options = Options {
         labels: render::Labels {
@@ -57,7 +57,7 @@ fn results_are_those_of_the_rooms() -> Result<(), Error> {
             description: description.about.clone().unwrap_or_default(),
             ..render::Labels::default()
         },
-        ..Options::of(dragon.model().heading())
+        ..Options::of(dragon.model().metadata())
     };
     render::write(&graph, &crate::grow::Growth::steps(6), &options, &mut svg)?;
     assert!(dragon.svg()?.as_bytes() == svg);

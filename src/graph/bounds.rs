@@ -8,8 +8,8 @@
 
 use std::collections::hash_map::Entry;
 
+use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, DVec2};
-use crate::mix::MixMap;
 use crate::rule::Placement;
 
 use super::hull::{Fineness, Hulls};
@@ -53,7 +53,7 @@ struct Reach {
 }
 
 /// Bounding boxes of approximants, without stroke width: see [`Graph::bounds`].
-pub struct Boxes<'g> {
+pub struct ApproximantBounds<'g> {
     graph: &'g Graph,
     reach: Reach,
 }
@@ -134,7 +134,7 @@ impl Graph {
     /// Returns the bounding boxes of approximants, which share the computations that do not depend on the
     /// step. `None` if the graph determines none of them.
     #[must_use]
-    pub fn boxes(&self) -> Option<Boxes<'_>> {
+    pub fn boxes(&self) -> Option<ApproximantBounds<'_>> {
         self.boxes_with(false, |_| 0.0)
     }
 
@@ -162,7 +162,11 @@ impl Graph {
     }
 
     /// Returns the boxes of approximants, or of the limit if `limit` is set.
-    fn boxes_with(&self, limit: bool, pad: impl Fn(&Object) -> f64) -> Option<Boxes<'_>> {
+    fn boxes_with(
+        &self,
+        limit: bool,
+        pad: impl Fn(&Object) -> f64,
+    ) -> Option<ApproximantBounds<'_>> {
         self.boxes_within(limit, Fineness::COARSE, pad)
     }
 
@@ -172,7 +176,7 @@ impl Graph {
         limit: bool,
         fineness: Fineness,
         pad: impl Fn(&Object) -> f64,
-    ) -> Option<Boxes<'_>> {
+    ) -> Option<ApproximantBounds<'_>> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -199,7 +203,7 @@ impl Graph {
             alive,
             pads: self.objects.iter().map(&pad).collect(),
         };
-        Some(Boxes { graph: self, reach })
+        Some(ApproximantBounds { graph: self, reach })
     }
 
     /// Iterates over all instances of fixed productions, with their placements.
@@ -262,7 +266,7 @@ impl Graph {
         };
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let ends = |object: usize| {
-            kept(object) || matches!(self.objects[object].replacement, Replacement::Beyond)
+            kept(object) || matches!(self.objects[object].replacement, Replacement::Unresolved)
         };
         let drawn = |object: usize, set: &[bool]| {
             self.objects[object].visible && (ends(object) || leads(object, set))
@@ -360,7 +364,7 @@ impl Graph {
     }
 }
 
-impl Boxes<'_> {
+impl ApproximantBounds<'_> {
     /// Returns the bounding box of approximant `steps`.
     #[must_use]
     pub fn at(&self, steps: u32) -> Option<Bounds> {
@@ -412,7 +416,7 @@ fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
 /// Keeps the farthest of the states that are equal but for the offset.
 fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
     let mut kept: Vec<State> = Vec::new();
-    let mut numbers = MixMap::default();
+    let mut numbers = FastMap::default();
     for state in states {
         match numbers.entry((state.object, key(state.vector))) {
             Entry::Occupied(number) => {

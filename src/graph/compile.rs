@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::expression::Dependence;
+use crate::fast_hash::FastMap;
 use crate::geometry::{DVec2, Homothety};
-use crate::mix::MixMap;
 use crate::rule::draw::Path;
-use crate::rule::{Moment, Part, Placement, Rule, Selection};
+use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
 use super::{Alternative, CompileError, Evaluated, Graph, Object, Production, Replacement};
@@ -67,19 +67,19 @@ struct Compiler<'r> {
     depends: Dependences,
     steps: u32,
     kinds: BTreeMap<Option<usize>, usize>,
-    numbers: MixMap<(Class, State), usize>,
+    numbers: FastMap<(Class, State), usize>,
     /// Class and state of every object, in the order of their numbers.
     keys: Vec<(Class, State)>,
     objects: Vec<Object>,
     /// Numbers of behaviours, by fertility, named generator and state.
-    behaviours: MixMap<(bool, Option<usize>, State), usize>,
+    behaviours: FastMap<(bool, Option<usize>, State), usize>,
     /// Replacements of behaviours, as far as known.
-    replacements: MixMap<usize, Replacement>,
+    replacements: FastMap<usize, Replacement>,
     /// Number of instances and amount of work so far.
     instances: usize,
     work: usize,
     /// Replacement matrix modulo m for an age and step: one column for each kind.
-    columns: MixMap<(u32, u32), Vec<Vec<u32>>>,
+    columns: FastMap<(u32, u32), Vec<Vec<u32>>>,
 }
 
 impl<'r> Compiler<'r> {
@@ -100,14 +100,14 @@ impl<'r> Compiler<'r> {
             depends,
             steps,
             kinds,
-            numbers: MixMap::default(),
+            numbers: FastMap::default(),
             keys: Vec::new(),
             objects: Vec::new(),
-            behaviours: MixMap::default(),
-            replacements: MixMap::default(),
+            behaviours: FastMap::default(),
+            replacements: FastMap::default(),
             instances: 0,
             work: 0,
-            columns: MixMap::default(),
+            columns: FastMap::default(),
         }
     }
 
@@ -158,7 +158,7 @@ impl<'r> Compiler<'r> {
         let beyond = self
             .objects
             .iter()
-            .any(|object| matches!(object.replacement, Replacement::Beyond));
+            .any(|object| matches!(object.replacement, Replacement::Unresolved));
         let seeds = rule
             .generators()
             .iter()
@@ -237,7 +237,7 @@ impl<'r> Compiler<'r> {
             index: Self::index(&state, self.depends.modulus),
             behaviour,
             replacement: if class.fertile {
-                Replacement::Beyond
+                Replacement::Unresolved
             } else {
                 Replacement::Kept
             },
@@ -291,8 +291,8 @@ impl<'r> Compiler<'r> {
 
     /// Returns the values that expressions see of an element in a state; `index` represents all indices
     /// that are equal to it modulo m.
-    fn moment(state: &State, index: u32) -> Moment {
-        Moment {
+    fn moment(state: &State, index: u32) -> ElementContext {
+        ElementContext {
             index: f64::from(index),
             age: f64::from(state.age),
             step: f64::from(state.step),
@@ -309,7 +309,7 @@ impl<'r> Compiler<'r> {
     }
 
     /// Returns the generators that may replace an element.
-    fn candidates(&self, generator: Option<usize>, moment: &Moment) -> Vec<usize> {
+    fn candidates(&self, generator: Option<usize>, moment: &ElementContext) -> Vec<usize> {
         if let Some(named) = generator {
             return vec![named];
         }
@@ -320,7 +320,7 @@ impl<'r> Compiler<'r> {
                 self.depends.index_is_free
                     || !self.depends.length
                         && selection.programs().any(|condition| {
-                            condition.dependence(Moment::LENGTH) != Dependence::None
+                            condition.dependence(ElementContext::LENGTH) != Dependence::None
                         })
             }
             Selection::ByIndex(_) => self.depends.index_is_free,
@@ -421,16 +421,16 @@ impl<'r> Compiler<'r> {
         !listed.is_random()
             && listed.programs().all(|program| {
                 let none = |slot| program.dependence(slot) == Dependence::None;
-                (self.depends.age || none(Moment::AGE))
-                    && (self.depends.step || none(Moment::STEP))
-                    && (self.depends.length || none(Moment::LENGTH))
-                    && (!self.depends.counts_index || none(Moment::INDEX))
+                (self.depends.age || none(ElementContext::AGE))
+                    && (self.depends.step || none(ElementContext::STEP))
+                    && (self.depends.length || none(ElementContext::LENGTH))
+                    && (!self.depends.counts_index || none(ElementContext::INDEX))
             })
     }
 
     /// Returns the points of a generator that does not depend on the element; zeros for a generator that
     /// draws or that is evaluated for each element.
-    fn fixed_points(&self, generator: usize, moment: &Moment) -> Result<Vec<DVec2>, Stop> {
+    fn fixed_points(&self, generator: usize, moment: &ElementContext) -> Result<Vec<DVec2>, Stop> {
         let listed = &self.rule.generators()[generator];
         let mut points = vec![DVec2::ZERO; listed.points.len()];
         if self.is_fixed(generator) {

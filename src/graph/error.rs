@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
 use crate::model::OutOfRange;
-use crate::rule::{Moment, Rule};
+use crate::rule::{ElementContext, Rule};
 
 /// Error: a model cannot be compiled or grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,7 +37,7 @@ pub enum CompileError {
 }
 
 impl CompileError {
-    pub(crate) fn not_finite(generator: &str, moment: &Moment) -> Self {
+    pub(crate) fn not_finite(generator: &str, moment: &ElementContext) -> Self {
         Self::NotFinite {
             generator: generator.into(),
             index: moment.index,
@@ -60,7 +60,7 @@ impl CompileError {
         else {
             return Diagnostic::error(self.to_string());
         };
-        let moment = Moment {
+        let moment = ElementContext {
             index: *index,
             age: *age,
             step: *step,

@@ -191,7 +191,7 @@ impl Graph {
             Replacement::Fixed(production) => {
                 production.seeds.iter().all(|seed| closed(&seed.chain))
             }
-            Replacement::Kept | Replacement::Beyond => true,
+            Replacement::Kept | Replacement::Unresolved => true,
             Replacement::Evaluated(_) => false,
         };
         if self.starts().all(closed) && self.objects.iter().all(seeds) && self.keeps_lines() {
@@ -367,8 +367,12 @@ impl<'g> Forecast<'g> {
     /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
     /// requires.
     fn is_resolved(&self) -> bool {
-        let beyond =
-            |number: &usize| matches!(self.graph.objects[*number].replacement, Replacement::Beyond);
+        let beyond = |number: &usize| {
+            matches!(
+                self.graph.objects[*number].replacement,
+                Replacement::Unresolved
+            )
+        };
         !self.standing.keys().any(beyond)
     }
 
@@ -395,7 +399,7 @@ impl<'g> Forecast<'g> {
     /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved
     /// further.
     pub fn advance(&mut self) -> bool {
-        if self.graph.is_levelled() {
+        if self.graph.is_time_indexed() {
             return self.advance_level();
         }
         if !self.is_resolved() {
@@ -441,7 +445,7 @@ impl<'g> Forecast<'g> {
                         self.add(object, &tally.count, Sums::default());
                     }
                 }
-                Replacement::Kept | Replacement::Beyond => {
+                Replacement::Kept | Replacement::Unresolved => {
                     self.add(number, &tally.count, tally.sums)
                 }
             }

@@ -36,7 +36,7 @@ impl Graph {
     /// Compiles a system to a graph whose objects record the map that is applied last, which takes more
     /// objects. `None` if the graph would have too many instances.
     #[must_use]
-    pub fn telling_last_maps(system: &System) -> Option<Self> {
+    pub fn with_last_maps(system: &System) -> Option<Self> {
         let size = system
             .ifs()
             .size()

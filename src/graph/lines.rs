@@ -34,7 +34,7 @@ impl Graph {
                             && body.meets_frame == [true; 2]
                             && body.is_joined()
                     }
-                    Replacement::Kept | Replacement::Beyond => true,
+                    Replacement::Kept | Replacement::Unresolved => true,
                     Replacement::Evaluated(alternatives) => {
                         let mut all = alternatives.iter();
                         all.all(|alternative| is_line(self.parts(alternative)))

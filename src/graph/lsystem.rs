@@ -41,7 +41,7 @@ impl Graph {
     ///
     /// # Errors
     ///
-    /// As for [`Graph::of_words`], if the system cannot be compiled in the other ways.
+    /// As for [`Graph::of_derived_word`], if the system cannot be compiled in the other ways.
     pub fn of_lsystem(
         system: &LSystem,
         steps: u32,
@@ -54,7 +54,7 @@ impl Graph {
         };
         match Self::of_edges(system).or_else(levels) {
             Ok(graph) => Ok(graph),
-            Err(NotCompiled) => Self::of_words(system, steps, seed, most_elements),
+            Err(NotCompiled) => Self::of_derived_word(system, steps, seed, most_elements),
         }
     }
 
@@ -64,7 +64,7 @@ impl Graph {
     /// # Errors
     ///
     /// If there are more than `most_elements` elements, or if numbers are not finite.
-    pub fn of_words(
+    pub fn of_derived_word(
         system: &LSystem,
         steps: u32,
         seed: u64,

@@ -16,7 +16,7 @@
 //! ([`Placement::SeedsAsInitiator`]) keeps the position only.
 //!
 //! A graph's coordinates are those of the model unless it is [compiled
-//! near](crate::model::Model::compile_near) the unit box around the origin: [`Graph::place`] maps them to
+//! near](crate::model::Model::compile_normalised) the unit box around the origin: [`Graph::place`] maps them to
 //! the model's.
 
 mod bounds;
@@ -28,19 +28,19 @@ mod forecast;
 mod hull;
 mod ifs;
 mod instancing;
-mod likely;
 mod limit;
 mod lines;
 mod lsystem;
 mod no_limit;
 mod place;
 mod policy;
+mod probable_reach;
 mod reach;
 mod roots;
 mod state;
 mod thickness;
 
-pub use bounds::Boxes;
+pub use bounds::ApproximantBounds;
 pub use count::Count;
 pub use error::CompileError;
 pub use forecast::{Forecast, Level, Population};
@@ -55,7 +55,7 @@ pub(crate) use roots::{Root, Roots, Sown};
 use std::sync::Arc;
 
 use crate::geometry::{DVec2, Frame, Homothety};
-use crate::instancing::{Coat, Thickness, Tint};
+use crate::instancing::{Appearance, Thickness, Tint};
 use crate::rule::{BaseElement, Part, Placement, Rule};
 use crate::style::Colour;
 
@@ -96,7 +96,7 @@ pub enum Replacement {
     /// Instances that are computed for each element, by one of these alternatives.
     Evaluated(Arc<[Alternative]>),
     /// Not resolved: the object is first reached at the depth for which the graph was compiled.
-    Beyond,
+    Unresolved,
 }
 
 /// Source of instances that are computed for each element.
@@ -229,7 +229,7 @@ impl Graph {
     }
 
     /// Returns the chain from which a number of steps is grown: approximant 0, unless the graph [is
-    /// time-indexed](Graph::is_levelled).
+    /// time-indexed](Graph::is_time_indexed).
     #[must_use]
     pub fn initiator(&self, steps: u32) -> &Chain {
         let last = self.initiators.len() - 1;
@@ -245,7 +245,7 @@ impl Graph {
     /// Returns whether the graph is time-indexed: whether its objects know the number of steps that
     /// remain, and each number of steps has its own initiator.
     #[must_use]
-    pub fn is_levelled(&self) -> bool {
+    pub fn is_time_indexed(&self) -> bool {
         self.initiators.len() > 1
     }
 
@@ -283,23 +283,23 @@ impl Graph {
 
     /// Returns the change of appearance that an object applies to its subtree.
     #[inline]
-    pub(crate) fn coat(&self, object: usize) -> Coat {
+    pub(crate) fn appearance(&self, object: usize) -> Appearance {
         let Object {
             tint,
             paint,
             thickness,
             ..
         } = self.objects[object];
-        let tint = tint.map_or(Coat::NONE, Coat::of);
-        let paint = paint.map(Coat::of_paint);
-        let thickness = thickness.map(Coat::of_thickness);
+        let tint = tint.map_or(Appearance::NONE, Appearance::of);
+        let paint = paint.map(Appearance::of_paint);
+        let thickness = thickness.map(Appearance::of_thickness);
         let all = [paint, thickness].into_iter().flatten();
-        all.fold(tint, Coat::over)
+        all.fold(tint, Appearance::over)
     }
 
     /// Returns whether any object changes the appearance of its subtree.
     #[inline]
-    pub(crate) fn coats(&self) -> bool {
+    pub(crate) fn has_appearances(&self) -> bool {
         self.tints || self.widest.is_some()
     }
 

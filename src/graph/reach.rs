@@ -206,7 +206,7 @@ impl Graph {
                 parts.iter().any(|part| part.placement.seeds())
             }),
             Replacement::Kept => false,
-            Replacement::Beyond => true,
+            Replacement::Unresolved => true,
         })
     }
 
@@ -261,7 +261,7 @@ impl Graph {
     /// step 0: reaching a given length then takes a fixed number of steps.
     #[must_use]
     pub fn even_lengths(&self) -> Option<[f64; 2]> {
-        if !self.is_plain() || !self.is_similar() || self.is_levelled() {
+        if !self.is_plain() || !self.is_similar() || self.is_time_indexed() {
             return None;
         }
         if !self.roots.elements.is_empty() || self.resets().contains(&true) {
@@ -347,7 +347,7 @@ impl Graph {
                 let mut parts = self.parts(alternative).iter();
                 parts.any(|part| part.placement == Placement::SeedsAsInitiator)
             }),
-            Replacement::Kept | Replacement::Beyond => false,
+            Replacement::Kept | Replacement::Unresolved => false,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::rule::draw::Path;
 
 use super::Chain;
@@ -26,7 +26,7 @@ pub(crate) struct Root {
     /// Length relative to that of the initiator element from which it descends.
     pub(crate) length: f64,
     /// Appearance that its ancestors and itself apply.
-    pub(crate) coat: Coat,
+    pub(crate) appearance: Appearance,
 }
 
 /// Fractal that was seeded before.

@@ -1,7 +1,7 @@
 //! Class and state of an element, which together determine its subtree, and the dependences of a rule.
 
 use crate::expression::{Dependence, Program};
-use crate::rule::{Generator, ListedElement, Moment, Placement, Rule, Selection};
+use crate::rule::{ElementContext, Generator, ListedElement, Placement, Rule, Selection};
 
 /// Properties of an element that do not depend on place and time: elements of one class in one state have
 /// equal subtrees.
@@ -73,7 +73,7 @@ impl Dependences {
         }
         for program in rule.selection().programs() {
             all.add(program);
-            match program.dependence(Moment::INDEX) {
+            match program.dependence(ElementContext::INDEX) {
                 Dependence::None => {}
                 Dependence::Modulo(modulus) => all.count_modulo(modulus),
                 Dependence::Free => all.index_is_free = true,
@@ -82,7 +82,7 @@ impl Dependences {
         let selects_by_length = all.length;
         for program in rule.generators().iter().flat_map(Generator::programs) {
             all.add(program);
-            match program.dependence(Moment::INDEX) {
+            match program.dependence(ElementContext::INDEX) {
                 Dependence::None => {}
                 // Random points are computed for each element, as are points that would require too many
                 // states.
@@ -119,9 +119,9 @@ impl Dependences {
 
     fn add(&mut self, program: &Program) {
         let depends = |slot| program.dependence(slot) != Dependence::None;
-        self.age |= depends(Moment::AGE);
-        self.step |= depends(Moment::STEP);
-        self.length |= depends(Moment::LENGTH);
+        self.age |= depends(ElementContext::AGE);
+        self.step |= depends(ElementContext::STEP);
+        self.length |= depends(ElementContext::LENGTH);
     }
 
     /// Returns whether the number of states may grow with the number of steps.

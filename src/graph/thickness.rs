@@ -47,7 +47,7 @@ impl Graph {
                     let objects = alternatives.iter().flat_map(|all| &all.objects);
                     objects.for_each(|&object| add(object));
                 }
-                Replacement::Kept | Replacement::Beyond => {}
+                Replacement::Kept | Replacement::Unresolved => {}
             }
             let widths = match object.thickness {
                 None => inner,

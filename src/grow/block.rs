@@ -15,7 +15,7 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
 use crate::graph::{Graph, Replacement};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::rule::Piece;
 
 use super::Element;
@@ -26,7 +26,7 @@ struct Leaf {
     /// Frame relative to the object's.
     frame: Frame,
     length: f64,
-    coat: Coat,
+    appearance: Appearance,
     object: usize,
     /// Step of its birth, relative to that of the object.
     born: u32,
@@ -37,7 +37,7 @@ struct Leaf {
 
 /// Element that is a line.
 #[derive(Clone, Copy, Debug)]
-pub struct Stick {
+pub struct LineElement {
     /// First and last point, in order of traversal.
     pub ends: [DVec2; 2],
     /// Base-2 logarithm of its length.
@@ -53,7 +53,7 @@ pub(super) struct Block {
     number: u64,
     leaves: Vec<Leaf>,
     /// Leaves as lines in the object's unit frame, if all are visible lines.
-    sticks: Option<Vec<Stick>>,
+    sticks: Option<Vec<LineElement>>,
     /// End points of the lines, if each joins the one before.
     line: Option<Vec<DVec2>>,
     /// Corners of the outlines, if these have no curves.
@@ -84,7 +84,7 @@ pub struct Run<'b> {
     pub(super) frame: Frame,
     pub(super) length: f64,
     /// Appearance of the object.
-    pub(super) coat: Coat,
+    pub(super) appearance: Appearance,
     /// Step of the object's birth.
     pub(super) born: u32,
     /// Rank of the first element.
@@ -202,7 +202,7 @@ impl Run<'_> {
         Element {
             frame,
             length: self.length * leaf.length,
-            coat: self.coat.over(leaf.coat),
+            appearance: self.appearance.over(leaf.appearance),
             index: self.index + number as u128,
             object: leaf.object,
             born: self.born + leaf.born,
@@ -224,7 +224,7 @@ impl Run<'_> {
     /// Returns the elements as lines in the unit frame of [`Run::map`], if all are visible lines. Whether the
     /// first one joins the preceding element is a field of [`Run::first`].
     #[must_use]
-    pub fn sticks(&self) -> Option<&[Stick]> {
+    pub fn sticks(&self) -> Option<&[LineElement]> {
         self.block.sticks.as_deref()
     }
 

@@ -194,9 +194,9 @@ impl ColonyKinds {
             && graph.is_plain()
             && graph.is_similar()
             && !graph.counts_index()
-            && !graph.is_levelled()
+            && !graph.is_time_indexed()
             && !graph.draws()
-            && !graph.coats()
+            && !graph.has_appearances()
             && graph.roots.elements.is_empty()
             && !graph.resets().contains(&true);
         if !tells {

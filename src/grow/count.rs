@@ -6,7 +6,7 @@ use std::num::NonZero;
 use crate::geometry::Bounds;
 use crate::graph::Graph;
 
-use super::{Element, Fractal, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
+use super::{Element, FractalInfo, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
 
 /// Number of elements in a span. Counting is fast: only long spans are worth the overhead.
 const MANY: u64 = 1 << 16;
@@ -82,7 +82,7 @@ impl Visitor for Counter<'_> {
         true
     }
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 

@@ -2,13 +2,13 @@
 
 use crate::geometry::{Direction, Frame};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 
 use super::block::{Block, Blocks};
 use super::census::Census;
-use super::evaluator::{Evaluator, Moment};
+use super::evaluator::{Evaluator, ReplacementContext};
 use super::sizes::Sizes;
-use super::start::{Standing, Start, StartChain, birth, planted};
+use super::start::{Standing, Start, StartChain, birth, seed_placement};
 use super::{Enter, Subtree};
 
 /// Element that a descent has reached.
@@ -31,7 +31,7 @@ pub(super) struct FoundRun<'b> {
     pub(super) object: usize,
     pub(super) frame: Frame,
     pub(super) length: f64,
-    pub(super) coat: Coat,
+    pub(super) appearance: Appearance,
     /// Step of birth of the object that the block replaces.
     pub(super) level: u32,
     /// Whether the preceding element ends where the object starts.
@@ -274,7 +274,7 @@ impl<'g> Descent<'g> {
             object,
             frame: standing.frame,
             length: standing.length,
-            coat: standing.coat,
+            appearance: standing.appearance,
             level,
             joined,
             index,
@@ -487,7 +487,7 @@ impl<'g> Descent<'g> {
             self.pool.push(Production::default());
             self.pool.len() - 1
         });
-        let moment = Moment {
+        let moment = ReplacementContext {
             born: self.born,
             level,
             rank,
@@ -504,7 +504,7 @@ impl<'g> Descent<'g> {
         let graph = self.graph;
         let start = |seed: &Seed, chain| Start {
             chain,
-            standing: planted(graph, &standing, seed.placement),
+            standing: seed_placement(graph, &standing, seed.placement),
             born: found.level + 1,
             sown: 0..0,
         };

@@ -10,7 +10,7 @@ use super::descent::{Descent, Found, Next, Stop};
 use super::start::Start;
 use super::tally::Tally;
 use super::walk::{Fractals, Sink};
-use super::{Element, Enter, Fractal, Growth, Subtree, WalkError};
+use super::{Element, Enter, FractalInfo, Growth, Subtree, WalkError};
 
 impl Element {
     #[inline]
@@ -19,7 +19,7 @@ impl Element {
         Self {
             frame: found.standing.frame,
             length: found.standing.length,
-            coat: found.standing.coat,
+            appearance: found.standing.appearance,
             index: found.index,
             object: found.object,
             born: found.level,
@@ -44,7 +44,7 @@ pub struct Elements<'g> {
 
 /// The fractal whose elements are being visited.
 struct Current<'g> {
-    fractal: Fractal,
+    fractal: FractalInfo,
     start: Start<'g>,
     descent: Descent<'g>,
 }
@@ -67,7 +67,7 @@ impl<'g> Elements<'g> {
         }
     }
 
-    fn advance(&mut self) -> Result<Option<(Fractal, Element)>, WalkError<Infallible>> {
+    fn advance(&mut self) -> Result<Option<(FractalInfo, Element)>, WalkError<Infallible>> {
         loop {
             let current = match &mut self.current {
                 Some(current) => current,
@@ -107,7 +107,7 @@ impl<'g> Elements<'g> {
 }
 
 impl Iterator for Elements<'_> {
-    type Item = Result<(Fractal, Element), WalkError<Infallible>>;
+    type Item = Result<(FractalInfo, Element), WalkError<Infallible>>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.has_ended {
@@ -135,7 +135,7 @@ impl<'g> Sink<'g> for Counts<'_> {
         0..=u32::MAX
     }
 
-    fn begin(&mut self, _: Fractal, _: u32) -> Result<(), Self::Error> {
+    fn begin(&mut self, _: FractalInfo, _: u32) -> Result<(), Self::Error> {
         Ok(())
     }
 
@@ -166,18 +166,18 @@ mod tests {
 
     use crate::catalogue::{Catalogue, Shelf};
     use crate::document::Document;
-    use crate::grow::{Element, Elements, Fractal, Growth, Visitor, walk};
+    use crate::grow::{Element, Elements, FractalInfo, Growth, Visitor, walk};
 
     #[derive(Default)]
     struct Listed {
-        fractal: Fractal,
+        fractal: FractalInfo,
         all: Vec<String>,
     }
 
     impl Visitor for Listed {
         type Error = Infallible;
 
-        fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
             self.fractal = fractal;
             Ok(())
         }

@@ -8,7 +8,7 @@ use super::start::Standing;
 
 /// Circumstances of a replacement, as far as they do not depend on the place.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment {
+pub(crate) struct ReplacementContext {
     /// Step in which the element's fractal was born.
     pub(crate) born: u32,
     /// Step in which the element was born.
@@ -17,11 +17,11 @@ pub(crate) struct Moment {
     pub(crate) rank: u64,
 }
 
-impl Moment {
+impl ReplacementContext {
     /// Returns the values that a rule's expressions see of the element.
     #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
-    pub(crate) fn seen(self, standing: &Standing) -> rule::Moment {
-        rule::Moment {
+    pub(crate) fn seen(self, standing: &Standing) -> rule::ElementContext {
+        rule::ElementContext {
             index: self.rank.max(1) as f64,
             age: f64::from(self.level - self.born),
             step: f64::from(self.level),
@@ -44,7 +44,7 @@ impl Evaluator {
         graph: &Graph,
         standing: &Standing,
         object: usize,
-        moment: Moment,
+        moment: ReplacementContext,
         production: &mut Production,
     ) -> Result<(), CompileError> {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {

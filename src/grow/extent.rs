@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use crate::geometry::Bounds;
 use crate::graph::Graph;
 
-use super::{Element, Enter, Fractal, Growth, Reaches, Visitor, WalkError, search, walk};
+use super::{Element, Enter, FractalInfo, Growth, Reaches, Visitor, WalkError, search, walk};
 
 #[cfg(test)]
 mod tests;
@@ -42,7 +42,7 @@ struct Extent<'g> {
 impl Visitor for Extent<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 

@@ -28,7 +28,7 @@ mod start;
 mod tally;
 mod walk;
 
-pub use block::{Run, Stick};
+pub use block::{LineElement, Run};
 pub use colony::{Colony, Taken};
 pub use count::{Counted, count};
 pub use elements::Elements;
@@ -42,7 +42,7 @@ pub use walk::{Growth, Walked, walk};
 pub(crate) use cells::{Field, Found, Layer, LimitCells, Search, Stopped};
 pub(crate) use census::{Census, Kind};
 pub(crate) use colony::{ColonyKind, ColonyKinds};
-pub(crate) use evaluator::{Evaluator, Moment};
+pub(crate) use evaluator::{Evaluator, ReplacementContext};
 pub(crate) use spans::{Division, Ranks, walk_with};
 pub(crate) use start::Standing;
 
@@ -50,7 +50,7 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::geometry::Frame;
 use crate::graph::CompileError;
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 
 /// Element of an approximant.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ pub struct Element {
     /// Length as a multiple of that of the initiator's element from which it descends.
     pub length: f64,
     /// Appearance composed of its own and those of its ancestors.
-    pub coat: Coat,
+    pub appearance: Appearance,
     /// Rank in its fractal, from 1.
     pub index: u128,
     /// Number of its object.
@@ -89,7 +89,7 @@ impl Element {
 /// Fractal of an approximant: the elements that descend from the initiator, or from one seed part, without
 /// the fractals that they seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fractal {
+pub struct FractalInfo {
     /// Number in the order of the walk, from 0.
     pub number: u64,
     /// Age: the number of steps since its birth.
@@ -130,10 +130,10 @@ pub trait Visitor {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Self::Error>;
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Self::Error>;
 
     /// Resumes a fractal that an earlier span of the walk began.
-    fn go_on(&mut self, _: Fractal) {}
+    fn go_on(&mut self, _: FractalInfo) {}
 
     /// Announces the ranks that the visitor of a span receives. Called only if they are known before the
     /// walk and belong to one fractal.

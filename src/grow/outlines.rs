@@ -4,7 +4,7 @@ use crate::geometry::{DVec2, Frame};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
-use super::{Element, Fractal, Growth, Visitor, WalkError, walk};
+use super::{Element, FractalInfo, Growth, Visitor, WalkError, walk};
 
 /// Computes the outlines of an approximant that is placed in a frame. Elements that join form one open
 /// outline; closed base elements form closed ones. If `fills` is set, a fractal that is a closed path forms
@@ -70,7 +70,7 @@ struct Line {
 impl Visitor for Outliner<'_> {
     type Error = OutlineError;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), OutlineError> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), OutlineError> {
         self.is_ring = fractal.is_ring;
         Ok(())
     }

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Production, Replacement};
 
-use super::evaluator::{Evaluator, Moment};
-use super::start::{Standing, planted};
+use super::evaluator::{Evaluator, ReplacementContext};
+use super::start::{Standing, seed_placement};
 use super::{Enter, Growth, Subtree};
 
 /// Maximum number of replacements; beyond it the search is abandoned.
@@ -109,7 +109,7 @@ pub(crate) fn search(
             if work > MOST_WORK || growth.cancel.is_some_and(is_cancelled) {
                 return None;
             }
-            let moment = Moment {
+            let moment = ReplacementContext {
                 born: node.born,
                 level: node.level,
                 rank: 0,
@@ -146,7 +146,7 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
             self.add(standing, instance.object, node.born, level);
         }
         for seed in &production.seeds {
-            let start = planted(self.graph, &node.standing, seed.placement);
+            let start = seed_placement(self.graph, &node.standing, seed.placement);
             for instance in &seed.chain.instances {
                 let standing = start.child(self.graph, instance);
                 self.add(standing, instance.object, level, level);

@@ -1,7 +1,7 @@
 //! Numbers of descendants of objects over a few steps.
 
 use crate::graph::{Alternative, Graph, Object, Replacement};
-use crate::whole::whole;
+use crate::saturating::whole;
 
 /// Largest number of steps for which sizes are computed.
 const MOST_STEPS: usize = 64;
@@ -26,7 +26,7 @@ pub(super) struct Sizes {
     by_length: Vec<Vec<u64>>,
     shortest: f64,
     /// Whether the graph is time-indexed: an object then has a single number.
-    is_levelled: bool,
+    is_time_indexed: bool,
 }
 
 impl Sizes {
@@ -53,9 +53,9 @@ impl Sizes {
                 sum(instances.map(|instance| instance.object), now)
             }
             Replacement::Evaluated(alternatives) => evaluated(alternatives, now),
-            Replacement::Beyond => beyond,
+            Replacement::Unresolved => beyond,
         };
-        if graph.is_levelled() {
+        if graph.is_time_indexed() {
             let mut counts = vec![1; objects.len()];
             // Objects of time-indexed graphs refer only to objects of larger numbers.
             for object in (0..objects.len()).rev() {
@@ -64,7 +64,7 @@ impl Sizes {
             let few = |count: u64| Some(count).filter(|count| *count <= most);
             let counts = counts.into_iter().map(|count| few(count).into_iter());
             return Self {
-                is_levelled: true,
+                is_time_indexed: true,
                 ..Self::of_steps(counts.map(Iterator::collect).collect())
             };
         }
@@ -97,7 +97,7 @@ impl Sizes {
             counts,
             by_length: Vec::new(),
             shortest: 0.0,
-            is_levelled: false,
+            is_time_indexed: false,
         }
     }
 
@@ -168,7 +168,11 @@ impl Sizes {
     /// Returns the index under which the data of an object are stored for a number of steps.
     #[inline]
     pub(super) fn slot(&self, steps: u32) -> usize {
-        if self.is_levelled { 0 } else { steps as usize }
+        if self.is_time_indexed {
+            0
+        } else {
+            steps as usize
+        }
     }
 
     /// Returns the sum of all sizes.

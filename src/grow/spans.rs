@@ -21,7 +21,7 @@ use super::sizes::Sizes;
 use super::start::Start;
 use super::tally::Tally;
 use super::walk::{Sink, Visiting, send};
-use super::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};
+use super::{Element, Enter, FractalInfo, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};
 
 /// Number of visits after which a span without elements is submitted, so that the walk can be stopped.
 const LONG: u64 = 1 << 16;
@@ -181,7 +181,7 @@ where
 /// Item of a span.
 enum Item<'w> {
     /// Beginning of a fractal, with the step of its birth.
-    Begin(Fractal, u32),
+    Begin(FractalInfo, u32),
     Element(Found),
     Subtree(FoundSubtree),
     /// Part of a colony that the visitor takes.
@@ -193,7 +193,7 @@ enum Item<'w> {
 /// Limit of a span.
 #[derive(Clone, Copy, Default)]
 struct Position {
-    fractal: Fractal,
+    fractal: FractalInfo,
     /// Step in which the fractal was born.
     born: u32,
     /// Number of its elements before the limit, if known; otherwise 0.
@@ -456,7 +456,7 @@ where
         self.asked.ages()
     }
 
-    fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error> {
+    fn begin(&mut self, fractal: FractalInfo, born: u32) -> Result<(), Self::Error> {
         self.make_room()?;
         self.is_open = true;
         self.span.to = Position {
@@ -557,7 +557,7 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
         self.visitor.ages()
     }
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), V::Error> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), V::Error> {
         self.visitor.begin(fractal)?;
         self.count(1)
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Root};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::rule::Placement;
 use crate::rule::draw::Path;
 
@@ -18,7 +18,7 @@ pub(crate) struct Standing {
     pub(crate) root: u32,
     pub(crate) path: Path,
     /// Appearance composed of its own and those of its ancestors.
-    pub(crate) coat: Coat,
+    pub(crate) appearance: Appearance,
 }
 
 impl Standing {
@@ -29,7 +29,7 @@ impl Standing {
             length: 1.0,
             root: 0,
             path: Path::of_seed(seed),
-            coat: Coat::NONE,
+            appearance: Appearance::NONE,
         }
     }
 
@@ -44,11 +44,14 @@ impl Standing {
         match graph.roots.elements.get(instance.position as usize) {
             None => child,
             Some(&Root {
-                path, length, coat, ..
+                path,
+                length,
+                appearance,
+                ..
             }) => Self {
                 path,
                 length,
-                coat,
+                appearance,
                 ..child
             },
         }
@@ -66,10 +69,10 @@ impl Standing {
             } else {
                 self.path
             },
-            coat: if graph.coats() {
-                self.coat.over(graph.coat(instance.object))
+            appearance: if graph.has_appearances() {
+                self.appearance.over(graph.appearance(instance.object))
             } else {
-                self.coat
+                self.appearance
             },
         }
     }
@@ -148,7 +151,7 @@ pub(super) fn birth(graph: &Graph, instance: &Instance) -> Option<u32> {
 }
 
 /// Returns the placement of a part that an element seeds.
-pub(super) fn planted(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
+pub(super) fn seed_placement(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
     if placement != Placement::SeedsAsInitiator {
         return *standing;
     }

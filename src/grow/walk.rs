@@ -11,7 +11,7 @@ use super::colony::{Colony, Taken};
 use super::descent::{Descent, Found, FoundRun, Next, Stop};
 use super::start::Start;
 use super::tally::Tally;
-use super::{Element, Enter, Fractal, Progress, Subtree, Visitor, WalkError};
+use super::{Element, Enter, FractalInfo, Progress, Subtree, Visitor, WalkError};
 
 /// Number of steps, seed and limits of growth.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +113,7 @@ pub(super) trait Sink<'g> {
     /// Returns [`Visitor::ages`].
     fn ages(&self) -> RangeInclusive<u32>;
     /// Begins a fractal that was born in a step.
-    fn begin(&mut self, fractal: Fractal, born: u32) -> Result<(), Self::Error>;
+    fn begin(&mut self, fractal: FractalInfo, born: u32) -> Result<(), Self::Error>;
     /// Receives elements of the fractal, or a block or subtree in their place.
     fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
     /// Ends the fractal.
@@ -202,7 +202,7 @@ pub(super) fn walk_over<V: Visitor>(
 
 /// Sends the elements of one fractal of the last approximant to a sink.
 fn send_fractal<'g, S: Sink<'g>>(
-    fractal: Fractal,
+    fractal: FractalInfo,
     start: &Start<'g>,
     mut descent: Descent<'g>,
     stop: Stop<'_>,
@@ -350,10 +350,10 @@ impl<'g> Fractals<'g> {
     }
 
     /// Numbers a fractal that begins.
-    pub(super) fn number(&mut self, start: &Start<'g>) -> Fractal {
+    pub(super) fn number(&mut self, start: &Start<'g>) -> FractalInfo {
         let number = self.count;
         self.count += 1;
-        Fractal {
+        FractalInfo {
             number,
             age: self.age(start),
             is_ring: start.chain().is_ring(),
@@ -414,7 +414,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
         }
     }
 
-    pub(super) fn begin(&mut self, fractal: Fractal) -> Result<(), WalkError<V::Error>> {
+    pub(super) fn begin(&mut self, fractal: FractalInfo) -> Result<(), WalkError<V::Error>> {
         self.visitor.begin(fractal).map_err(WalkError::Visitor)
     }
 
@@ -432,7 +432,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
             object: found.object,
             frame: found.frame,
             length: found.length,
-            coat: found.coat,
+            appearance: found.appearance,
             born: found.level,
             index: found.index,
             joined: found.joined,
@@ -475,7 +475,7 @@ impl<'g, V: Visitor> Sink<'g> for Direct<'_, '_, V> {
         self.visiting.visitor.ages()
     }
 
-    fn begin(&mut self, fractal: Fractal, _: u32) -> Result<(), Self::Error> {
+    fn begin(&mut self, fractal: FractalInfo, _: u32) -> Result<(), Self::Error> {
         self.tally.begin(1);
         self.visiting.begin(fractal)
     }
@@ -525,7 +525,7 @@ mod tests {
     use super::{Growth, walk};
     use crate::catalogue::Catalogue;
     use crate::document::Document;
-    use crate::grow::{Element, Enter, Fractal, Subtree, Visitor};
+    use crate::grow::{Element, Enter, FractalInfo, Subtree, Visitor};
 
     /// Records the elements of fractals of some ages, by age, and the number of calls of `enter`.
     struct Aged {
@@ -542,7 +542,7 @@ mod tests {
             self.ages.clone()
         }
 
-        fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+        fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
             self.age = fractal.age;
             Ok(())
         }

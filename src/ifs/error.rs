@@ -6,7 +6,7 @@ use super::{Definition, Edge, Shape};
 
 /// Owner of a weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weighted {
+pub enum WeightOwner {
     /// The map with this index.
     Map(usize),
     /// The edge with this index.
@@ -15,7 +15,7 @@ pub enum Weighted {
     Condensation(usize),
 }
 
-impl std::fmt::Display for Weighted {
+impl std::fmt::Display for WeightOwner {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Map(number) => write!(f, "map {}", number + 1),
@@ -41,7 +41,7 @@ pub enum IfsError {
     #[error("{of} has the weight {weight}; weights are positive numbers")]
     Weight {
         /// Owner of the weight.
-        of: Weighted,
+        of: WeightOwner,
         /// The weight.
         weight: f64,
     },
@@ -107,7 +107,7 @@ pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
         if some_weigh && map.weight.is_none() {
             errors.push(IfsError::WeightMissing { map: number });
         }
-        errors.extend(check_weight(map.weight, Weighted::Map(number)));
+        errors.extend(check_weight(map.weight, WeightOwner::Map(number)));
     }
     if let Some(edges) = &definition.edges {
         errors.extend(check_edges(edges, maps.len()));
@@ -118,7 +118,7 @@ pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
                 condensation: number,
             });
         }
-        errors.extend(check_weight(set.weight, Weighted::Condensation(number)));
+        errors.extend(check_weight(set.weight, WeightOwner::Condensation(number)));
     }
     if let Some(Shape::Point(point)) = definition.initial
         && !point.is_finite()
@@ -128,7 +128,7 @@ pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
     errors
 }
 
-fn check_weight(weight: Option<f64>, of: Weighted) -> Option<IfsError> {
+fn check_weight(weight: Option<f64>, of: WeightOwner) -> Option<IfsError> {
     let weight = weight?;
     let good = weight > 0.0 && weight.is_finite();
     (!good).then_some(IfsError::Weight { of, weight })
@@ -156,7 +156,7 @@ fn check_edges(edges: &[Edge], maps: usize) -> Vec<IfsError> {
                 first,
             });
         }
-        errors.extend(check_weight(edge.weight, Weighted::Edge(number)));
+        errors.extend(check_weight(edge.weight, WeightOwner::Edge(number)));
     }
     for map in 0..maps {
         if !entered[map] {

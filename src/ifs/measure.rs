@@ -8,7 +8,7 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 
 /// Part of the measure: the distribution of the points that one map has just moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct MapMeasure {
     /// Share of its time that the walk spends in this part.
     pub weight: f64,
     /// Moments of the part alone; `None` if the walk leaves it for ever.
@@ -22,7 +22,7 @@ pub struct Measure {
     /// Moments of the whole measure.
     pub moments: Moments,
     /// Parts of the measure, one for each map.
-    pub by_map: Vec<Part>,
+    pub by_map: Vec<MapMeasure>,
 }
 
 /// Relative excess of a correlation over 1 that counts as rounding.
@@ -179,7 +179,7 @@ impl Flow<'_> {
     }
 
     /// Returns the part of every map: weight and moments of the points that it has just moved.
-    fn parts(&self, first: &[DVec2], second: &[DMat2]) -> Vec<Part> {
+    fn parts(&self, first: &[DVec2], second: &[DMat2]) -> Vec<MapMeasure> {
         let mut sums = vec![(0.0, DVec2::ZERO, DMat2::ZERO); self.maps.len()];
         for (from, step) in self.steps() {
             if let Choice::Map(map) = step.choice {
@@ -190,7 +190,7 @@ impl Flow<'_> {
                 sums[map].2 += moved.1;
             }
         }
-        let parts = sums.into_iter().map(|(weight, first, second)| Part {
+        let parts = sums.into_iter().map(|(weight, first, second)| MapMeasure {
             weight,
             moments: (weight > 0.0).then(|| Moments {
                 mean: first / weight,

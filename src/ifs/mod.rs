@@ -42,12 +42,12 @@ mod system;
 mod walk;
 
 pub use contraction::{Contraction, Verdict};
-pub use error::{IfsError, Weighted};
+pub use error::{IfsError, WeightOwner};
 pub use interpolation::{
     InterpolationError, interpolate, interpolation_dimension, scale_of_dimension,
 };
 pub use map::{Map, about, axes, complex, complex_conjugate, toward};
-pub use measure::{Measure, Part};
+pub use measure::{MapMeasure, Measure};
 pub use moments::Moments;
 pub use shape::Shape;
 pub(crate) use shrinking::Shrinking;

@@ -2,14 +2,14 @@
 
 use super::{Contraction, Ifs, IfsError, Shape};
 use crate::geometry::{DVec2, Homothety, convex_hull};
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 
 /// A system with the data of its file that do not belong to its mathematics.
 ///
 /// Guarantee: the system does not diverge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
-    pub(crate) heading: Heading,
+    pub(crate) heading: Metadata,
     pub(crate) ifs: Ifs,
     /// Whether the images of the initial set, in the order of the maps, form one line.
     pub(crate) chained: bool,
@@ -21,7 +21,7 @@ pub struct System {
 impl System {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
-    pub fn heading(&self) -> &Heading {
+    pub fn metadata(&self) -> &Metadata {
         &self.heading
     }
 

@@ -5,5 +5,5 @@ mod picture;
 mod table;
 
 pub use fractint::{Fractint, Imported, read as read_fractint};
-pub use picture::{Channel, Picture, PictureError};
+pub use picture::{Channel, PictureError, Raster};
 pub use table::{TableError, read_points};

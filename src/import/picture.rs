@@ -46,7 +46,7 @@ pub enum Channel {
 
 /// A picture with one value a pixel.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct Raster {
     /// The number of pixels in a row.
     pub width: usize,
     /// The number of rows.
@@ -57,7 +57,7 @@ pub struct Picture {
     pub values: Vec<u8>,
 }
 
-impl Picture {
+impl Raster {
     /// Returns whether bytes start with the signature of a PNG or a JPEG.
     #[must_use]
     pub fn is_picture(bytes: &[u8]) -> bool {

@@ -44,12 +44,12 @@ pub use word::Word;
 
 use crate::diagnostic::Place;
 use crate::expression::Program;
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 
 /// An L-system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LSystem {
-    pub(crate) heading: Heading,
+    pub(crate) heading: Metadata,
     pub(crate) start: f64,
     pub(crate) length: f64,
     pub(crate) symbols: Vec<Symbol>,
@@ -175,7 +175,7 @@ pub enum Context {
 impl LSystem {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
-    pub fn heading(&self) -> &Heading {
+    pub fn metadata(&self) -> &Metadata {
         &self.heading
     }
 
@@ -241,10 +241,10 @@ impl LSystem {
 
     /// Returns the system without actions on width and colour: it draws the same set.
     #[must_use]
-    pub fn without_looks(&self) -> Self {
+    pub fn without_appearance(&self) -> Self {
         let mut plain = self.clone();
         for symbol in &mut plain.symbols {
-            symbol.meaning.retain(|action| !action.changes_looks());
+            symbol.meaning.retain(|action| !action.changes_appearance());
         }
         plain
     }
@@ -260,7 +260,7 @@ impl LSystem {
 impl Action {
     /// Returns whether the action changes width or colour only.
     #[must_use]
-    pub fn changes_looks(&self) -> bool {
+    pub fn changes_appearance(&self) -> bool {
         matches!(
             self,
             Self::Width(_) | Self::SetWidth(_) | Self::SetColour(_) | Self::ShiftColour(_)

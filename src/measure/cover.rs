@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::whole::whole;
+use crate::saturating::whole;
 
 /// Cover of a set by boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,6 +6,6 @@ mod nearest;
 mod region;
 mod squares;
 
-pub use cover::{NoCover, Set, Subject};
+pub use cover::{NoCover, Subject, Subset};
 pub use hausdorff::{Distance, Precision, hausdorff};
 pub use region::TooMany;

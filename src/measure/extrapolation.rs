@@ -210,7 +210,7 @@ struct Range {
 }
 
 impl Range {
-    /// Returns the estimate from the models of the range; `whole` is the relative prior of D = 2. Returns
+    /// Returns the estimate from the models of the range; `saturating` is the relative prior of D = 2. Returns
     /// `None` if there is no model.
     fn of(sizes: usize, told: &[Told], whole: f64) -> Option<Self> {
         /// Logarithm of the likelihood, relative to the best, below which models are ignored.

@@ -5,11 +5,11 @@ use std::convert::Infallible;
 
 use crate::geometry::DVec2;
 use crate::graph::{Graph, Replacement};
-use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, WalkError, walk};
+use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, WalkError, walk};
 
 /// Points near the limit set of one draw, and their resolution.
 #[derive(Clone, Debug)]
-pub struct Grown {
+pub struct GrownPoints {
     /// Midpoints of fertile elements that are no longer than the detail.
     pub points: Vec<DVec2>,
     /// Length down to which elements have been replaced, in the rule's units.
@@ -29,7 +29,7 @@ pub fn grown(
     graph: &Graph,
     growth: &Growth<'_>,
     most: usize,
-) -> Result<Grown, WalkError<Infallible>> {
+) -> Result<GrownPoints, WalkError<Infallible>> {
     let start = graph.initiator(growth.steps).instances.iter();
     let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
     let at = |detail: f64| {
@@ -40,7 +40,7 @@ pub fn grown(
             points: Vec::new(),
         };
         match walk(graph, growth, &mut tips) {
-            Ok(_) => Ok(Some(Grown {
+            Ok(_) => Ok(Some(GrownPoints {
                 points: tips.points,
                 detail,
             })),
@@ -79,7 +79,7 @@ struct Tips<'g> {
 impl Visitor for Tips<'_> {
     type Error = Enough;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Enough> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Enough> {
         Ok(())
     }
 

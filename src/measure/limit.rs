@@ -18,7 +18,7 @@ pub(super) use moments::Moments;
 
 /// Reason why a graph has no limit set that can be walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoLimit {
+pub enum LimitSetError {
     /// Maps are drawn by chance, or depend on an index that has to be counted.
     #[error("its maps are not fixed: they depend on draws or on indices")]
     NotFixed,
@@ -133,18 +133,18 @@ impl LimitSet {
     /// # Errors
     ///
     /// Returns an error if there is no limit set, or if the graph does not determine it.
-    pub fn of(graph: &Graph) -> Result<Self, NoLimit> {
+    pub fn of(graph: &Graph) -> Result<Self, LimitSetError> {
         if !graph.is_plain() || !graph.is_regular() {
-            return Err(NoLimit::NotFixed);
+            return Err(LimitSetError::NotFixed);
         }
         if graph.depth().is_some() {
-            return Err(NoLimit::Endless);
+            return Err(LimitSetError::Endless);
         }
         if graph.resets().contains(&true) {
-            return Err(NoLimit::Resets);
+            return Err(LimitSetError::Resets);
         }
         if !graph.shrinks() {
-            return Err(NoLimit::DoesNotShrink);
+            return Err(LimitSetError::DoesNotShrink);
         }
         let lasting = lasting(graph);
         let kept = |instance: &&Instance| lasting[instance.object];
@@ -154,7 +154,7 @@ impl LimitSet {
         let start = graph.initiator(0).instances.iter();
         let start: Vec<_> = start.filter(kept).map(placed).collect();
         if start.is_empty() {
-            return Err(NoLimit::NothingFertile);
+            return Err(LimitSetError::NothingFertile);
         }
         Ok(Self::of_copies(children, start))
     }

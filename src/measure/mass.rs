@@ -1,7 +1,7 @@
 //! The distribution of a set's mass over boxes, and its lacunarity.
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::whole::whole;
+use crate::saturating::whole;
 
 use super::bits::Bits;
 use super::cover::Grid;

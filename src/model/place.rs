@@ -210,7 +210,7 @@ impl Model {
     ///
     /// As for [`Model::compile_for`] and [`Model::place`], and if a rule grows beyond the range of
     /// doubles.
-    pub fn compile_near(
+    pub fn compile_normalised(
         &self,
         steps: u32,
         seed: u64,
@@ -249,13 +249,13 @@ impl Model {
         })
     }
 
-    /// Returns [`Graph::telling_last_maps`] of a system in normalised coordinates, or `None` if there are
+    /// Returns [`Graph::with_last_maps`] of a system in normalised coordinates, or `None` if there are
     /// too many maps, or if the model is not a system.
     ///
     /// # Errors
     ///
     /// As for [`Model::place`].
-    pub fn telling_last_maps_near(&self) -> Result<Option<Graph>, OutOfRange> {
+    pub fn with_last_maps_normalised(&self) -> Result<Option<Graph>, OutOfRange> {
         let place = self.place()?;
         let (model, place) = match self.moved(&place) {
             Some(moved) => (moved, place),
@@ -264,7 +264,7 @@ impl Model {
         let Self::Ifs(system) = &model else {
             return Ok(None);
         };
-        let graph = Graph::telling_last_maps(system);
+        let graph = Graph::with_last_maps(system);
         Ok(graph.map(|graph| Graph { place, ..graph }))
     }
 }

@@ -16,8 +16,8 @@ use crate::parallel::with_team;
 use crate::style::Width;
 
 use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
-use super::survey::overhang;
-use super::{Canvas, Drawing, Options, RenderError, Scene, Survey};
+use super::prepass::overhang;
+use super::{Canvas, Drawing, Options, Prepass, RenderError, Scene};
 
 /// Pixels of a band, and buffers for the next one.
 type Band = Result<(Pixmap, Spare), RenderError>;
@@ -37,7 +37,7 @@ struct Bands<'a> {
 
 /// Draws and encodes a surveyed approximant.
 pub(super) fn write_survey(
-    survey: &Survey<'_>,
+    prepass: &Prepass<'_>,
     growth: &Growth<'_>,
     canvas: Canvas,
     options: &Options,
@@ -51,16 +51,16 @@ pub(super) fn write_survey(
     // Antialiasing colours pixels that a shape covers in part.
     let pad = stroke + 1.0;
     let all = canvas.shown(pad);
-    let sight = survey.sight().clone();
-    let sight = sight.within(&all, survey.graph(), growth, style, survey.counts_ranks());
-    let scene = Scene::new(survey, growth, canvas);
+    let culling = prepass.culling().clone();
+    let culling = culling.within(&all, prepass.graph(), growth, style, prepass.counts_ranks());
+    let scene = Scene::new(prepass, growth, canvas);
     let bands = Bands {
         progress: growth.progress,
         ..Bands::of(&scene, options, growth.cancel)
     };
     if let Some(progress) = growth.progress {
         let [width, height] = canvas.size().map(u64::from);
-        let walked = u64::from(survey.walked) * survey.elements;
+        let walked = u64::from(prepass.walked) * prepass.elements;
         progress.expect(2 * width * height + walked);
     }
     let growth = Growth {
@@ -69,8 +69,8 @@ pub(super) fn write_survey(
     };
     bands.write(out, |rows, spare| {
         let shown = canvas.shown_in(rows.clone(), pad);
-        let survey = survey.clone().of_what_is_in(sight.moved_to(&shown));
-        let scene = Scene::new(&survey, &growth, canvas);
+        let prepass = prepass.clone().of_what_is_in(culling.moved_to(&shown));
+        let scene = Scene::new(&prepass, &growth, canvas);
         drawn(&scene, rows, spare, options.threads)
     })
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::geometry::{BEYOND, Bounds, DAffine2, DMat2, DVec2};
 use crate::style::View;
 
-use super::Survey;
+use super::Prepass;
 
 /// Size of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,15 +155,15 @@ impl Canvas {
     }
 
     /// Creates a canvas that shows the bounding boxes of surveys at a common scale, or a window.
-    pub(crate) fn of(surveys: &[Survey<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
+    pub(crate) fn of(surveys: &[Prepass<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
         let mut all = Bounds::EMPTY;
-        for survey in surveys {
-            all.add_all(&survey.bounds);
+        for prepass in surveys {
+            all.add_all(&prepass.bounds);
         }
-        if view.window.is_none() && surveys.iter().any(|survey| survey.is_beyond) {
+        if view.window.is_none() && surveys.iter().any(|prepass| prepass.is_beyond) {
             return Err(NoRoom::Beyond);
         }
-        let overhang = surveys.iter().map(Survey::overhang).fold(0.0, f64::max);
+        let overhang = surveys.iter().map(Prepass::overhang).fold(0.0, f64::max);
         let canvas = match view.window {
             Some(window) => Self::of_window(window, view, size)?,
             None => Self::fit(&all, size, view.margin + overhang)?,

@@ -4,18 +4,18 @@ use std::convert::Infallible;
 
 use crate::geometry::Frame;
 use crate::graph::{Object, Replacement};
-use crate::grow::{Census, Element, Fractal, Growth, Kind, WalkError};
-use crate::instancing::Coat;
+use crate::grow::{Census, Element, FractalInfo, Growth, Kind, WalkError};
+use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
-use super::Survey;
+use super::Prepass;
 
 /// Returns an element of a kind, at an arbitrary place.
 fn element(kind: &Kind, born: u32) -> Element {
     Element {
         frame: Frame::UNIT.with_direction(kind.direction),
         length: 1.0,
-        coat: Coat::NONE,
+        appearance: Appearance::NONE,
         index: 1,
         object: kind.object,
         born,
@@ -24,7 +24,7 @@ fn element(kind: &Kind, born: u32) -> Element {
     }
 }
 
-impl Survey<'_> {
+impl Prepass<'_> {
     /// Computes the survey if elements are kept for their length only; `None` if that requires a walk.
     pub(super) fn counted(
         &self,
@@ -32,35 +32,35 @@ impl Survey<'_> {
     ) -> Result<Option<Self>, WalkError<Infallible>> {
         let graph = self.graph();
         let by_age = self.style().color_by == ColorBy::Age && graph.seeds;
-        if by_age || self.sight().is_bounded() {
+        if by_age || self.culling().is_bounded() {
             return Ok(None);
         }
-        let shortest = self.sight().shortest().filter(|&shortest| shortest > 0.0);
+        let shortest = self.culling().shortest().filter(|&shortest| shortest > 0.0);
         let census = shortest.and_then(|shortest| Census::of(graph, growth.steps, shortest));
         let Some(census) = census else {
             return Ok(None);
         };
-        let mut survey = self.clone();
-        survey.fractals = 1;
+        let mut prepass = self.clone();
+        prepass.fractals = 1;
         for (step, kinds) in (0..).zip(census.steps()) {
             for kind in kinds {
                 let object = &graph.objects()[kind.object];
                 if kind.is_replaced {
-                    survey.steps = survey.steps.max(step + 1);
+                    prepass.steps = prepass.steps.max(step + 1);
                     let seeds = seeds(object).saturating_mul(kind.count);
-                    survey.fractals = survey.fractals.saturating_add(seeds);
+                    prepass.fractals = prepass.fractals.saturating_add(seeds);
                 } else {
-                    survey.count(object, &element(kind, step), growth.steps, kind.count);
+                    prepass.count(object, &element(kind, step), growth.steps, kind.count);
                 }
             }
         }
-        if survey.elements > growth.most_elements {
+        if prepass.elements > growth.most_elements {
             let limit = growth.most_elements;
             return Err(WalkError::TooManyElements { limit });
         }
         let tells_ranks = self.style().color_by == ColorBy::Index;
-        let is_known = !tells_ranks || survey.count_ranks(Some(census), growth.steps);
-        Ok(is_known.then_some(survey))
+        let is_known = !tells_ranks || prepass.count_ranks(Some(census), growth.steps);
+        Ok(is_known.then_some(prepass))
     }
 
     /// Counts elements of the last approximant, or kept before it.
@@ -68,9 +68,9 @@ impl Survey<'_> {
         self.elements = self.elements.saturating_add(count);
         if object.visible {
             // The ages of seeded fractals are not computed here.
-            let fractal = Fractal {
+            let fractal = FractalInfo {
                 age: steps,
-                ..Fractal::default()
+                ..FractalInfo::default()
             };
             self.use_value_of(element, &fractal);
             self.strokes |= self.is_stroked(object);
@@ -94,8 +94,8 @@ mod tests {
     use crate::document::Document;
     use crate::graph::Graph;
     use crate::grow::Growth;
-    use crate::render::Survey;
-    use crate::render::sight::Sight;
+    use crate::render::Prepass;
+    use crate::render::culling::Culling;
     use crate::style::{ColorBy, Named, Style};
 
     #[test]
@@ -115,14 +115,14 @@ mod tests {
                 };
                 for (steps, shortest) in [(0, 0.1), (4, 0.07), (6, 0.2)] {
                     let growth = Growth::steps(steps);
-                    let sight = Sight::to_length(&graph, shortest);
-                    let mut survey = Survey::new(&graph, &style, 6).of_what_is_in(sight);
-                    survey.is_bounded = true;
-                    let Some(told) = survey.counted(&growth).unwrap() else {
+                    let culling = Culling::to_length(&graph, shortest);
+                    let mut prepass = Prepass::new(&graph, &style, 6).of_what_is_in(culling);
+                    prepass.is_bounded = true;
+                    let Some(told) = prepass.counted(&growth).unwrap() else {
                         continue;
                     };
                     counted += 1;
-                    let walked = survey.walked(&growth, NonZero::<usize>::MIN).unwrap();
+                    let walked = prepass.walked(&growth, NonZero::<usize>::MIN).unwrap();
                     let what = format!("{} at {steps} by {color_by:?}", entry.name);
                     assert_eq!(told.elements, walked.elements, "{what}");
                     assert_eq!(told.fractals, walked.fractals, "{what}");
@@ -142,9 +142,9 @@ mod tests {
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 100).unwrap();
-        let survey =
-            Survey::new(&graph, rule.style(), 100).of_what_is_in(Sight::to_length(&graph, 1e-9));
-        let error = survey.counted(&Growth::steps(100)).unwrap_err();
+        let prepass =
+            Prepass::new(&graph, rule.style(), 100).of_what_is_in(Culling::to_length(&graph, 1e-9));
+        let error = prepass.counted(&Growth::steps(100)).unwrap_err();
         assert_eq!(error.to_string(), "there are more than 50000000 elements");
     }
 }

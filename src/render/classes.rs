@@ -3,7 +3,7 @@
 use std::ops::{Range, RangeInclusive};
 
 use crate::graph::{Graph, Object, Replacement};
-use crate::grow::{Element, Fractal, Run};
+use crate::grow::{Element, FractalInfo, Run};
 use crate::style::{ColorBy, Colour, Style};
 
 /// Maximum number of classes into which values are quantised.
@@ -75,7 +75,7 @@ impl Classes {
     /// Returns the class of an element, from 0.
     #[inline]
     #[must_use]
-    pub fn of(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u64 {
+    pub fn of(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u64 {
         self.of_value(self.value(element, fractal, graph))
     }
 
@@ -93,7 +93,7 @@ impl Classes {
 
     /// Returns the value on which the colour of an element depends.
     #[inline]
-    pub(super) fn value(&self, element: &Element, fractal: &Fractal, graph: &Graph) -> u128 {
+    pub(super) fn value(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u128 {
         match self.by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => 0,
             ColorBy::Step => element.born.into(),
@@ -130,7 +130,7 @@ impl Classes {
     pub(super) fn share(
         &self,
         run: &Run<'_>,
-        fractal: &Fractal,
+        fractal: &FractalInfo,
         graph: &Graph,
         class: u64,
     ) -> Share {

@@ -22,7 +22,7 @@ use crate::graph::Graph;
 use crate::grow::Growth;
 
 use super::svg::begin_document;
-use super::{Canvas, Options, Page, Picture, RenderError, Survey};
+use super::{Canvas, Options, Page, Picture, Prepass, RenderError};
 use drawing::Drawing;
 
 /// Size of a picture of nested instances.
@@ -53,15 +53,15 @@ pub(super) fn write(
     } = options;
     refusal::check(graph, style, growth.steps)?;
     let steps = growth.steps;
-    let survey = match Survey::outlined(graph, growth, style, steps, graph.seeds) {
-        Some(survey) => survey,
-        None => Survey::new(graph, style, steps).walked(growth, options.threads)?,
+    let prepass = match Prepass::outlined(graph, growth, style, steps, graph.seeds) {
+        Some(prepass) => prepass,
+        None => Prepass::new(graph, style, steps).walked(growth, options.threads)?,
     };
-    let canvas = Canvas::of(std::slice::from_ref(&survey), view, *size)?;
-    if !is_near(&canvas, &survey.bounds) {
+    let canvas = Canvas::of(std::slice::from_ref(&prepass), view, *size)?;
+    if !is_near(&canvas, &prepass.bounds) {
         return Err(NotInstanced::TooClose.into());
     }
-    let (classes, painted) = survey.classes();
+    let (classes, painted) = prepass.classes();
     let drawing = Drawing::new(graph, growth, options, classes);
     let page = Page {
         size: canvas.size(),
@@ -78,9 +78,9 @@ pub(super) fn write(
         is_limit: false,
         size: canvas.size(),
         steps,
-        elements: survey.elements,
+        elements: prepass.elements,
         has_more: false,
-        fractals: survey.fractals,
+        fractals: prepass.fractals,
         is_part: false,
         empty: None,
         plotted: None,

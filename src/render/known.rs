@@ -8,7 +8,7 @@ use crate::grow::{Census, Growth};
 use crate::rule::Placement;
 use crate::style::{ColorBy, Style};
 
-use super::{Classes, Survey};
+use super::{Classes, Prepass};
 
 /// Size of a set, relative to the unit length and to its coordinates, below which it is surveyed by a walk.
 const SPECK: f64 = 1e-6;
@@ -19,7 +19,7 @@ const MOST_AGES: u32 = 256;
 /// Maximum number of steps of a forecast; beyond it the set is surveyed by a walk.
 const MOST_STEPS: u32 = 10_000;
 
-impl<'g> Survey<'g> {
+impl<'g> Prepass<'g> {
     /// Computes the survey of an approximant from the graph, if that determines all of it; if the colour
     /// depends on steps, its classes span `steps` of them.
     pub(super) fn known(
@@ -29,14 +29,14 @@ impl<'g> Survey<'g> {
         steps: u32,
     ) -> Option<Self> {
         let level = level(graph, growth)?;
-        let mut survey = Self::outlined(graph, growth, style, steps, level.fractals > 1)?;
-        survey.elements = level.elements;
-        survey.fractals = level.fractals;
+        let mut prepass = Self::outlined(graph, growth, style, steps, level.fractals > 1)?;
+        prepass.elements = level.elements;
+        prepass.fractals = level.fractals;
         if style.color_by == ColorBy::Index {
             let census = Census::of(graph, growth.steps, 0.0);
-            return survey.count_ranks(census, growth.steps).then_some(survey);
+            return prepass.count_ranks(census, growth.steps).then_some(prepass);
         }
-        Some(survey)
+        Some(prepass)
     }
 
     /// Computes the survey without the numbers of elements, which may exceed all limits.
@@ -47,10 +47,10 @@ impl<'g> Survey<'g> {
         steps: u32,
         seeds: bool,
     ) -> Option<Self> {
-        let mut survey = Self::new(graph, style, steps);
+        let mut prepass = Self::new(graph, style, steps);
         let tells_ages = style.color_by == ColorBy::Age && seeds;
         let stands = Standing::at(graph, growth.steps, tells_ages)?;
-        survey.bounds = survey.known_bounds(growth)?;
+        prepass.bounds = prepass.known_bounds(growth)?;
         let used: Vec<u128> = match style.color_by {
             ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
             ColorBy::Age if seeds => stands.values(|stands| (growth.steps - stands.seeded).into()),
@@ -65,13 +65,13 @@ impl<'g> Survey<'g> {
             ColorBy::Direction => stands.values(|stands| u128::from(stands.direction.number()) - 1),
         };
         for value in used {
-            survey.use_value(value);
+            prepass.use_value(value);
         }
-        survey.strokes = stands
+        prepass.strokes = stands
             .0
             .iter()
-            .any(|stands| survey.is_stroked(&graph.objects()[stands.object]));
-        Some(survey)
+            .any(|stands| prepass.is_stroked(&graph.objects()[stands.object]));
+        Some(prepass)
     }
 
     /// Computes the bounding box from the graph, or by a search.
@@ -183,7 +183,7 @@ impl Standing {
                             children.map(|(&object, direction)| (object, direction, seeded)),
                         );
                     }
-                    Replacement::Kept | Replacement::Beyond => {}
+                    Replacement::Kept | Replacement::Unresolved => {}
                 }
             }
             born = next;
@@ -200,7 +200,7 @@ impl Standing {
 mod tests {
     use std::num::NonZero;
 
-    use super::Survey;
+    use super::Prepass;
     use crate::catalogue::{Catalogue, Shelf};
     use crate::diagnostic::Source;
     use crate::document::Document;
@@ -228,12 +228,12 @@ mod tests {
                     };
                     for steps in [0, 1, 3] {
                         let growth = Growth::steps(steps);
-                        let Some(known) = Survey::known(&graph, &growth, &style, 3) else {
+                        let Some(known) = Prepass::known(&graph, &growth, &style, 3) else {
                             continue;
                         };
                         told += 1;
                         aged += u32::from(graph.seeds && *color_by == ColorBy::Age);
-                        let mut walked = Survey::new(&graph, &style, 3);
+                        let mut walked = Prepass::new(&graph, &style, 3);
                         walk(&graph, &growth, &mut walked).unwrap();
                         let what = format!("{} at {steps} by {color_by:?}", entry.name);
                         let far = |a: DVec2, b: DVec2| (a - b).length();
@@ -272,8 +272,8 @@ mod tests {
                 let growth = Growth::steps(steps);
                 let style = Style::default();
                 let told =
-                    Survey::of(&graph, &growth, &style, steps, NonZero::<usize>::MIN).unwrap();
-                let mut walked = Survey::new(&graph, &style, steps);
+                    Prepass::of(&graph, &growth, &style, steps, NonZero::<usize>::MIN).unwrap();
+                let mut walked = Prepass::new(&graph, &style, steps);
                 walk(&graph, &growth, &mut walked).unwrap();
                 let off = told.bounds.size() - walked.bounds.size();
                 let size = walked.bounds.size().max_element();

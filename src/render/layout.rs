@@ -5,9 +5,9 @@ use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::style::Width;
 
-use super::sight::{NEARLY, Sight};
-use super::survey::overhang;
-use super::{Canvas, Format, Options, RenderError, Survey};
+use super::culling::{Culling, NEARLY};
+use super::prepass::overhang;
+use super::{Canvas, Format, Options, Prepass, RenderError};
 
 /// Size down to which elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ const MOST_ROUNDS: u32 = 8;
 
 /// Result of the prepass.
 pub(super) struct Layout<'a> {
-    pub(super) survey: Survey<'a>,
+    pub(super) prepass: Prepass<'a>,
     pub(super) canvas: Canvas,
     pub(super) growth: Growth<'a>,
 }
@@ -89,7 +89,7 @@ impl<'a> Layout<'a> {
             if graph.counts_index() {
                 return Err(NoDetail::CountsIndex.into());
             }
-            if detail.decides_steps && graph.is_levelled() {
+            if detail.decides_steps && graph.is_time_indexed() {
                 return Err(NoDetail::StartsAnew.into());
             }
             if detail.decides_steps && !graph.shrinks() {
@@ -104,56 +104,56 @@ impl<'a> Layout<'a> {
             elements: 0,
             reaches: None,
         };
-        let mut survey = match (options.view.window, options.detail) {
+        let mut prepass = match (options.view.window, options.detail) {
             (Some(window), _) => surveyor.survey_window(window)?,
             (None, Some(detail)) => surveyor.survey_to(detail.pixels)?,
-            (None, None) => surveyor.survey(Sight::unbounded())?,
+            (None, None) => surveyor.prepass(Culling::unbounded())?,
         };
         if options.detail.is_some_and(|detail| detail.decides_steps) {
-            let fewer = surveyor.growth.steps - survey.steps;
-            survey = survey.sooner(&surveyor.growth, fewer);
+            let fewer = surveyor.growth.steps - prepass.steps;
+            prepass = prepass.sooner(&surveyor.growth, fewer);
             surveyor.growth.steps -= fewer;
         }
-        survey.is_to_detail = options.detail.is_some();
+        prepass.is_to_detail = options.detail.is_some();
         if let Some(progress) = growth.progress {
             progress.expect(surveyor.elements);
         }
         Ok(Self {
-            canvas: surveyor.canvas(&survey)?,
-            survey,
+            canvas: surveyor.canvas(&prepass)?,
+            prepass,
             growth: surveyor.growth,
         })
     }
 }
 
 impl<'a> Surveyor<'a> {
-    fn survey(&self, sight: Sight) -> Result<Survey<'a>, RenderError> {
+    fn prepass(&self, culling: Culling) -> Result<Prepass<'a>, RenderError> {
         let Self { graph, growth, .. } = *self;
         let Options { style, threads, .. } = self.options;
-        if !sight.cuts() {
-            return Ok(Survey::of(graph, &growth, style, growth.steps, *threads)?);
+        if !culling.cuts() {
+            return Ok(Prepass::of(graph, &growth, style, growth.steps, *threads)?);
         }
-        let survey = Survey::new(graph, style, growth.steps);
-        Ok(survey.of_what_is_in(sight).walked(&growth, *threads)?)
+        let prepass = Prepass::new(graph, style, growth.steps);
+        Ok(prepass.of_what_is_in(culling).walked(&growth, *threads)?)
     }
 
-    fn canvas(&self, survey: &Survey<'a>) -> Result<Canvas, RenderError> {
+    fn canvas(&self, prepass: &Prepass<'a>) -> Result<Canvas, RenderError> {
         let Options { view, size, .. } = self.options;
-        Ok(Canvas::of(std::slice::from_ref(survey), view, *size)?)
+        Ok(Canvas::of(std::slice::from_ref(prepass), view, *size)?)
     }
 
     /// Returns an error if the detail decides the number of steps and the survey reached the limit of steps.
-    fn check(&self, survey: &Survey<'a>) -> Result<(), NoDetail> {
+    fn check(&self, prepass: &Prepass<'a>) -> Result<(), NoDetail> {
         let steps = self.limit;
         let decides = |detail: Detail| detail.decides_steps;
-        if self.options.detail.is_some_and(decides) && survey.steps >= steps && steps > 0 {
+        if self.options.detail.is_some_and(decides) && prepass.steps >= steps && steps > 0 {
             return Err(NoDetail::TooFewSteps { steps });
         }
         Ok(())
     }
 
     /// Surveys the part of the set that lies in a window.
-    fn survey_window(&mut self, window: [f64; 4]) -> Result<Survey<'a>, RenderError> {
+    fn survey_window(&mut self, window: [f64; 4]) -> Result<Prepass<'a>, RenderError> {
         let Options {
             style,
             view,
@@ -181,26 +181,26 @@ impl<'a> Surveyor<'a> {
             shortest
         };
         let Self { graph, growth, .. } = *self;
-        let sight = Sight::to_length(graph, shortest);
+        let culling = Culling::to_length(graph, shortest);
         let shown = canvas.shown(stroke);
-        let links = sight.links(graph, &growth);
+        let links = culling.links(graph, &growth);
         let met = Bounds::new(shown.min() - links, shown.max() + links);
-        let survey = Survey::new(graph, style, growth.steps)
-            .of_what_is_in(sight.clone())
+        let prepass = Prepass::new(graph, style, growth.steps)
+            .of_what_is_in(culling.clone())
             .with_ranks_of(&growth);
         // Elements within a pixel of the picture contribute to the coverage at its edge.
         let shown = canvas.shown(stroke + 1.0);
-        let sight = sight.within(&shown, graph, &growth, style, survey.counts_ranks());
-        let survey = if sight.cuts() {
-            let survey = survey.of_what_is_in(sight).of_what_comes_into(met);
-            survey.walked(&growth, *threads)?
+        let culling = culling.within(&shown, graph, &growth, style, prepass.counts_ranks());
+        let prepass = if culling.cuts() {
+            let prepass = prepass.of_what_is_in(culling).of_what_comes_into(met);
+            prepass.walked(&growth, *threads)?
         } else {
-            let mut survey = self.survey(sight)?;
-            survey.steps = growth.steps;
-            survey.of_what_comes_into(met)
+            let mut prepass = self.prepass(culling)?;
+            prepass.steps = growth.steps;
+            prepass.of_what_comes_into(met)
         };
-        self.check(&survey)?;
-        Ok(survey)
+        self.check(&prepass)?;
+        Ok(prepass)
     }
 
     /// Sets the number of steps that corresponds to a cutoff length, if all elements of a step are equally
@@ -219,56 +219,56 @@ impl<'a> Surveyor<'a> {
     }
 
     /// Surveys the set down to a cutoff length, completely or as far as the size of a pixel depends on it.
-    fn look_down_to(&mut self, shortest: f64) -> Result<Survey<'a>, RenderError> {
+    fn look_down_to(&mut self, shortest: f64) -> Result<Prepass<'a>, RenderError> {
         if !self.step_down_to(shortest) {
-            let sight = Sight::to_length(self.graph, shortest);
+            let culling = Culling::to_length(self.graph, shortest);
             let style = &self.options.style;
-            let survey = Survey::new(self.graph, style, self.growth.steps);
-            let reaches = self.reaches.get_or_insert_with(|| survey.reaches());
-            let survey = survey.of_what_is_in(sight.clone());
-            return match survey.glimpsed(&self.growth, reaches) {
+            let prepass = Prepass::new(self.graph, style, self.growth.steps);
+            let reaches = self.reaches.get_or_insert_with(|| prepass.reaches());
+            let prepass = prepass.of_what_is_in(culling.clone());
+            return match prepass.glimpsed(&self.growth, reaches) {
                 Some(glimpse) => Ok(glimpse),
-                None => self.survey(sight),
+                None => self.prepass(culling),
             };
         }
-        let mut survey = self.survey(Sight::unbounded())?;
-        survey.steps = self.growth.steps;
-        Ok(survey)
+        let mut prepass = self.prepass(Culling::unbounded())?;
+        prepass.steps = self.growth.steps;
+        Ok(prepass)
     }
 
     /// Completes a survey.
-    fn completed(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
-        let survey = if survey.is_bounded {
-            self.counted(survey)?
+    fn completed(&self, prepass: Prepass<'a>) -> Result<Prepass<'a>, RenderError> {
+        let prepass = if prepass.is_bounded {
+            self.counted(prepass)?
         } else {
-            survey
+            prepass
         };
-        self.check(&survey)?;
-        Ok(survey)
+        self.check(&prepass)?;
+        Ok(prepass)
     }
 
     /// Counts the elements to be drawn. If covered elements need not be walked, a large number is counted in
     /// part only; the limit then applies to the elements visited while drawing.
-    fn counted(&self, survey: Survey<'a>) -> Result<Survey<'a>, RenderError> {
+    fn counted(&self, prepass: Prepass<'a>) -> Result<Prepass<'a>, RenderError> {
         let Options {
             threads,
             format,
             plot,
             ..
         } = *self.options;
-        let hides = format == Format::Png && !plot && survey.may_hide();
+        let hides = format == Format::Png && !plot && prepass.may_hide();
         let limited = |most_elements: u64| Growth {
             most_elements,
             ..self.growth
         };
         let most = self.growth.most_elements;
-        if let Some(counted) = survey.counted(&limited(if hides { u64::MAX } else { most }))? {
+        if let Some(counted) = prepass.counted(&limited(if hides { u64::MAX } else { most }))? {
             return Ok(counted);
         }
-        let uncounted = survey.uncounted(WORTH_COUNTING);
+        let uncounted = prepass.uncounted(WORTH_COUNTING);
         match uncounted.filter(|_| hides && most > WORTH_COUNTING) {
-            None => Ok(survey.walked(&self.growth, threads)?),
-            Some(uncounted) => match survey.walked(&limited(WORTH_COUNTING), threads) {
+            None => Ok(prepass.walked(&self.growth, threads)?),
+            Some(uncounted) => match prepass.walked(&limited(WORTH_COUNTING), threads) {
                 Err(WalkError::TooManyElements { .. }) => Ok(uncounted),
                 walked => Ok(walked?),
             },
@@ -276,38 +276,38 @@ impl<'a> Surveyor<'a> {
     }
 
     /// Surveys the set down to a detail in pixels.
-    fn survey_to(&mut self, pixels: f64) -> Result<Survey<'a>, RenderError> {
+    fn survey_to(&mut self, pixels: f64) -> Result<Prepass<'a>, RenderError> {
         let start = self.graph.initiator(self.growth.steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();
         let mut shortest = longest * FIRST_LOOK;
-        let mut survey = self.look_down_to(shortest)?;
+        let mut prepass = self.look_down_to(shortest)?;
         for _ in 0..MOST_LOOKS {
-            self.check(&survey)?;
-            if !survey.bounds.is_empty() {
+            self.check(&prepass)?;
+            if !prepass.bounds.is_empty() {
                 break;
             }
             shortest *= FIRST_LOOK;
-            self.elements += survey.elements;
-            survey = self.look_down_to(shortest)?;
+            self.elements += prepass.elements;
+            prepass = self.look_down_to(shortest)?;
         }
         for round in 1.. {
-            self.check(&survey)?;
-            let next = pixels / self.canvas(&survey)?.scale();
+            self.check(&prepass)?;
+            let next = pixels / self.canvas(&prepass)?.scale();
             #[expect(clippy::float_cmp, reason = "the same box gives the same scale")]
             if next == shortest {
                 break;
             }
             if round == MOST_ROUNDS {
-                survey = self.completed(survey)?;
-                if next < shortest / 2.0 && survey.steps < self.limit {
+                prepass = self.completed(prepass)?;
+                if next < shortest / 2.0 && prepass.steps < self.limit {
                     return Err(NoDetail::Vanishes.into());
                 }
-                return Ok(survey);
+                return Ok(prepass);
             }
             shortest = next;
-            self.elements += survey.elements;
-            survey = self.look_down_to(shortest)?;
+            self.elements += prepass.elements;
+            prepass = self.look_down_to(shortest)?;
         }
-        self.completed(survey)
+        self.completed(prepass)
     }
 }

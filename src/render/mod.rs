@@ -15,34 +15,34 @@
 //! in their colour already; and where colours distinguish steps, maps or generators, subtrees without
 //! elements of the class that is painted. None of this changes a pixel, whichever thread draws first: neither
 //! threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
-//! drawn as sprites, with small differences: see `stamps`.
+//! drawn as sprites, with small differences: see `sprites`.
 
-mod aim;
 mod bands;
+mod batch;
 mod canvas;
 mod cells;
 mod census;
 mod classes;
-mod coarse;
-mod comb;
+mod contribution;
+mod covered;
+mod culling;
 mod density;
 mod dxf;
-mod filled;
-mod hidden;
 mod instanced;
 mod known;
 mod layout;
+mod level_of_detail;
+mod occlusion;
 mod painter;
 mod pdf;
 mod pixels;
 mod plot;
 mod png;
+mod prepass;
 mod scene;
-mod sight;
 mod sketch;
-mod stamps;
+mod sprites;
 mod surface;
-mod survey;
 mod svg;
 mod tracer;
 mod unit;
@@ -56,9 +56,9 @@ pub use layout::{Detail, NoDetail};
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
 pub use png::TooManyPixels;
-pub use survey::Survey;
+pub use prepass::Prepass;
 pub use unit::Unit;
-pub use zoomed::{Look, NoZoom, write_zoomed};
+pub use zoomed::{NoZoom, ZoomTarget, write_zoomed};
 
 pub(crate) use scene::Scene;
 pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
@@ -71,7 +71,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
-use crate::heading::Heading;
+use crate::metadata::Metadata;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 use crate::zoom::ZoomError;
@@ -198,7 +198,7 @@ impl Options {
 
     /// Returns options with the style and the view that a file proposes.
     #[must_use]
-    pub fn of(heading: &Heading) -> Self {
+    pub fn of(heading: &Metadata) -> Self {
         Self {
             style: heading.style.clone(),
             view: heading.view,
@@ -238,7 +238,7 @@ pub struct Picture {
 /// A window that shows nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Empty {
-    /// Nearest visible point, if it is known: of a [`Look`].
+    /// Nearest visible point, if it is known: of a [`ZoomTarget`].
     pub nearest: Option<Nearest>,
 }
 
@@ -328,7 +328,7 @@ pub fn write(
         return instanced::write(graph, growth, options, out);
     }
     let Layout {
-        survey,
+        prepass,
         canvas,
         growth,
     } = match Way::find(graph, growth, options)? {
@@ -340,24 +340,24 @@ pub fn write(
     };
     let in_bands = options.format == Format::Png && !options.draws_in_one_piece(canvas.size());
     if in_bands && !options.plot {
-        bands::write_survey(&survey, &growth, canvas, options, out)?;
-        return Ok(picture(&survey, canvas, growth.steps, None));
+        bands::write_survey(&prepass, &growth, canvas, options, out)?;
+        return Ok(picture(&prepass, canvas, growth.steps, None));
     }
-    let scene = Scene::new(&survey, &growth, canvas);
+    let scene = Scene::new(&prepass, &growth, canvas);
     let plotted = write_in(&scene, options, growth.cancel, out)?;
-    Ok(picture(&survey, canvas, growth.steps, plotted))
+    Ok(picture(&prepass, canvas, growth.steps, plotted))
 }
 
 /// Returns the numbers of a picture that has been written.
-fn picture(survey: &Survey<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
+fn picture(prepass: &Prepass<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
     Picture {
         size: canvas.size(),
         steps,
-        elements: survey.elements,
-        has_more: survey.has_more,
-        fractals: survey.fractals,
-        is_part: survey.sight().is_bounded(),
-        empty: survey.shows_nothing().then(Empty::default),
+        elements: prepass.elements,
+        has_more: prepass.has_more,
+        fractals: prepass.fractals,
+        is_part: prepass.culling().is_bounded(),
+        empty: prepass.shows_nothing().then(Empty::default),
         plotted,
         instanced: None,
         is_limit: false,

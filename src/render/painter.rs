@@ -7,16 +7,16 @@ use std::sync::Arc;
 use crate::grow::Seam;
 use crate::style::{Cap, Colour, Join, Width};
 
-use super::aim::Aim;
-use super::coarse::Coarse;
-use super::comb::Comb;
-use super::filled::Filled;
-use super::hidden::Hidden;
+use super::batch::BatchBuilder;
+use super::contribution::ContributionMask;
+use super::covered::CoveredPixels;
+use super::level_of_detail::LevelOfDetail;
+use super::occlusion::Occlusion;
 use super::pen;
 use super::scene::{Pass, Scene};
-use super::sketch::{Kind, Line, Look, Mark, SPECK_WIDTHS, Sketch, class_width};
-use super::stamps::Stamps;
-use super::surface::{FINE, Paint, Pen, Position, Stencil, Stroke, Surface};
+use super::sketch::{Kind, Line, Mark, PaintKey, SPECK_WIDTHS, Sketch, class_width};
+use super::sprites::Sprites;
+use super::surface::{FINE, Paint, Pen, Position, SpritePaint, Stroke, Surface};
 use super::tracer::Tracer;
 
 /// Number of vertices after which the surface may hand on the drawn portion of a path.
@@ -42,7 +42,7 @@ pub(super) struct Painter<'a, 's, S> {
     /// Layer of the first class, if classes are layers.
     first_layer: Option<u64>,
     tracer: Tracer<'s, S>,
-    look: Option<Look>,
+    look: Option<PaintKey>,
     previous: Option<Previous>,
     /// For a ring that is unbroken so far, whether its first element starts where its frame does.
     ring: Option<bool>,
@@ -71,39 +71,39 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     /// Returns the simplified outlines, if the surface permits them.
-    pub(super) fn coarse(&self) -> Option<&'a Coarse> {
+    pub(super) fn coarse(&self) -> Option<&'a LevelOfDetail> {
         let grain = self.tracer.grain()?;
-        let coarse = || Coarse::of(self.scene.graph, grain);
+        let coarse = || LevelOfDetail::of(self.scene.graph, grain);
         self.scene.coarse.get_or_init(coarse).as_ref()
     }
 
     /// Returns whether closed base elements that are narrower than a pixel are stroked.
     pub(super) fn broadens(&self) -> bool {
-        let paint = self.paint(Look {
+        let paint = self.paint(PaintKey {
             kind: Kind::Polygon,
-            ..Look::TUFTS
+            ..PaintKey::TUFTS
         });
         paint.stroke.is_none() && self.tracer.broadens(&paint)
     }
 
     /// Creates the comb that makes tufts, if the surface permits them.
-    pub(super) fn comb(&self) -> Option<Comb> {
+    pub(super) fn comb(&self) -> Option<BatchBuilder> {
         let Width::Relative(width) = self.scene.style.width else {
             return None;
         };
-        let stroke = self.paint(Look::TUFTS).stroke?;
+        let stroke = self.paint(PaintKey::TUFTS).stroke?;
         let below = self.tracer.tufts_below(&stroke);
-        (below > 0.0).then(|| Comb::new(width, stroke.pen, below))
+        (below > 0.0).then(|| BatchBuilder::new(width, stroke.pen, below))
     }
 
     /// Creates the occlusion of a pass, if everything is covered in one opaque colour per class.
-    pub(super) fn hidden(&mut self, pass: Pass) -> Option<Hidden> {
-        if !Hidden::may_be(self.scene, pass) {
+    pub(super) fn hidden(&mut self, pass: Pass) -> Option<Occlusion> {
+        if !Occlusion::may_be(self.scene, pass) {
             return None;
         }
         let Scene { classes, style, .. } = self.scene;
         let kinds = self.kinds();
-        let mut filled: Option<Arc<Filled>> = None;
+        let mut filled: Option<Arc<CoveredPixels>> = None;
         let mut inks = BTreeSet::new();
         let all = match pass {
             Pass::Along => classes.all(),
@@ -115,9 +115,9 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             }
             inks.clear();
             for &kind in &kinds {
-                let paint = self.paint(Look {
+                let paint = self.paint(PaintKey {
                     kind,
-                    ..Look::TUFTS
+                    ..PaintKey::TUFTS
                 });
                 let stroke = paint.stroke.map(|stroke| stroke.colour);
                 inks.extend([paint.fill, stroke].into_iter().flatten().map(Colour::rgba));
@@ -134,7 +134,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 return None;
             }
         }
-        let hidden = Hidden::new(self.scene, filled?);
+        let hidden = Occlusion::new(self.scene, filled?);
         self.first_layer = Some(hidden.first);
         if let Pass::Class(class) = pass {
             self.begin_layer(class);
@@ -144,33 +144,33 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Creates the stamps of a pass, if they may be put in one opaque colour per class: under the conditions
     /// of occlusion.
-    pub(super) fn stamps(
+    pub(super) fn sprites(
         &mut self,
         pass: Pass,
-        aim: &Aim,
-        hidden: Option<&Arc<Hidden>>,
-    ) -> Option<Stamps<'a>> {
+        aim: &ContributionMask,
+        hidden: Option<&Arc<Occlusion>>,
+    ) -> Option<Sprites<'a>> {
         let hidden = hidden?;
         if pass == Pass::Along {
             self.colour = self.scene.classes.colour(0, self.scene.style);
         }
         let mut stencils = self.kinds().into_iter().map(|kind| {
-            let paint = self.paint(Look {
+            let paint = self.paint(PaintKey {
                 kind,
-                ..Look::TUFTS
+                ..PaintKey::TUFTS
             });
             self.tracer.stencil(&paint)
         });
         let first = stencils.next()??;
         let stencil = stencils.try_fold(first, |all, stencil| {
             let stencil = stencil?;
-            Some(Stencil {
+            Some(SpritePaint {
                 pen: all.pen.or(stencil.pen),
                 outlines: all.outlines || stencil.outlines,
             })
         })?;
         let painted = aim.painted(self.scene, pass);
-        Stamps::new(self.scene, stencil, painted, Arc::clone(hidden))
+        Sprites::new(self.scene, stencil, painted, Arc::clone(hidden))
     }
 
     /// Returns the kinds of the paths that are drawn.
@@ -199,20 +199,20 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     pub(super) fn paint_span(&mut self, sketch: &Sketch, seam: Seam) -> io::Result<()> {
         let mut points = sketch.points.as_slice();
         let mut tufts = sketch.tufts.as_slice();
-        let mut stamps = sketch.stamps.as_slice();
+        let mut sprites = sketch.sprites.as_slice();
         let mut joined = seam.joined;
         for mark in &sketch.marks {
             if let Mark::Tufts(count) = *mark {
                 let (now, rest) = tufts.split_at(count);
                 tufts = rest;
-                self.begin_path(Look::TUFTS)?;
+                self.begin_path(PaintKey::TUFTS)?;
                 self.tracer.tufts(now);
             }
-            if let Mark::Stamps { look, count } = *mark {
-                let (now, rest) = stamps.split_at(count);
-                stamps = rest;
+            if let Mark::Sprites { look, count } = *mark {
+                let (now, rest) = sprites.split_at(count);
+                sprites = rest;
                 self.begin_path(look)?;
-                self.tracer.stamps(now);
+                self.tracer.sprites(now);
             }
             self.mark(mark, joined, &mut points)?;
             // A class is not an element yet.
@@ -261,7 +261,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 self.reach(end);
                 return self.hand_on();
             }
-            Mark::Tufts(_) | Mark::Stamps { .. } => return self.hand_on(),
+            Mark::Tufts(_) | Mark::Sprites { .. } => return self.hand_on(),
             Mark::Close { returned } => {
                 self.tracer.close(returned);
                 return self.tracer.hand_on();
@@ -272,7 +272,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             }
             Mark::Area => {
                 let start = next();
-                self.begin_path(Look::AREA)?;
+                self.begin_path(PaintKey::AREA)?;
                 if self.is_first {
                     self.tracer.move_to(start);
                 } else {
@@ -311,7 +311,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     /// Continues the open path if it has a matching paint key, or begins a new one.
-    fn begin_path(&mut self, look: Look) -> io::Result<()> {
+    fn begin_path(&mut self, look: PaintKey) -> io::Result<()> {
         if self.look.is_some_and(|open| open.serves(look)) {
             return Ok(());
         }
@@ -322,7 +322,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Ok(())
     }
 
-    fn paint(&self, look: Look) -> Paint {
+    fn paint(&self, look: PaintKey) -> Paint {
         let style = self.scene.style;
         let own = look.colour.or(self.colour);
         let colour = own.unwrap_or(style.lines());
@@ -411,7 +411,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Permits the surface to hand on the drawn portion of the path; a polygon stays in one piece.
     fn hand_on(&mut self) -> io::Result<()> {
-        if self.look.is_some_and(Look::is_of_polygons) {
+        if self.look.is_some_and(PaintKey::is_of_polygons) {
             return Ok(());
         }
         self.tracer.hand_on()
@@ -425,7 +425,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     fn end(&mut self, joined: bool) -> io::Result<()> {
-        if self.look == Some(Look::AREA) {
+        if self.look == Some(PaintKey::AREA) {
             self.tracer.close(false);
         } else if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
             && previous.drawn

@@ -62,7 +62,7 @@ pub fn pixels(
     options: &Options,
 ) -> Result<Pixels, RenderError> {
     let Layout {
-        survey,
+        prepass,
         canvas,
         growth,
     } = match Way::find(graph, growth, options)? {
@@ -70,7 +70,7 @@ pub fn pixels(
         Way::Cells(cells) => return draw(&cells, options, growth.cancel),
     };
     draw(
-        &Scene::new(&survey, &growth, canvas),
+        &Scene::new(&prepass, &growth, canvas),
         options,
         growth.cancel,
     )

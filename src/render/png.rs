@@ -2,21 +2,21 @@
 //! many vertices, are drawn as coverage by any thread; there may be millions of them. tiny-skia draws the
 //! rest.
 
+mod buffers;
 mod chunk;
 mod coverage;
 mod encode;
 mod flat;
-mod nib;
 mod part;
-mod planes;
 mod region;
 mod ring;
 mod skia;
 mod split;
+mod stroker;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coverage::{RoundPen, Sheet, Stamp, bounding_within, flattened_within};
+pub(super) use coverage::{RoundPen, Sprite, SpriteSheet, bounding_within, flattened_within};
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 
@@ -32,13 +32,15 @@ use crate::style::{Cap, Colour, Join};
 
 use self::chunk::Chunk;
 use self::coverage::{HairPen, bounding, flattened, has_room};
-use self::nib::{Nib, Nibs, Trail};
 use self::part::{Layers, Part};
 use self::region::Region;
 use self::skia::Outline;
+use self::stroker::{Stroker, Strokers, Trail};
 use super::Labels;
-use super::filled::Filled;
-use super::surface::{FINE, Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
+use super::covered::CoveredPixels;
+use super::surface::{
+    FINE, Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
+};
 
 /// Deviation that outlines are permitted, in pixels: twice that of rounding.
 const GRAIN: f64 = 1.0 / FINE;
@@ -93,9 +95,9 @@ pub(super) struct Png<'t, 'w> {
     threads: usize,
     /// Layer of the paths.
     layer: u64,
-    nibs: Nibs,
+    strokers: Strokers,
     /// Stroker of the path, if its strokes are drawn as coverage.
-    nib: Option<Nib>,
+    stroker: Option<Stroker>,
     /// State of the current subpath.
     trail: Trail,
     /// Whether the next path is text, whose letters have holes: to cover its subpaths one by one would fill
@@ -160,8 +162,8 @@ impl<'t, 'w> Png<'t, 'w> {
             line: team.line(Chunk::cover),
             threads: team.threads().get(),
             layer: 0,
-            nibs: Nibs::default(),
-            nib: None,
+            strokers: Strokers::default(),
+            stroker: None,
             trail: Trail::default(),
             has_holes: false,
             covers: false,
@@ -192,8 +194,8 @@ impl<'t, 'w> Png<'t, 'w> {
     #[inline]
     fn stroke(&mut self, to: impl IntoIterator<Item = Position>) {
         let trail = &mut self.trail;
-        match self.nib {
-            Some(Nib::Flat(_)) => self
+        match self.stroker {
+            Some(Stroker::Flat(_)) => self
                 .chunk
                 .lines(to.into_iter().inspect(|to| trail.go_to(*to))),
             Some(_) => self.chunk.lines(to),
@@ -211,8 +213,8 @@ impl<'t, 'w> Png<'t, 'w> {
 
     fn next_chunk(&mut self) {
         let mut next = self.line.spare().unwrap_or_default();
-        if let Some(nib) = &self.nib {
-            self.chunk.lead_to(&mut next, nib.clone(), &self.trail);
+        if let Some(stroker) = &self.stroker {
+            self.chunk.lead_to(&mut next, stroker.clone(), &self.trail);
         }
         let mut chunk = std::mem::replace(&mut self.chunk, next);
         chunk.assign(self.part.planes_in_use());
@@ -221,7 +223,7 @@ impl<'t, 'w> Png<'t, 'w> {
 
     /// Colours everything that has been covered, between two paths.
     fn settle(&mut self) {
-        self.nib = None;
+        self.stroker = None;
         if self.line.is_idle() {
             // The work is not worth another thread.
             self.chunk.assign(self.part.planes_in_use());
@@ -248,10 +250,10 @@ impl Surface for Png<'_, '_> {
         // There may be a path for every stroke, each of another width.
         if let (Some(stroke), None) = (paint.stroke, paint.fill)
             && self.part.goes_on_in(stroke.colour)
-            && let Some(nib) = self.nibs.nib(stroke.pen)
+            && let Some(stroker) = self.strokers.stroker(stroke.pen)
         {
-            self.chunk.nib(nib.clone());
-            self.nib = Some(nib);
+            self.chunk.stroker(stroker.clone());
+            self.stroker = Some(stroker);
             (self.covers, self.is_outlined) = (false, false);
             self.part.begin_layer(self.layer);
             return Ok(());
@@ -261,8 +263,8 @@ impl Surface for Png<'_, '_> {
         }
         let may_cover = self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
-        self.nib = stroke.and_then(|stroke| self.nibs.nib(stroke.pen));
-        let strokes = self.nib.is_some();
+        self.stroker = stroke.and_then(|stroke| self.strokers.stroker(stroke.pen));
+        let strokes = self.stroker.is_some();
         let is_opaque = paint.fill.is_some_and(|fill| fill == fill.opaque());
         let has_holes = std::mem::take(&mut self.has_holes);
         self.covers = may_cover && is_opaque && !has_holes && (paint.stroke.is_none() || strokes);
@@ -275,8 +277,8 @@ impl Surface for Png<'_, '_> {
             self.part.begin(inks, self.threads);
             self.part.begin_layer(self.layer);
         }
-        if let Some(nib) = &self.nib {
-            self.chunk.nib(nib.clone());
+        if let Some(stroker) = &self.stroker {
+            self.chunk.stroker(stroker.clone());
         }
         let rest = Paint {
             stroke: paint.stroke.filter(|_| !strokes),
@@ -293,7 +295,7 @@ impl Surface for Png<'_, '_> {
     #[inline]
     fn move_to(&mut self, to: Position) {
         self.trail = Trail::of(to);
-        if self.nib.is_some() {
+        if self.stroker.is_some() {
             self.chunk.start(to);
         }
         if self.covers {
@@ -338,7 +340,7 @@ impl Surface for Png<'_, '_> {
 
     fn close(&mut self) {
         self.stroke([self.trail.start]);
-        if let Some(Nib::Flat(_)) = self.nib {
+        if let Some(Stroker::Flat(_)) = self.stroker {
             self.chunk.close();
         }
         self.trail.at = self.trail.start;
@@ -354,7 +356,7 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn polygon(&mut self, vertices: &[Position]) -> bool {
-        if !self.covers || self.nib.is_some() || !has_room(vertices) {
+        if !self.covers || self.stroker.is_some() || !has_room(vertices) {
             return false;
         }
         self.end_ring();
@@ -374,7 +376,7 @@ impl Surface for Png<'_, '_> {
 
     #[inline]
     fn end(&mut self) -> io::Result<()> {
-        if let Some(Nib::Flat(_)) = self.nib.take() {
+        if let Some(Stroker::Flat(_)) = self.stroker.take() {
             self.chunk.end();
         }
         if self.covers {
@@ -410,26 +412,26 @@ impl Surface for Png<'_, '_> {
         Some(GRAIN)
     }
 
-    fn tufts(&mut self, tufts: &[Tuft]) {
+    fn tufts(&mut self, tufts: &[SegmentBatch]) {
         self.chunk.tufts(tufts);
     }
 
-    fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
-        let pen = match paint.stroke.map(|stroke| self.nibs.nib(stroke.pen)) {
+    fn stencil(&mut self, paint: &Paint) -> Option<SpritePaint> {
+        let pen = match paint.stroke.map(|stroke| self.strokers.stroker(stroke.pen)) {
             None => None,
-            Some(Some(Nib::Round(pen))) => Some(pen),
-            Some(Some(Nib::Hair(_) | Nib::Flat(_)) | None) => return None,
+            Some(Some(Stroker::Round(pen))) => Some(pen),
+            Some(Some(Stroker::Hair(_) | Stroker::Flat(_)) | None) => return None,
         };
         let outlines = paint.fill.is_some() && pen.is_some();
         let draws = paint.fill.is_some() || pen.is_some();
-        (draws && self.part.may_cover()).then_some(Stencil { pen, outlines })
+        (draws && self.part.may_cover()).then_some(SpritePaint { pen, outlines })
     }
 
-    fn stamps(&mut self, stamps: &[Stamped]) {
-        self.chunk.stamps(stamps);
+    fn sprites(&mut self, sprites: &[PlacedSprite]) {
+        self.chunk.sprites(sprites);
     }
 
-    fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+    fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
         let is_round = |stroke: &Stroke| {
             let pen = stroke.pen;
             pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0

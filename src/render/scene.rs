@@ -9,15 +9,15 @@ use crate::grow::{self, ColonyKinds, Division, Growth, WalkError, walk_with};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style, Width};
 
-use super::aim::Aim;
-use super::coarse::Coarse;
+use super::contribution::ContributionMask;
+use super::culling::{Culling, starts_rings};
+use super::level_of_detail::LevelOfDetail;
 use super::painter::Painter;
-use super::sight::{Sight, starts_rings};
+use super::prepass::{Ranks, span};
 use super::sketch::{Means, Sketcher};
-use super::stamps::USES;
+use super::sprites::USES;
 use super::surface::{Pen, Surface};
-use super::survey::{Ranks, span};
-use super::{Canvas, Classes, Drawing, RenderError, Survey};
+use super::{Canvas, Classes, Drawing, Prepass, RenderError};
 
 /// Approximant on its canvas.
 pub(crate) struct Scene<'a> {
@@ -25,7 +25,7 @@ pub(crate) struct Scene<'a> {
     pub(super) growth: &'a Growth<'a>,
     pub(super) style: &'a Style,
     pub(super) canvas: Canvas,
-    pub(super) sight: Sight,
+    pub(super) culling: Culling,
     pub(super) classes: Classes,
     passes: Vec<Pass>,
     /// Number of elements.
@@ -41,7 +41,7 @@ pub(crate) struct Scene<'a> {
     /// Whether one path fills and strokes closed chains.
     pub(super) fills_strokes: bool,
     /// Simplified outlines, once a surface has stated the deviation that it permits.
-    pub(super) coarse: OnceLock<Option<Coarse>>,
+    pub(super) coarse: OnceLock<Option<LevelOfDetail>>,
 }
 
 /// Part of a picture that one walk paints.
@@ -57,9 +57,9 @@ pub(super) enum Pass {
 
 impl<'a> Scene<'a> {
     /// Creates the scene of a surveyed approximant on a canvas.
-    pub(crate) fn new(survey: &Survey<'a>, growth: &'a Growth<'a>, canvas: Canvas) -> Self {
-        let (graph, style) = (survey.graph(), survey.style());
-        let (classes, painted) = survey.classes();
+    pub(crate) fn new(prepass: &Prepass<'a>, growth: &'a Growth<'a>, canvas: Canvas) -> Self {
+        let (graph, style) = (prepass.graph(), prepass.style());
+        let (classes, painted) = prepass.classes();
         // One path serves both if stroke and colour never change along a fractal.
         let together = graph.draws_closed_paths()
             && matches!(style.width, Width::Pixels(_))
@@ -76,20 +76,20 @@ impl<'a> Scene<'a> {
         let passes: Vec<_> = areas.into_iter().chain(painted).collect();
         if let Some(progress) = growth.progress {
             // The survey, and a walk for every pass.
-            let walks = u64::from(survey.walked) + passes.len() as u64;
-            progress.expect(survey.elements * walks);
+            let walks = u64::from(prepass.walked) + passes.len() as u64;
+            progress.expect(prepass.elements * walks);
         }
         Self {
             graph,
             growth,
             style,
             canvas,
-            sight: survey.sight().clone(),
+            culling: prepass.culling().clone(),
             classes,
             passes,
-            elements: survey.elements,
-            ranks: survey.ranks.clone(),
-            is_to_detail: survey.is_to_detail,
+            elements: prepass.elements,
+            ranks: prepass.ranks.clone(),
+            is_to_detail: prepass.is_to_detail,
             colonies: OnceLock::new(),
             uses: USES,
             fills_strokes: together && style.fill.is_some(),
@@ -132,13 +132,13 @@ impl Drawing for Scene<'_> {
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
             let hidden = painter.hidden(pass).map(Arc::new);
-            let aim = Arc::new(Aim::of(self, pass));
-            let stamps = painter.stamps(pass, &aim, hidden.as_ref());
+            let aim = Arc::new(ContributionMask::of(self, pass));
+            let sprites = painter.sprites(pass, &aim, hidden.as_ref());
             let means = Means {
                 comb: painter.comb().map(Arc::new),
                 coarse: painter.coarse(),
                 broadens: painter.broadens(),
-                stamps: stamps.map(Arc::new),
+                sprites: sprites.map(Arc::new),
                 hidden,
                 aim,
             };
@@ -165,7 +165,7 @@ impl Drawing for Scene<'_> {
     }
 }
 
-impl<'a> Survey<'a> {
+impl<'a> Prepass<'a> {
     /// Surveys an approximant: from the graph if it determines everything, otherwise by a walk. Colours that
     /// depend on steps span `steps` of them.
     pub(crate) fn of(
@@ -186,7 +186,7 @@ impl<'a> Survey<'a> {
 mod tests {
     use std::num::NonZero;
 
-    use super::{Aim, Arc, Pass, Scene, Sketcher, span};
+    use super::{Arc, ContributionMask, Pass, Scene, Sketcher, span};
     use crate::catalogue::{Catalogue, Shelf};
     use crate::document::Document;
     use crate::graph::Graph;
@@ -228,7 +228,7 @@ mod tests {
             };
             let growth = Growth::steps(30);
             let layout = Layout::find(&graph, &growth, &options).unwrap();
-            let scene = || Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let scene = || Scene::new(&layout.prepass, &layout.growth, layout.canvas);
             let png = |scene: &Scene<'_>, threads: usize| {
                 let mut png = Vec::new();
                 let threads = NonZero::new(threads).unwrap();
@@ -268,12 +268,12 @@ mod tests {
             let document = Document::read(&source, &catalogue).unwrap();
             let model = document.resolve(&[]).unwrap().0;
             let graph = model.compile(2).unwrap();
-            let mut options = Options::of(model.heading());
+            let mut options = Options::of(model.metadata());
             options.style.fill = Some(Colour::BLACK);
             options.style.color_by = ColorBy::Step;
             let growth = Growth::steps(2);
             let layout = Layout::find(&graph, &growth, &options).unwrap();
-            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
             assert_eq!(scene.passes.contains(&Pass::Areas), has_areas, "{name}");
         }
     }
@@ -286,10 +286,10 @@ mod tests {
         let document = Document::read(&source, &catalogue).unwrap();
         let model = document.resolve(&[]).unwrap().0;
         let graph = model.compile(7).unwrap();
-        let options = Options::of(model.heading());
+        let options = Options::of(model.metadata());
         let growth = Growth::steps(7);
         let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         let [mut all, mut most] = [0, 0];
         with_team(NonZero::<usize>::MIN, |team| {
             let division = Division {
@@ -297,13 +297,13 @@ mod tests {
                 ranks: grow::Ranks::Unknown,
             };
             let pass = Pass::Class(0);
-            let aim = Arc::new(Aim::of(&scene, pass));
+            let aim = Arc::new(ContributionMask::of(&scene, pass));
             let means = Means {
                 comb: None,
                 coarse: None,
                 broadens: false,
                 hidden: None,
-                stamps: None,
+                sprites: None,
                 aim,
             };
             let fresh = || Sketcher::new(&scene, pass, means.clone());

@@ -7,7 +7,7 @@ mod mark;
 mod runs;
 mod speck;
 
-pub(super) use mark::{Kind, Line, Look, Mark, Sketch, class_width, width_class};
+pub(super) use mark::{Kind, Line, Mark, PaintKey, Sketch, class_width, width_class};
 pub(super) use speck::SPECK_WIDTHS;
 
 use std::io;
@@ -15,19 +15,19 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
-use crate::grow::{Colony, Element, Enter, Fractal, Run, Subtree, Taken, Visitor};
+use crate::grow::{Colony, Element, Enter, FractalInfo, Run, Subtree, Taken, Visitor};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
-use super::aim::Aim;
+use super::batch::BatchBuilder;
 use super::classes::Share;
-use super::coarse::Coarse;
-use super::comb::Comb;
-use super::hidden::Hidden;
+use super::contribution::ContributionMask;
+use super::level_of_detail::LevelOfDetail;
+use super::occlusion::Occlusion;
+use super::prepass::span;
 use super::scene::{Pass, Scene};
-use super::stamps::{Painted, Stamps};
+use super::sprites::{Painted, Sprites};
 use super::surface::{FINE, Position, position};
-use super::survey::span;
 
 /// Returns the vertices of a closed outline after the first, if it has no curves. Its last line leads to its
 /// start.
@@ -61,24 +61,24 @@ pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
 #[derive(Clone)]
 pub(super) struct Means<'a> {
     /// Comb that makes tufts.
-    pub(super) comb: Option<Arc<Comb>>,
+    pub(super) comb: Option<Arc<BatchBuilder>>,
     /// Simplified outlines.
-    pub(super) coarse: Option<&'a Coarse>,
+    pub(super) coarse: Option<&'a LevelOfDetail>,
     /// Whether closed base elements that are narrower than a pixel are stroked.
     pub(super) broadens: bool,
     /// Occlusion.
-    pub(super) hidden: Option<Arc<Hidden>>,
+    pub(super) hidden: Option<Arc<Occlusion>>,
     /// Stamps of congruent runs and colonies.
-    pub(super) stamps: Option<Arc<Stamps<'a>>>,
+    pub(super) sprites: Option<Arc<Sprites<'a>>>,
     /// Contribution mask of the pass.
-    pub(super) aim: Arc<Aim>,
+    pub(super) aim: Arc<ContributionMask>,
 }
 
 /// Sketches the spans of a pass.
 pub(super) struct Sketcher<'a> {
     scene: &'a Scene<'a>,
     pass: Pass,
-    fractal: Fractal,
+    fractal: FractalInfo,
     pub(super) sketch: Sketch,
     means: Means<'a>,
     /// Class of all elements of the span, if it is known.
@@ -96,7 +96,7 @@ impl<'a> Sketcher<'a> {
         Self {
             scene,
             pass,
-            fractal: Fractal::default(),
+            fractal: FractalInfo::default(),
             sketch: Sketch::default(),
             means,
             whole: match pass {
@@ -114,7 +114,7 @@ impl<'a> Sketcher<'a> {
         self.sketch.marks.clear();
         self.sketch.points.clear();
         self.sketch.tufts.clear();
-        self.sketch.stamps.clear();
+        self.sketch.sprites.clear();
         self.class = None;
         self.open = None;
         if self.pass == Pass::Along {
@@ -203,7 +203,7 @@ impl<'a> Sketcher<'a> {
             Some(width) => (Kind::Speck, width),
             None => (Kind::Polygon, width),
         };
-        let look = Look {
+        let look = PaintKey {
             kind,
             width,
             colour: self.colour(element, self.scene.style.polygons()),
@@ -251,7 +251,7 @@ impl<'a> Sketcher<'a> {
 
     /// Adds a polygon of `sides` vertices.
     #[inline]
-    fn polygon_of(&mut self, look: Look, sides: usize) {
+    fn polygon_of(&mut self, look: PaintKey, sides: usize) {
         match self.sketch.marks.last_mut() {
             Some(Mark::Polygons {
                 look: last,
@@ -286,7 +286,7 @@ impl<'a> Sketcher<'a> {
     fn line(&mut self, element: &Element, base_element: &BaseElement) {
         let reversed = element.frame.direction().is_reversed();
         let map = *element.frame.map();
-        let look = Look {
+        let look = PaintKey {
             kind: self.kind(),
             width: self.width_class(element),
             colour: self.colour(element, self.scene.style.lines()),
@@ -336,8 +336,8 @@ impl<'a> Sketcher<'a> {
         let Scene { graph, style, .. } = self.scene;
         let width = match style.width {
             Width::Pixels(_) if graph.widest().is_none() => return 0,
-            Width::Pixels(width) => width * element.coat.width(),
-            Width::Relative(_) => element.frame.stretch() * element.coat.width(),
+            Width::Pixels(width) => width * element.appearance.width(),
+            Width::Relative(_) => element.frame.stretch() * element.appearance.width(),
         };
         if width != self.width.0 {
             let octave = match style.width {
@@ -365,7 +365,7 @@ impl<'a> Sketcher<'a> {
     fn colour(&self, element: &Element, own: Colour) -> Option<Colour> {
         let Scene { graph, style, .. } = self.scene;
         let is_tinted = graph.tints() && style.color_by == ColorBy::Tint;
-        is_tinted.then(|| element.coat.on(own))
+        is_tinted.then(|| element.appearance.on(own))
     }
 
     /// Returns whether all descendants of an element are occluded.
@@ -429,18 +429,18 @@ impl Visitor for Sketcher<'_> {
     type Error = io::Error;
 
     fn takes_runs(&self) -> bool {
-        !self.scene.sight.is_bounded()
+        !self.scene.culling.is_bounded()
     }
 
     fn longest_run(&self) -> u64 {
         let longest = span(self.scene.graph);
-        let stamps = self.means.stamps.as_ref();
-        let stamped = stamps.and_then(|stamps| stamps.longest_run());
-        stamped.map_or(longest, |stamped| longest.min(stamped))
+        let sprites = self.means.sprites.as_ref();
+        let placed = sprites.and_then(|sprites| sprites.longest_run());
+        placed.map_or(longest, |placed| longest.min(placed))
     }
 
     fn cuts(&self) -> Option<f64> {
-        self.scene.sight.shortest()
+        self.scene.culling.shortest()
     }
 
     fn ages(&self) -> RangeInclusive<u32> {
@@ -451,7 +451,7 @@ impl Visitor for Sketcher<'_> {
         ages.unwrap_or(0..=u32::MAX)
     }
 
-    fn go_on(&mut self, fractal: Fractal) {
+    fn go_on(&mut self, fractal: FractalInfo) {
         self.fractal = fractal;
     }
 
@@ -461,7 +461,7 @@ impl Visitor for Sketcher<'_> {
         }
     }
 
-    fn begin(&mut self, fractal: Fractal) -> io::Result<()> {
+    fn begin(&mut self, fractal: FractalInfo) -> io::Result<()> {
         self.fractal = fractal;
         self.mark(Mark::Begin);
         Ok(())
@@ -469,7 +469,7 @@ impl Visitor for Sketcher<'_> {
 
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        match self.scene.sight.enter(subtree) {
+        match self.scene.culling.enter(subtree) {
             Enter::Replace
                 if !self.means.aim.may_paint(self.scene, subtree) || self.is_hidden(subtree) =>
             {
@@ -512,7 +512,7 @@ impl Visitor for Sketcher<'_> {
                     self.see(&last);
                 }
             }
-            (Share::All, ..) if self.stamp(run, Painted::All) => {}
+            (Share::All, ..) if self.sprite(run, Painted::All) => {}
             (Share::All, _, Some(sticks)) if self.tufts(run, sticks) => {}
             (Share::All, Some(ends), _) => {
                 if let Some(first) = run.first() {
@@ -526,11 +526,11 @@ impl Visitor for Sketcher<'_> {
             }
             _ => match (self.pass, self.means.aim.steps.clone()) {
                 (_, Some(steps))
-                    if self.stamp(run, Painted::Steps(*steps.start(), *steps.end())) => {}
+                    if self.sprite(run, Painted::Steps(*steps.start(), *steps.end())) => {}
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
                 (Pass::Class(class), None)
-                    if self.means.aim.tells_objects() && self.stamp(run, Painted::Class(class)) => {
-                }
+                    if self.means.aim.tells_objects()
+                        && self.sprite(run, Painted::Class(class)) => {}
                 (Pass::Class(class), None) if self.means.aim.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
@@ -543,8 +543,8 @@ impl Visitor for Sketcher<'_> {
     }
 
     fn takes(&self, colony: &Colony<'_>) -> Taken {
-        let stamps = self.means.stamps.as_ref();
-        stamps.map_or(Taken::Nothing, |stamps| stamps.takes(colony))
+        let sprites = self.means.sprites.as_ref();
+        sprites.map_or(Taken::Nothing, |sprites| sprites.takes(colony))
     }
 
     fn colony(&mut self, colony: &Colony<'_>, _: Taken) -> io::Result<()> {

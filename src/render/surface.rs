@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
-use super::filled::Filled;
-use super::png::{RoundPen, Stamp};
+use super::covered::CoveredPixels;
+use super::png::{RoundPen, Sprite};
 
 /// Position on a picture, in hundredths of a pixel from the upper left corner, with y down.
 ///
@@ -80,7 +80,7 @@ impl Pen {
 
 /// Thin lines close to each other, drawn as one box that is no larger than a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tuft {
+pub(crate) struct SegmentBatch {
     /// Twice its centre, in hundredths of a pixel.
     pub(crate) middle: [i32; 2],
     /// Width and height, in hundredths of a pixel.
@@ -93,14 +93,14 @@ pub(crate) struct Tuft {
 
 /// Stamp, and the pixel on which it is put.
 #[derive(Clone, Debug)]
-pub(crate) struct Stamped {
-    pub(crate) stamp: Arc<Stamp>,
+pub(crate) struct PlacedSprite {
+    pub(crate) sprite: Arc<Sprite>,
     pub(crate) pixel: [i64; 2],
 }
 
 /// Means by which stamps are drawn: shapes are filled, and lines are drawn with the pen.
 #[derive(Clone)]
-pub(crate) struct Stencil {
+pub(crate) struct SpritePaint {
     /// Pen of lines and outlines.
     pub(crate) pen: Option<Arc<RoundPen>>,
     /// Whether shapes are outlined.
@@ -156,20 +156,20 @@ pub(crate) trait Surface {
         0.0
     }
     /// Draws tufts, within a path whose stroke permits them.
-    fn tufts(&mut self, _: &[Tuft]) {}
+    fn tufts(&mut self, _: &[SegmentBatch]) {}
 
     /// Returns the stencil of stamps that may be put in paths with this paint, if the surface permits them.
     /// Pixels that they cover repeatedly are covered once.
-    fn stencil(&mut self, _: &Paint) -> Option<Stencil> {
+    fn stencil(&mut self, _: &Paint) -> Option<SpritePaint> {
         None
     }
     /// Draws stamps, within a path whose paint permits them.
-    fn stamps(&mut self, _: &[Stamped]) {}
+    fn sprites(&mut self, _: &[PlacedSprite]) {}
 
     /// Returns the index of completely covered pixels, if paths with this paint are drawn in layers, each of
     /// one opaque colour, or of two, of which that of strokes lies on top and is indexed. `None` unless
     /// overridden.
-    fn filled(&mut self, _: &Paint) -> Option<Arc<Filled>> {
+    fn filled(&mut self, _: &Paint) -> Option<Arc<CoveredPixels>> {
         None
     }
     /// Declares that the following paths belong to a layer.

@@ -3,8 +3,10 @@
 use std::io;
 use std::sync::Arc;
 
-use crate::render::filled::Filled;
-use crate::render::surface::{Paint, Position, Stamped, Stencil, Stroke, Surface, Tuft};
+use crate::render::covered::CoveredPixels;
+use crate::render::surface::{
+    Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
+};
 
 /// Traces paths onto a surface. Redundant vertices are left out; a subpath without length becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {
@@ -145,8 +147,8 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.tufts_below(stroke)
     }
 
-    /// Returns [`Surface::filled`].
-    pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+    /// Returns [`Surface::covered`].
+    pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
         self.surface.filled(paint)
     }
 
@@ -156,18 +158,18 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     }
 
     /// Draws tufts, regardless of the position of the pen.
-    pub(crate) fn tufts(&mut self, tufts: &[Tuft]) {
+    pub(crate) fn tufts(&mut self, tufts: &[SegmentBatch]) {
         self.surface.tufts(tufts);
     }
 
     /// Returns [`Surface::stencil`].
-    pub(crate) fn stencil(&mut self, paint: &Paint) -> Option<Stencil> {
+    pub(crate) fn stencil(&mut self, paint: &Paint) -> Option<SpritePaint> {
         self.surface.stencil(paint)
     }
 
     /// Draws stamps, regardless of the position of the pen.
-    pub(crate) fn stamps(&mut self, stamps: &[Stamped]) {
-        self.surface.stamps(stamps);
+    pub(crate) fn sprites(&mut self, sprites: &[PlacedSprite]) {
+        self.surface.sprites(sprites);
     }
 
     /// Hands on the drawn portion of the path, if it is large.

@@ -5,16 +5,16 @@ use std::io::Write;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::style::{ColorBy, Style, View, Width};
-use crate::zoom::{self, Address, Factor, Source, Window};
+use crate::zoom::{self, Address, Factor, ZoomSource, ZoomWindow};
 
+use super::culling::starts_rings;
 use super::layout::Layout;
-use super::sight::starts_rings;
-use super::survey::{overhang, relative_overhang};
+use super::prepass::{overhang, relative_overhang};
 use super::{Canvas, Detail, Nearest, Options, Picture, RenderError, Size};
 
 /// Target of a zoomed picture.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub struct ZoomTarget {
     /// Magnification relative to the picture of the whole set.
     pub factor: Factor,
     /// Point at the centre of the picture.
@@ -42,11 +42,11 @@ pub enum NoZoom {
 ///
 /// Returns an error under the conditions of [`write`](super::write), and if the point does not exist.
 pub fn write_zoomed(
-    source: &Source<'_>,
+    source: &ZoomSource<'_>,
     graph: &Graph,
     growth: &Growth<'_>,
     options: &Options,
-    look: &Look,
+    look: &ZoomTarget,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
     let style = &options.style;
@@ -57,7 +57,7 @@ pub fn write_zoomed(
         Width::Pixels(width) => (width * overhang(style), 0.0),
         Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
     };
-    let window = Window {
+    let window = ZoomWindow {
         size: canvas.size(),
         scale: canvas.scale(),
         margin: stroke + 2.0,
@@ -69,7 +69,7 @@ pub fn write_zoomed(
     };
     let steps = options.detail.filter(|detail| !detail.decides_steps);
     let to_limit = steps.is_none();
-    let zoom_growth = zoom::Growth {
+    let zoom_growth = zoom::ZoomOptions {
         seed: growth.seed,
         steps: steps.map(|_| growth.steps),
         cancel: growth.cancel,

@@ -38,7 +38,7 @@ impl<K> Resolver<K> {
             return None;
         }
         let place = &document.place;
-        let Some(steps) = steps.unwrap_or(model.heading().steps) else {
+        let Some(steps) = steps.unwrap_or(model.metadata().steps) else {
             if document.steps.is_none() {
                 let message = "this fractal does not say how many steps it is grown by";
                 self.error_with_hint(place, message, "add `steps: 4` beside `fractal`");
@@ -58,7 +58,7 @@ impl<K> Resolver<K> {
             ..Growth::steps(steps)
         };
         let frame = map.map_or(Some(Frame::UNIT), |map| map.map(Frame::from))?;
-        let fills = model.heading().style.fill.is_some();
+        let fills = model.metadata().style.fill.is_some();
         let most = MOST_PIECES.saturating_sub(self.pieces);
         let message = match outlines(&graph, &growth, frame, fills, most) {
             Ok(drawn) if drawn.is_empty() => {
@@ -84,7 +84,7 @@ impl<K> Resolver<K> {
 
     /// Returns the parameters that are set. Reports mistakes and returns `None`.
     fn settings(&mut self, document: &FractalDocument) -> Option<Vec<Setting>> {
-        let heading = document.file.heading();
+        let heading = document.file.metadata();
         let names = heading.params.iter().map(|param| param.name.value.as_str());
         let settings = document.set.iter().map(|(name, number)| {
             let value = self.constant(number);

@@ -2,11 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
-use crate::heading::Heading;
 use crate::ifs::{
     Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, Shape, System, Verdict,
-    Weighted, hull, toward,
+    WeightOwner, hull, toward,
 };
+use crate::metadata::Metadata;
 
 use super::Resolver;
 
@@ -27,7 +27,7 @@ pub(super) struct Maps {
 
 impl Resolver<OfIfs> {
     /// Resolves the system. Reports mistakes and returns `None`.
-    pub(super) fn system(&mut self, document: &IfsDocument, heading: Heading) -> Option<System> {
+    pub(super) fn system(&mut self, document: &IfsDocument, heading: Metadata) -> Option<System> {
         let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
         let condensation: Vec<_> = document
             .condensation
@@ -176,9 +176,9 @@ impl Resolver<OfIfs> {
         let condensation = |number: usize| document.condensation.get(number);
         let weight = match *error {
             IfsError::Weight { of, .. } => match of {
-                Weighted::Map(map) => listed(document, map).and_then(|map| map.weight.as_ref()),
-                Weighted::Edge(number) => edge(number).and_then(|edge| edge.weight.as_ref()),
-                Weighted::Condensation(set) => {
+                WeightOwner::Map(map) => listed(document, map).and_then(|map| map.weight.as_ref()),
+                WeightOwner::Edge(number) => edge(number).and_then(|edge| edge.weight.as_ref()),
+                WeightOwner::Condensation(set) => {
                     condensation(set).and_then(|set| set.weight.as_ref())
                 }
             },

@@ -13,9 +13,9 @@ use crate::document::{
 };
 use crate::expression::{Program, Scope};
 use crate::geometry::{DAffine2, DMat2, DVec2};
-use crate::heading::Heading;
 use crate::ifs::{Shape, axes};
 use crate::instancing::{Instance, Instancing, Master, Object, Tint};
+use crate::metadata::Metadata;
 use crate::style::{ColorBy, Colour};
 
 use super::Resolver;
@@ -120,7 +120,7 @@ impl Resolver<OfInstancing> {
     pub(super) fn structure(
         &mut self,
         document: &InstancingDocument,
-        heading: Heading,
+        heading: Metadata,
     ) -> Option<Instancing> {
         self.kind.constants = Arc::new(self.constants.clone());
         let initial = document.initial.as_ref().map(|set| self.initial(set));

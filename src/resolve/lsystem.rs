@@ -9,8 +9,8 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::document::{LSystemDocument, ModuleDocument, Number, ProductionDocument, WordDocument};
 use crate::expression::{Program, Scope, is_reserved};
-use crate::heading::Heading;
 use crate::lsystem::{Action, Context, LSystem, Module, Origin, Production, Symbol, Template};
+use crate::metadata::Metadata;
 use crate::style::ColorBy;
 
 use super::Resolver;
@@ -38,7 +38,7 @@ impl Resolver<OfLSystem> {
     pub(super) fn lsystem(
         &mut self,
         document: &LSystemDocument,
-        heading: Heading,
+        heading: Metadata,
     ) -> Option<LSystem> {
         self.kind.constants = Arc::new(self.constants.clone());
         self.kind.angle = self.number_or(document.angle.as_ref(), 90.0);

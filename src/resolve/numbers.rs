@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::document::{Number, Point};
 use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type};
 use crate::geometry::DVec2;
-use crate::rule::Moment;
+use crate::rule::ElementContext;
 
 use super::{MOST_MISTAKES, Resolver};
 
@@ -47,7 +47,7 @@ impl<K> Resolver<K> {
     fn mistake(&mut self, number: &Number, mistake: ExpressionError) {
         let place = within(number, mistake.range);
         let diagnostic = Diagnostic::error(mistake.message).at(&place);
-        let hint = if Moment::NAMES.contains(&place.text()) {
+        let hint = if ElementContext::NAMES.contains(&place.text()) {
             Some("it is known in generators and in conditions, but not here".into())
         } else {
             mistake.hint

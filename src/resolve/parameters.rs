@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::document::{HeadingDocument, Number, ParameterDocument, Setting, Written};
+use crate::document::{MetadataDocument, Number, ParameterDocument, Setting, Written};
 use crate::expression::{PARTS, is_name, is_reserved};
-use crate::heading::Parameter;
-use crate::rule::Moment;
+use crate::metadata::Parameter;
+use crate::rule::ElementContext;
 
 use super::Resolver;
 
@@ -13,7 +13,7 @@ impl<K> Resolver<K> {
     /// Resolves the parameters and adds them to the scope of expressions.
     pub(super) fn parameters(
         &mut self,
-        document: &HeadingDocument,
+        document: &MetadataDocument,
         settings: &[Setting],
     ) -> Vec<Parameter> {
         if !document.complete {
@@ -59,7 +59,7 @@ impl<K> Resolver<K> {
             let message = format!("'{name}' cannot be a parameter's name");
             let hint = "a name has letters, digits and _, and begins with a letter";
             self.error_with_hint(place, message, hint);
-        } else if is_reserved(name) || Moment::NAMES.contains(&name.as_str()) {
+        } else if is_reserved(name) || ElementContext::NAMES.contains(&name.as_str()) {
             let message = format!("'{name}' has a meaning of its own in expressions");
             self.error_with_hint(place, message, "give the parameter another name");
         }

@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::document::RuleDocument;
-use crate::heading::Heading;
-use crate::rule::{BaseElement, Moment, Rule, Selection};
+use crate::metadata::Metadata;
+use crate::rule::{BaseElement, ElementContext, Rule, Selection};
 
 use generator::loops_shrink;
 
@@ -32,7 +32,7 @@ pub(super) struct OfRule {
 }
 
 impl Resolver<OfRule> {
-    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Heading) -> Rule {
+    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Metadata) -> Rule {
         match &document.base_element {
             Some(document) => {
                 self.base_element(document);
@@ -47,7 +47,7 @@ impl Resolver<OfRule> {
         self.kind.generator_numbers = numbers.collect();
 
         let mut moment = self.constants.clone();
-        for (slot, name) in Moment::NAMES.into_iter().enumerate() {
+        for (slot, name) in ElementContext::NAMES.into_iter().enumerate() {
             moment.variable(name, slot);
         }
         let moment = Arc::new(moment);

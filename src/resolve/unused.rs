@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::{HeadingDocument, ParameterDocument};
+use crate::document::{MetadataDocument, ParameterDocument};
 use crate::expression::PARTS;
 
 /// Maximum number of parameters for which a similar name is searched.
@@ -13,7 +13,7 @@ const MOST_COMPARED: usize = 100;
 /// Returns warnings of the parameters in a file that none of its expressions uses. Parameters of its
 /// parents and components are excluded, because other files may use them.
 pub(super) fn parameters(
-    heading: &HeadingDocument,
+    heading: &MetadataDocument,
     used: &HashSet<String>,
 ) -> impl Iterator<Item = Diagnostic> {
     let is_used = |parameter: &&ParameterDocument| match &parameter.whole {

@@ -3,7 +3,7 @@
 use crate::expression::{Dependence, Interval, Program};
 use crate::geometry::DVec2;
 
-use super::generator::{Generator, ListedElement, Moment, Move};
+use super::generator::{ElementContext, Generator, ListedElement, Move};
 
 /// Limit of the number of parts into which the ranges of all drawn variables together are divided.
 const MOST_PARTS: usize = 1024;
@@ -72,7 +72,7 @@ impl Generator {
         let mut free = 0;
         let mut left = MOST_PARTS;
         for (number, variable) in self.variables.iter().enumerate().rev() {
-            let slot = Moment::NAMES.len() + number;
+            let slot = ElementContext::NAMES.len() + number;
             let depends = |program: &&Program| program.dependence(slot) != Dependence::None;
             if programs.iter().any(depends) {
                 programs.extend(variable.programs());
@@ -108,7 +108,7 @@ impl Cover<'_> {
     /// Recurses into the parts of the next variable's range; `likely` is the probability of the parts so
     /// far.
     fn go_on(&mut self, slots: &mut Vec<Interval>, likely: f64) {
-        let number = slots.len() - Moment::NAMES.len();
+        let number = slots.len() - ElementContext::NAMES.len();
         let Some(variable) = self.generator.variables.get(number) else {
             return self.add(slots, likely);
         };
@@ -194,7 +194,7 @@ mod tests {
             for generator in rule.generators() {
                 let extents = generator.extents(&limits);
                 for number in 0..if generator.is_random() { 500 } else { 1 } {
-                    let moment = Moment {
+                    let moment = ElementContext {
                         index: f64::from(number % 9 + 1),
                         age: f64::from(number % 5),
                         step: f64::from(number % 4),

@@ -11,7 +11,7 @@ use super::draw::{Path, Variable};
 
 /// Values that the expressions of a generator and of a selection see of the element that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct ElementContext {
     /// Index of the element in its fractal, from 1 in the order of traversal.
     pub index: f64,
     /// Age of its fractal, in steps.
@@ -23,7 +23,7 @@ pub struct Moment {
     pub length: f64,
 }
 
-impl Moment {
+impl ElementContext {
     /// Names of the fields in expressions, in the order of their slots.
     pub const NAMES: [&'static str; 4] = ["i", "age", "step", "length"];
     /// Slot of `i`.
@@ -176,7 +176,7 @@ impl Generator {
     /// are finite before the moves.
     pub(crate) fn infinite_coordinate(
         &self,
-        moment: &Moment,
+        moment: &ElementContext,
     ) -> Option<(&Place, Vec<(&'static str, f64)>)> {
         let slots = moment.slots();
         let written = self.points.iter().flatten();
@@ -188,7 +188,7 @@ impl Generator {
             .filter(|_| !self.is_random())?;
         let depends = |slot: &usize| program.dependence(*slot) != Dependence::None;
         let slots = (0..slots.len()).filter(depends);
-        let values = slots.map(|slot| (Moment::NAMES[slot], moment.slots()[slot]));
+        let values = slots.map(|slot| (ElementContext::NAMES[slot], moment.slots()[slot]));
         Some((place, values.collect()))
     }
 
@@ -211,7 +211,7 @@ impl Generator {
 
     /// Returns the values that the expressions of the points see: those of the moment, and the draws for
     /// a path.
-    pub(crate) fn slots(&self, moment: &Moment, path: Path) -> Vec<f64> {
+    pub(crate) fn slots(&self, moment: &ElementContext, path: Path) -> Vec<f64> {
         let mut slots = moment.slots().to_vec();
         for variable in &self.variables {
             slots.push(variable.draw(path, &slots));
@@ -233,7 +233,7 @@ impl Generator {
     /// point is infinite or NaN where an expression is.
     pub fn evaluate(
         &self,
-        moment: &Moment,
+        moment: &ElementContext,
         path: Path,
         scratch: &mut Vec<f64>,
         points: &mut Vec<DVec2>,
@@ -244,7 +244,7 @@ impl Generator {
 
     /// Returns the points for representative draws (see [`Variable::typical`]).
     #[must_use]
-    pub fn typical(&self, moment: &Moment) -> Vec<DVec2> {
+    pub fn typical(&self, moment: &ElementContext) -> Vec<DVec2> {
         let (mut scratch, mut points) = (Vec::new(), Vec::new());
         self.evaluate_with(moment, Variable::typical, &mut scratch, &mut points);
         points
@@ -255,7 +255,7 @@ impl Generator {
     #[inline]
     pub(crate) fn evaluate_with(
         &self,
-        moment: &Moment,
+        moment: &ElementContext,
         draw: impl Fn(&Variable, &[f64]) -> f64,
         scratch: &mut Vec<f64>,
         points: &mut Vec<DVec2>,

@@ -14,17 +14,17 @@ mod selection;
 pub use base_element::{BaseElement, Piece, arc};
 pub(crate) use extent::Extent;
 pub(crate) use generator::Origin;
-pub use generator::{Generator, ListedElement, Moment, Move, Part, Placement};
+pub use generator::{ElementContext, Generator, ListedElement, Move, Part, Placement};
 pub use selection::Selection;
 
 use crate::geometry::DVec2;
-use crate::heading::{Description, Heading, Parameter};
+use crate::metadata::{Description, Metadata, Parameter};
 use crate::style::{Style, View};
 
 /// Production rule: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    pub(crate) heading: Heading,
+    pub(crate) heading: Metadata,
     /// Source of the initiator.
     pub(crate) origin: Origin,
     pub(crate) points: Vec<DVec2>,
@@ -37,7 +37,7 @@ pub struct Rule {
 impl Rule {
     /// Returns the metadata of the file.
     #[must_use]
-    pub fn heading(&self) -> &Heading {
+    pub fn metadata(&self) -> &Metadata {
         &self.heading
     }
 

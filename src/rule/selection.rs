@@ -3,7 +3,7 @@
 use crate::expression::Program;
 
 use super::draw::{Path, pick_by_weight};
-use super::generator::Moment;
+use super::generator::ElementContext;
 
 /// Selection of the generator for a fertile element that does not name its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Selection {
     /// Returns the number of the generator for an element.
     #[inline]
     #[must_use]
-    pub fn select(&self, moment: &Moment, path: Path) -> usize {
+    pub fn select(&self, moment: &ElementContext, path: Path) -> usize {
         match self {
             Self::Always(generator) => *generator,
             Self::ByIndex(entries) => entries[remainder(moment.index, entries.len())],

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use crate::expression::Precise;
 use crate::geometry::DMat2;
 use crate::graph::{Graph, Instance, Production, Replacement};
-use crate::grow::{Evaluator, Moment, Standing};
+use crate::grow::{Evaluator, ReplacementContext, Standing};
 use crate::rule::Placement;
-use crate::whole::whole;
+use crate::saturating::whole;
 
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
-use super::{Address, GRAIN, Growth, SPARE, Window, ZoomError};
+use super::{Address, GRAIN, SPARE, ZoomError, ZoomOptions, ZoomWindow};
 
 /// Limit of the number of steps within which the elements of an address must shrink to a point.
 const MOST_STEPS: u32 = 1_000_000;
@@ -19,8 +19,8 @@ const MOST_STEPS: u32 = 1_000_000;
 /// Returns the centre of a window, in multiples of 2^-`bits`.
 pub(super) fn centre(
     graph: &Graph,
-    growth: &Growth<'_>,
-    window: &Window,
+    growth: &ZoomOptions<'_>,
+    window: &ZoomWindow,
     constants: &mut Constants<'_>,
 ) -> Result<Vector, ZoomError> {
     let (first, repeated) = match &window.at {
@@ -67,7 +67,7 @@ pub(super) fn centre(
             return Err(ZoomError::NoPoint { address: address() });
         }
         super::descent::check(growth, level)?;
-        let moment = Moment {
+        let moment = ReplacementContext {
             born,
             level,
             rank: graph.objects()[object].index.into(),
@@ -81,7 +81,7 @@ pub(super) fn centre(
                     depth,
                 });
             }
-            Replacement::Beyond => return Err(ZoomError::TooShallow { depth: level }),
+            Replacement::Unresolved => return Err(ZoomError::TooShallow { depth: level }),
             Replacement::Fixed(production) => Arc::as_ref(production),
             Replacement::Evaluated(_) => {
                 let mut made = Production::default();

@@ -10,15 +10,15 @@ use std::sync::Arc;
 
 use dashu_int::IBig;
 
-use crate::document::{HeadingDocument, KindDocument, Number, Point, Setting};
+use crate::document::{KindDocument, MetadataDocument, Number, Point, Setting};
 use crate::expression::{Precise, Precision};
 use crate::graph::{Graph, Instance, Replacement};
-use crate::grow::{Moment, Standing};
+use crate::grow::{ReplacementContext, Standing};
 use crate::model::Model;
 use crate::resolve::order_of_parameters;
 
 use super::fixed::{Fixed, Vector};
-use super::{Source, ZoomError};
+use super::{ZoomError, ZoomSource};
 
 /// Limit of the number of cached maps.
 const MOST_KNOWN: usize = 1 << 12;
@@ -28,7 +28,7 @@ const MOST_KNOWN: usize = 1 << 12;
 pub(super) struct Parent<'a> {
     pub(super) standing: &'a Standing,
     pub(super) object: usize,
-    pub(super) moment: Moment,
+    pub(super) moment: ReplacementContext,
     /// Number of significant bits in the maps of its children.
     pub(super) bits: usize,
 }
@@ -66,7 +66,7 @@ impl<'a> Constants<'a> {
     ///
     /// If an L-system does not rewrite edges: each number of steps then has its own initiator.
     pub(super) fn new(
-        source: &Source<'a>,
+        source: &ZoomSource<'a>,
         graph: &'a Graph,
         bits: usize,
     ) -> Result<Self, ZoomError> {
@@ -75,7 +75,7 @@ impl<'a> Constants<'a> {
             precision: Precision::new(bits),
             params: BTreeMap::new(),
         };
-        numbers.read_parameters(document.heading(), source.settings);
+        numbers.read_parameters(document.metadata(), source.settings);
         let kind = match (document, source.model) {
             (KindDocument::Rule(document), Model::Rule(rule)) => {
                 Kind::Rule(rule::OfRule::new(document, rule, &mut numbers))
@@ -174,7 +174,7 @@ impl Numbers {
     }
 
     /// Evaluates the parameters, each after those on which its value depends.
-    fn read_parameters(&mut self, heading: &HeadingDocument, settings: &[Setting]) {
+    fn read_parameters(&mut self, heading: &MetadataDocument, settings: &[Setting]) {
         let (order, _) = order_of_parameters(&heading.params);
         for index in order {
             let written = &heading.params[index];

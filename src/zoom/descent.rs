@@ -5,13 +5,13 @@ use std::sync::atomic::Ordering;
 
 use crate::geometry::{DAffine2, DVec2, Frame, stretch};
 use crate::graph::{Chain, Graph, Instance, Production, Replacement, Seed};
-use crate::grow::{Evaluator, Moment, Standing};
+use crate::grow::{Evaluator, ReplacementContext, Standing};
 
 use super::clip::{self, Path};
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
 use super::items::{Drawn, Found, Item, Line, Node};
-use super::{GRAIN, Growth, SPARE, Window, Zoom, ZoomError, merge, roots};
+use super::{GRAIN, SPARE, Zoom, ZoomError, ZoomOptions, ZoomWindow, merge, roots};
 
 /// Largest extent of a root, in pixels.
 const LARGEST: f64 = (1 << 20) as f64;
@@ -34,8 +34,8 @@ enum Look {
 
 pub(super) struct Descent<'a, 'c> {
     graph: &'a Graph,
-    growth: &'a Growth<'a>,
-    window: &'a Window,
+    growth: &'a ZoomOptions<'a>,
+    window: &'a ZoomWindow,
     reaches: &'a [f64],
     constants: &'c mut Constants<'a>,
     /// Half the extent of the window with its margin, in pixels.
@@ -49,8 +49,8 @@ pub(super) struct Descent<'a, 'c> {
 impl<'a, 'c> Descent<'a, 'c> {
     pub(super) fn new(
         graph: &'a Graph,
-        growth: &'a Growth<'a>,
-        window: &'a Window,
+        growth: &'a ZoomOptions<'a>,
+        window: &'a ZoomWindow,
         reaches: &'a [f64],
         constants: &'c mut Constants<'a>,
     ) -> Self {
@@ -262,7 +262,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         pen: bool,
         line: &mut Line,
     ) -> Result<bool, ZoomError> {
-        let moment = Moment {
+        let moment = ReplacementContext {
             born: node.born,
             level: node.level,
             rank: self.graph.objects()[node.object].index.into(),
@@ -275,7 +275,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 evaluator.evaluate(self.graph, &node.standing, node.object, moment, &mut made)?;
                 Arc::new(made)
             }
-            Replacement::Kept | Replacement::Beyond => {
+            Replacement::Kept | Replacement::Unresolved => {
                 return Err(ZoomError::TooShallow { depth: node.level });
             }
         };
@@ -361,7 +361,7 @@ impl<'a, 'c> Descent<'a, 'c> {
 }
 
 /// Returns an error if the work has been cancelled; the flag is read every 16 rounds.
-pub(super) fn check(growth: &Growth<'_>, round: u32) -> Result<(), ZoomError> {
+pub(super) fn check(growth: &ZoomOptions<'_>, round: u32) -> Result<(), ZoomError> {
     let is_cancelled = |flag: &std::sync::atomic::AtomicBool| flag.load(Ordering::Relaxed);
     if round.is_multiple_of(16) && growth.cancel.is_some_and(is_cancelled) {
         return Err(ZoomError::Cancelled);

@@ -137,7 +137,10 @@ pub(super) enum Drawn {
 impl Found {
     pub(super) fn of(node: &Node, frame: Frame, joined: bool, drawn: Drawn) -> Self {
         let Standing {
-            path, length, coat, ..
+            path,
+            length,
+            appearance,
+            ..
         } = node.standing;
         Self {
             object: node.object,
@@ -146,7 +149,7 @@ impl Found {
                 level: node.level,
                 path,
                 length,
-                coat,
+                appearance,
             },
             joined,
             drawn,

@@ -57,11 +57,11 @@ use crate::document::{Document, Setting};
 use crate::geometry::DVec2;
 use crate::graph::{CompileError, Graph, NoLimit, Object};
 use crate::model::Model;
-use crate::whole::whole;
+use crate::saturating::whole;
 
 /// Model with the file from which its numbers are evaluated.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct ZoomSource<'a> {
     /// File.
     pub document: &'a Document,
     /// Settings of the file's parameters.
@@ -74,7 +74,7 @@ pub struct Source<'a> {
 
 /// Part of the plane that is drawn.
 #[derive(Clone, Debug)]
-pub struct Window {
+pub struct ZoomWindow {
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     /// Pixels for each unit of the plane, without magnification.
@@ -98,7 +98,7 @@ pub struct Window {
 
 /// Conditions of growth.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Growth<'a> {
+pub struct ZoomOptions<'a> {
     /// Seed of random draws.
     pub seed: u64,
     /// Number of steps after which no element is replaced; `None` if unlimited.
@@ -228,17 +228,17 @@ const SPARE: usize = 128;
 /// If there is no point to zoom into, if the window contains too much, or if the graph is not resolved
 /// for the required number of steps.
 pub fn zoom(
-    source: &Source<'_>,
+    source: &ZoomSource<'_>,
     graph: &Graph,
-    growth: &Growth<'_>,
-    window: &Window,
+    growth: &ZoomOptions<'_>,
+    window: &ZoomWindow,
 ) -> Result<Zoom, ZoomError> {
     check(source, graph)?;
     let own = |object: &Object| graph.outline_radius(object) + window.relative_stroke;
     let is_unknown = |reaches: &[f64]| reaches.iter().any(|reach| !reach.is_finite());
     let mut reaches = graph.reaches(own);
     if is_unknown(&reaches) {
-        reaches = graph.likely_reaches(own);
+        reaches = graph.probable_radii(own);
     }
     if is_unknown(&reaches) {
         return Err(ZoomError::NoReach);
@@ -266,7 +266,7 @@ pub fn check_model(model: &Model) -> Result<(), ZoomError> {
 }
 
 /// Checks that a graph may have points to zoom into.
-pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError> {
+pub(crate) fn check(source: &ZoomSource<'_>, graph: &Graph) -> Result<(), ZoomError> {
     check_model(source.model)?;
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);
@@ -281,7 +281,7 @@ pub(crate) fn check(source: &Source<'_>, graph: &Graph) -> Result<(), ZoomError>
 }
 
 /// Checks that doubles resolve the pixels about a point.
-fn check_point(point: DVec2, window: &Window) -> Result<(), ZoomError> {
+fn check_point(point: DVec2, window: &ZoomWindow) -> Result<(), ZoomError> {
     let far = point.abs().max_element();
     let step = far.next_up() - far;
     let most = 1.0 / (step * window.scale);

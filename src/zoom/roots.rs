@@ -6,7 +6,7 @@ use crate::graph::{Chain, Graph, Instance, Replacement, Roots, Sown};
 use crate::rule::BaseElement;
 
 use super::items::{Drawn, Found, Item, Line};
-use super::{Window, Zoom, ZoomError};
+use super::{Zoom, ZoomError, ZoomWindow};
 
 /// Graph under construction.
 struct Rooted {
@@ -22,7 +22,7 @@ struct Rooted {
 /// seeded it.
 pub(super) fn zoom(
     graph: &Graph,
-    window: &Window,
+    window: &ZoomWindow,
     mut lines: Vec<Line>,
 ) -> Result<Zoom, ZoomError> {
     let mut rooted = Rooted {
@@ -90,7 +90,12 @@ impl Rooted {
     }
 
     /// Adds a root to a chain.
-    fn add(&mut self, found: Found, window: &Window, chain: &mut Chain) -> Result<(), ZoomError> {
+    fn add(
+        &mut self,
+        found: Found,
+        window: &ZoomWindow,
+        chain: &mut Chain,
+    ) -> Result<(), ZoomError> {
         let parts = match found.drawn {
             Drawn::Object => vec![(found.frame, None)],
             Drawn::Clipped(outline) => vec![(found.frame, Some(outline))],

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kfrac::build::{Element, Elements, Generator, Move, Number, RuleBuilder};
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::graph::Graph;
-use kfrac::heading::Parameter;
+use kfrac::metadata::Parameter;
 use kfrac::rule::Placement;
 use proptest::collection::vec;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL};

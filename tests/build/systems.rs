@@ -2,7 +2,7 @@
 
 use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
-use kfrac::heading::Parameter;
+use kfrac::metadata::Parameter;
 use kfrac::model::Model;
 use kfrac::style::Colour;
 

@@ -10,7 +10,7 @@ use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
-use kfrac::grow::{Element, Fractal, Growth, Visitor, walk};
+use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
 use kfrac::rule::Rule;
 
 /// Runs the program in a folder; returns its status and its standard error.
@@ -55,7 +55,7 @@ pub(crate) fn compiled(rule: &Arc<Rule>, steps: u32) -> Graph {
 
 /// A fractal of an approximant with all its elements.
 pub(crate) struct Grown {
-    pub(crate) fractal: Fractal,
+    pub(crate) fractal: FractalInfo,
     pub(crate) elements: Vec<Element>,
     /// Whether the last element is joined to the first.
     pub(crate) is_ring: bool,
@@ -67,7 +67,7 @@ struct Collector(Vec<Grown>);
 impl Visitor for Collector {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.0.push(Grown {
             fractal,
             elements: Vec::new(),

@@ -2,20 +2,20 @@
 
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::graph::Graph;
-use kfrac::measure::exact::{Grown, Overlap, dimensions_of_graph};
+use kfrac::measure::exact::{GraphDimensions, Overlap, dimensions_of_graph};
 
 use crate::{common, near};
 
-fn grown(graph: &Graph) -> Grown {
+fn grown(graph: &Graph) -> GraphDimensions {
     dimensions_of_graph(graph)
 }
 
-fn rule(name: &str) -> Grown {
+fn rule(name: &str) -> GraphDimensions {
     let document = common::document(name);
     grown(&common::compiled(&common::resolved(&document, &[]), 3))
 }
 
-fn text(text: &str) -> Grown {
+fn text(text: &str) -> GraphDimensions {
     let (rule, _) = common::document_of(text).resolve(&[]).unwrap();
     grown(&rule.compile(3).unwrap())
 }
@@ -24,7 +24,7 @@ fn text(text: &str) -> Grown {
 fn evaluated(form: &str) -> f64 {
     let file = format!("initiator: segment\ngenerator: koch\ndimension: {form}\n");
     let (rule, _) = common::document_of(&file).resolve(&[]).unwrap();
-    rule.heading().dimension.unwrap()
+    rule.metadata().dimension.unwrap()
 }
 
 #[test]

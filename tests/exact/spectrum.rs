@@ -174,7 +174,7 @@ fn natural_measures_are_measured() {
 
 #[test]
 fn sets_that_hold_infinitely_many_copies_of_a_larger_one_are_not_decided() {
-    use kfrac::measure::exact::{System, dimensions};
+    use kfrac::measure::exact::{GraphDirectedSystem, dimensions};
     let quarter = |x, y| similarity(0.5, 0.0, false, [x, y]);
     let gasket = [quarter(0.0, 0.0), quarter(0.5, 0.0), quarter(0.25, 0.4)];
     let copies = gasket.map(|map| (1, 1, map));
@@ -184,10 +184,12 @@ fn sets_that_hold_infinitely_many_copies_of_a_larger_one_are_not_decided() {
         (0, 0, line(0.25, 3.0)),
         (0, 1, line(1.0, 1.0)),
     ];
-    let held = dimensions(&System::plane(dust.into_iter().chain(copies)).unwrap()).unwrap();
+    let held =
+        dimensions(&GraphDirectedSystem::plane(dust.into_iter().chain(copies)).unwrap()).unwrap();
     assert!(held.hausdorff.value.is_some() && !held.regular);
     let beside = [(0, 1, line(1.0, 1.0)), (0, 1, line(1.0, 5.0))];
-    let beside = dimensions(&System::plane(beside.into_iter().chain(copies)).unwrap()).unwrap();
+    let beside =
+        dimensions(&GraphDirectedSystem::plane(beside.into_iter().chain(copies)).unwrap()).unwrap();
     assert!(beside.regular);
 }
 

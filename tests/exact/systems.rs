@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
-use kfrac::measure::exact::{Equation, Overlap, System, dimensions};
+use kfrac::measure::exact::{Equation, GraphDirectedSystem, Overlap, dimensions};
 use serde::Deserialize;
 
 use crate::{line, near, of, similarity};
@@ -26,7 +26,7 @@ struct Map {
 }
 
 impl Entry {
-    fn system(&self) -> System {
+    fn system(&self) -> GraphDirectedSystem {
         let plane = |map: &Map| {
             let linear = DMat2::from_cols_slice(&map.linear).transpose();
             let map_2 = DAffine2::from_mat2_translation(linear, DVec2::from_slice(&map.shift));
@@ -38,9 +38,9 @@ impl Entry {
             (map.from, map.to, map_3)
         };
         if self.maps[0].shift.len() == 2 {
-            System::plane(self.maps.iter().map(plane)).unwrap()
+            GraphDirectedSystem::plane(self.maps.iter().map(plane)).unwrap()
         } else {
-            System::space(self.maps.iter().map(space)).unwrap()
+            GraphDirectedSystem::space(self.maps.iter().map(space)).unwrap()
         }
     }
 }
@@ -193,7 +193,7 @@ fn ratios_are_powers_of_one_number_along_cycles() {
     let copies = koch
         .iter()
         .flat_map(|map| [(0, 1, *map * scale.inverse()), (1, 0, scale * *map)]);
-    let found = dimensions(&System::plane(copies).unwrap()).unwrap();
+    let found = dimensions(&GraphDirectedSystem::plane(copies).unwrap()).unwrap();
     assert_eq!(
         found.hausdorff.overlap,
         Overlap::Touching,
@@ -227,7 +227,7 @@ fn equal_sets_may_have_two_names() {
             (1, usize::from(number % 3 == 0), *map),
         ]
     });
-    let two = dimensions(&System::plane(copies).unwrap())
+    let two = dimensions(&GraphDirectedSystem::plane(copies).unwrap())
         .unwrap()
         .hausdorff;
     assert_eq!(two.overlap, Overlap::Exact);
@@ -279,7 +279,7 @@ fn the_largest_part_decides() {
     let thirds = [0.0, 2.0 / 3.0].map(|shift| (1, 1, line(1.0 / 3.0, shift)));
     let bridge = [(0, 1, line(0.25, 0.5))];
     let copies = quarters.into_iter().chain(thirds).chain(bridge);
-    let found = dimensions(&System::plane(copies).unwrap()).unwrap();
+    let found = dimensions(&GraphDirectedSystem::plane(copies).unwrap()).unwrap();
     assert_eq!(
         found.hausdorff.closed_form.as_deref(),
         Some("log(3)/log(4)")
@@ -306,17 +306,20 @@ fn affine_maps_are_bounded_by_the_affinity_dimension() {
     let sheared = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(2.0, 0.25)));
     let turned = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(0.25, 2.0)));
     let copies = [(0, 0, sheared), (0, 0, turned)];
-    assert_eq!(dimensions(&System::plane(copies).unwrap()), None);
+    assert_eq!(
+        dimensions(&GraphDirectedSystem::plane(copies).unwrap()),
+        None
+    );
 }
 
 #[test]
 fn bad_numbers_are_refused() {
-    assert!(System::plane([(0, 0, line(f64::NAN, 0.0))]).is_none());
+    assert!(GraphDirectedSystem::plane([(0, 0, line(f64::NAN, 0.0))]).is_none());
     assert_eq!(
-        dimensions(&System::plane([(0, 0, line(1.0, 0.5))]).unwrap()),
+        dimensions(&GraphDirectedSystem::plane([(0, 0, line(1.0, 0.5))]).unwrap()),
         None
     );
-    assert_eq!(dimensions(&System::plane([]).unwrap()), None);
+    assert_eq!(dimensions(&GraphDirectedSystem::plane([]).unwrap()), None);
     // A map onto a point is not a similarity.
     let point = of(&[line(0.0, 0.0)]);
     assert_eq!(

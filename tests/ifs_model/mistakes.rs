@@ -1,7 +1,7 @@
 //! Errors of definitions, and default weights.
 
 use kfrac::geometry::DVec2;
-use kfrac::ifs::{Condensation, Definition, Edge, Ifs, IfsError, Map, Shape, Weighted};
+use kfrac::ifs::{Condensation, Definition, Edge, Ifs, IfsError, Map, Shape, WeightOwner};
 
 use crate::{definition, edges, map};
 
@@ -45,11 +45,11 @@ fn all_weights_are_positive_and_all_errors_come_at_once() {
     });
     let weight = |of, weight| IfsError::Weight { of, weight };
     let expected = [
-        weight(Weighted::Map(0), 0.0),
+        weight(WeightOwner::Map(0), 0.0),
         IfsError::WeightMissing { map: 1 },
-        weight(Weighted::Map(2), -2.0),
-        weight(Weighted::Edge(1), f64::INFINITY),
-        weight(Weighted::Condensation(2), -0.0),
+        weight(WeightOwner::Map(2), -2.0),
+        weight(WeightOwner::Edge(1), f64::INFINITY),
+        weight(WeightOwner::Condensation(2), -0.0),
         IfsError::NoExtent { condensation: 3 },
         IfsError::InitialNotFinite,
     ];

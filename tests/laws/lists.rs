@@ -3,7 +3,7 @@
 
 use kfrac::geometry::{DAffine2, DVec2, Direction, Frame};
 use kfrac::rule::draw::Path;
-use kfrac::rule::{ListedElement, Moment, Part, Placement, Rule};
+use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
 
 /// An element of a list.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
             next.push(Item { joined, ..item });
             broken = false;
         } else {
-            let moment = Moment {
+            let moment = ElementContext {
                 index: f64::from(rank),
                 age: f64::from(fractal.age),
                 step: f64::from(step),

@@ -72,7 +72,7 @@ fn ternary_trees_have_the_lines_of_the_paper() {
 #[test]
 fn every_system_is_drawn_within_its_picture() {
     for (name, system) in systems() {
-        let steps = system.heading().steps.unwrap();
+        let steps = system.metadata().steps.unwrap();
         let graph = Model::LSystem(Arc::clone(&system)).compile(steps).unwrap();
         let elements = grown(&graph, &Growth::steps(steps)).remove(0).elements;
         assert!(elements.len() >= 12, "{name}: there is little to see");
@@ -84,7 +84,7 @@ fn every_system_is_drawn_within_its_picture() {
                     provenance: document(&name).to_yaml(),
                     ..Labels::default()
                 },
-                ..Options::of(system.heading())
+                ..Options::of(system.metadata())
             };
             let draw = || {
                 let mut bytes = Vec::new();

@@ -18,7 +18,7 @@ fn structures() -> Vec<(String, Arc<Instancing>, u32)> {
     let names = entries(Shelf::Instancing).into_iter();
     let structures = names.map(|entry| {
         let structure = structure(&document(&entry.name).to_yaml());
-        let steps = structure.heading().steps.or_else(|| structure.depth());
+        let steps = structure.metadata().steps.or_else(|| structure.depth());
         let steps = steps.unwrap_or_else(|| panic!("{} says no steps", entry.name));
         (entry.name, structure, steps)
     });
@@ -44,7 +44,7 @@ fn svg_of(name: &str, structure: &Arc<Instancing>, steps: u32, size: u32) -> Str
             provenance: document(name).to_yaml(),
             ..Labels::default()
         },
-        ..Options::of(structure.heading())
+        ..Options::of(structure.metadata())
     };
     let mut bytes = Vec::new();
     render::write(&graph, &Growth::steps(steps), &options, &mut bytes)
@@ -102,7 +102,7 @@ fn every_structure_grows_as_forecast() {
         if structure.depth().is_some_and(|depth| depth <= steps) {
             assert!(elements.iter().all(|it| !it.fertile), "{name} has ended");
         }
-        let published = structure.heading().dimension;
+        let published = structure.metadata().dimension;
         let computed = similarity_dimension(&graph).value;
         match (published, computed) {
             (Some(published), Some(computed)) => {

@@ -171,7 +171,7 @@ fn colours_are_those_of_the_palette() {
         );
         let model = Model::LSystem(system(&text));
         let graph = model.compile(0).unwrap();
-        assert_eq!(model.heading().style.color_by, ColorBy::Tint);
+        assert_eq!(model.metadata().style.color_by, ColorBy::Tint);
         let instances = graph.initiator(0).instances.iter();
         let colour = |object: usize| graph.objects()[object].paint.unwrap().to_string();
         instances

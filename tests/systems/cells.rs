@@ -213,7 +213,7 @@ fn cells_tell_steps() {
     );
     let graph = graph(&tree);
     let mut options = options(200, 1);
-    options.style = tree.heading().style.clone();
+    options.style = tree.metadata().style.clone();
     let (bytes, picture) = drawn(&graph, &options);
     assert!(picture.is_limit);
     let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
@@ -248,7 +248,7 @@ fn cells_tell_the_steps_of_copies_that_overlap() {
     let blues = |text: &str| -> (render::Picture, [usize; 2]) {
         let tree = system(text);
         let mut options = options(160, 1);
-        options.style = tree.heading().style.clone();
+        options.style = tree.metadata().style.clone();
         let (bytes, picture) = drawn(&graph(&tree), &options);
         let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
         decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
@@ -276,7 +276,7 @@ fn threads_do_not_show_in_cells() {
             let system = system(&(random_system(seed) + style));
             let graph = graph(&system);
             let options = |threads: usize| Options {
-                style: system.heading().style.clone(),
+                style: system.metadata().style.clone(),
                 ..options(300, threads)
             };
             let (expected, _) = drawn(&graph, &options(1));

@@ -18,7 +18,7 @@ fn a_map_that_is_listed_twice_is_one() {
             elements(&expected, steps).len()
         );
         assert_eq!(
-            elements(&Graph::telling_last_maps(&twice).unwrap(), steps).len(),
+            elements(&Graph::with_last_maps(&twice).unwrap(), steps).len(),
             1 << steps
         );
     }

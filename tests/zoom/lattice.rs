@@ -2,7 +2,7 @@
 
 use kfrac::geometry::DAffine2;
 use kfrac::grow::Growth;
-use kfrac::zoom::{Growth as ZoomGrowth, zoom};
+use kfrac::zoom::{ZoomOptions as ZoomGrowth, zoom};
 
 use super::{SCALE, Seen, library, source, window};
 

@@ -6,7 +6,7 @@ use kfrac::document::Document;
 use kfrac::geometry::DVec2;
 use kfrac::grow::Growth;
 use kfrac::model::Model;
-use kfrac::render::{self, Detail, Format, Look, Options, Size};
+use kfrac::render::{self, Detail, Format, Options, Size, ZoomTarget};
 use kfrac::style::{ColorBy, Colour, Style, View, Width};
 use png::Transformations;
 
@@ -22,7 +22,7 @@ fn options(rule: &Rule) -> Options {
         color_by: ColorBy::None,
         stroke: Some(Colour::BLACK),
         background: Some(Colour::grey(255)),
-        ..rule.1.heading().style.clone()
+        ..rule.1.metadata().style.clone()
     };
     Options {
         format: Format::Png,
@@ -50,7 +50,7 @@ fn values(picture: Vec<u8>) -> Vec<u8> {
 fn zoomed(rule: &Rule, options: &Options, factor: &str, at: &str) -> Vec<u8> {
     let graph = rule.1.compile(64).unwrap();
     let source = source(rule);
-    let look = Look {
+    let look = ZoomTarget {
         factor: factor.parse().unwrap(),
         at: at.parse().unwrap(),
     };

@@ -6,9 +6,9 @@ use std::convert::Infallible;
 use kfrac::document::Document;
 use kfrac::geometry::{DAffine2, DVec2, Frame};
 use kfrac::graph::{Graph, Instance, Production, Replacement};
-use kfrac::grow::{Element, Enter, Fractal, Subtree, Visitor, walk};
+use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
-use kfrac::zoom::{Growth, zoom};
+use kfrac::zoom::{ZoomOptions, zoom};
 
 use super::{SCALE, SHORTEST, SIDE, Seen, assert_same, library, read, source, window, zoomed};
 
@@ -63,7 +63,7 @@ impl Ordered {
 impl Visitor for Ordered {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.born = self.steps - fractal.age;
         Ok(())
     }
@@ -113,9 +113,9 @@ fn point(graph: &Graph, way: &[u32]) -> DVec2 {
 /// directions and joints, and the births of their fractals.
 fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, factor: &str) {
     let graph = rule.1.compile(64).unwrap();
-    let growth = Growth {
+    let growth = ZoomOptions {
         seed,
-        ..Growth::default()
+        ..ZoomOptions::default()
     };
     let found = zoom(&source(rule), &graph, &growth, &window(factor, at)).unwrap();
     let growth = kfrac::grow::Growth {
@@ -250,9 +250,9 @@ fn deep_zooms_of_random_rules_agree() {
     for at in ["0.(0.1)", "0.(0.3)", "0.(0.5.1.2.1.5)", "1.(0.3.0.6)"] {
         for seed in [0, 7] {
             let [near, far] = ["1e40", "5e40"].map(|factor| {
-                let growth = Growth {
+                let growth = ZoomOptions {
                     seed,
-                    ..Growth::default()
+                    ..ZoomOptions::default()
                 };
                 zoom(&source(&islands), &graph, &growth, &window(factor, at)).unwrap()
             });
@@ -378,9 +378,9 @@ fn sides_of_step_70_stand_where_whole_numbers_say() {
         let ways: Vec<String> = repeated.iter().map(ToString::to_string).collect();
         let at = format!("0.({})", ways.join("."));
         let window = window("3^67", &at);
-        let growth = Growth {
+        let growth = ZoomOptions {
             steps: Some(STEPS),
-            ..Growth::default()
+            ..ZoomOptions::default()
         };
         let found = zoom(&source(&rule), &graph, &growth, &window).unwrap();
         let growth = kfrac::grow::Growth::steps(STEPS);

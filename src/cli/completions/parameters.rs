@@ -28,7 +28,9 @@ pub(super) fn listed(words: &[OsString]) -> String {
             let source = rule::open(&rule, catalogue).ok()?;
             input::document(&source, catalogue).ok()
         });
-        let known = known.iter().flat_map(|document| &document.heading().params);
+        let known = known
+            .iter()
+            .flat_map(|document| &document.metadata().params);
         for parameter in known {
             let name = &parameter.called().value;
             let mut about = parameter.about.as_deref().unwrap_or_default();

@@ -10,11 +10,11 @@ use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
 use crate::graph::Graph;
 use crate::grow::Growth;
-use crate::import::{Channel, Picture, read_points};
+use crate::import::{Channel, Raster, read_points};
 use crate::measure::exact::{Spectrum, dimensions_of_graph};
 use crate::measure::{
-    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, Masses, NoLimit, Points,
-    grown,
+    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, LimitSetError, Masses,
+    Points, grown,
 };
 use crate::model::Model;
 
@@ -73,7 +73,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
                 .take(MOST_BYTES)
                 .read_to_end(&mut bytes)
                 .with_context(cannot)?;
-            let picture = Picture::read(&bytes, arguments.channel);
+            let picture = Raster::read(&bytes, arguments.channel);
             drop(bytes);
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
         }
@@ -115,7 +115,7 @@ impl Kind {
             .extension()
             .map(|it| it.to_string_lossy().to_lowercase());
         match extension.as_deref() {
-            _ if Picture::is_picture(head) => Self::Picture,
+            _ if Raster::is_picture(head) => Self::Picture,
             Some("png" | "jpg" | "jpeg") => Self::Picture,
             Some("csv" | "txt") => Self::Table,
             Some("yaml" | "yml" | "json") => Self::Rule,
@@ -135,7 +135,7 @@ impl Kind {
 
 fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> {
     let (graph, steps) = compiled(loaded)?;
-    let title = loaded.model.heading().description.title.clone();
+    let title = loaded.model.metadata().description.title.clone();
     let mut measured = Measured {
         name: loaded.name.clone(),
         title: title.unwrap_or_else(|| loaded.name.clone()),
@@ -151,7 +151,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     };
     let set = match LimitSet::of(&graph) {
         Ok(set) => set,
-        Err(NoLimit::NotFixed | NoLimit::Endless) => {
+        Err(LimitSetError::NotFixed | LimitSetError::Endless) => {
             return of_growth(arguments, &graph, steps, measured);
         }
         Err(error) => return Ok(measured.without(&error)),
@@ -203,7 +203,7 @@ fn of_growth(
     Ok(measured.enlarged(graph.place().ratio()))
 }
 
-fn of_picture(arguments: &Arguments, name: &str, picture: Picture) -> Result<Measured, Failure> {
+fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Measured, Failure> {
     let picture = if arguments.invert {
         picture.inverted()
     } else {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::measure::exact::{Dimensions, Grown, Hausdorff};
+use crate::measure::exact::{Dimensions, GraphDimensions, Hausdorff};
 use crate::measure::{BoxCounting, Estimate, Trend};
 
 use super::super::Failure;
@@ -380,7 +380,7 @@ fn spectrum(text: &mut String, measured: &Measured) {
 }
 
 /// Writes the exact results.
-fn known(text: &mut String, exact: &Grown) {
+fn known(text: &mut String, exact: &GraphDimensions) {
     let mut line = |label: &str, value: &str| {
         let _ = writeln!(text, "{label:<22}{value}");
     };

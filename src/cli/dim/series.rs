@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::figure::dimension;
-use crate::measure::exact::{Dimensions, Grown, dimensions_of_graph};
+use crate::measure::exact::{Dimensions, GraphDimensions, dimensions_of_graph};
 use crate::render::{self, Labels, RenderError};
 
 use super::super::rule::Member;
@@ -18,7 +18,7 @@ pub(super) struct Series {
     name: String,
     title: String,
     parameter: String,
-    samples: Vec<(f64, Grown)>,
+    samples: Vec<(f64, GraphDimensions)>,
 }
 
 impl Series {
@@ -28,7 +28,7 @@ impl Series {
             let message = "dimensions are listed along one parameter, not along several together";
             return Err(Failure::Usage(message.into()));
         };
-        let title = first.model.heading().description.title.clone();
+        let title = first.model.metadata().description.title.clone();
         let samples = family.iter().map(|(settings, loaded)| {
             let (graph, _) = compiled(loaded)?;
             Ok((settings[0].value, dimensions_of_graph(&graph)))
@@ -112,7 +112,7 @@ impl Series {
     }
 }
 
-fn similarity(known: &Grown) -> Option<f64> {
+fn similarity(known: &GraphDimensions) -> Option<f64> {
     let similar = |dimensions: &Dimensions| dimensions.similarity.as_ref().map(|it| it.value);
     known.dimensions.as_ref().and_then(similar)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::super::readable;
 use crate::graph::Graph;
 use crate::grow::{Progress, Walked};
-use crate::render::{self, Empty, Instanced, Look, Plotted, RenderError, Unit};
+use crate::render::{self, Empty, Instanced, Plotted, RenderError, Unit, ZoomTarget};
 use crate::style::ColorBy;
 
 use super::super::rule::Loaded;
@@ -19,7 +19,7 @@ pub(super) struct Pictured<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) loaded: &'a Loaded,
     pub(super) format: render::Format,
-    pub(super) look: Option<&'a Look>,
+    pub(super) look: Option<&'a ZoomTarget>,
     pub(super) path: &'a Path,
 }
 

@@ -13,7 +13,7 @@ use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
 use crate::model::Kind;
 
 use super::first_line;
-use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, pair, read_set};
 

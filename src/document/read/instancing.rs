@@ -15,7 +15,7 @@ use crate::expression::Expression;
 use crate::model::Kind;
 
 use super::first_line;
-use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_set};
 use super::transform::{TRANSFORMS, read_transforms};

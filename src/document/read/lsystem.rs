@@ -10,7 +10,7 @@ use crate::expression::Expression;
 use crate::model::Kind;
 
 use super::first_line;
-use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::turtle::{MEANING, read_symbol};
 use super::word::{Text, Words};

@@ -1,6 +1,6 @@
 //! Reading of parameters.
 
-use crate::document::heading::ParameterDocument;
+use crate::document::metadata::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
 use crate::document::shape::{Form, Member, Needed, Shape, key};

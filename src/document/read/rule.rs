@@ -11,7 +11,7 @@ use super::base_element::{BASE_ELEMENT_OF, read_base_element};
 use super::elements::{ELEMENTS, INITIATOR, read_initiator};
 use super::first_line;
 use super::generator::{GENERATOR_OF, read_generators};
-use super::heading::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::select::{SELECTION_OF, read_select};
 

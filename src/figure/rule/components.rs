@@ -3,7 +3,7 @@
 use crate::document::RuleDocument;
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 use crate::rule::draw::Path;
-use crate::rule::{Moment, Rule, Selection};
+use crate::rule::{ElementContext, Rule, Selection};
 
 use super::super::text::Font;
 use super::block::{Block, Item, Outline};
@@ -101,18 +101,18 @@ fn paragraphs(lines: &[String], font: &Font) -> Block {
 
 /// Returns the first moment at which a generator is selected and all of its points are finite, or else the
 /// first at which they are finite.
-fn moment(rule: &Rule, generator: usize) -> Moment {
-    let at = |step: u32, index: u32| Moment {
+fn moment(rule: &Rule, generator: usize) -> ElementContext {
+    let at = |step: u32, index: u32| ElementContext {
         index: index.into(),
         age: step.into(),
         step: step.into(),
         length: 1.0,
     };
-    let is_finite = |moment: &Moment| {
+    let is_finite = |moment: &ElementContext| {
         let points = rule.generators()[generator].typical(moment);
         points.iter().all(|point| point.is_finite())
     };
-    let is_selected = |moment: &Moment| {
+    let is_selected = |moment: &ElementContext| {
         let selected = rule.selection().select(moment, Path::of_seed(0));
         selected == generator && is_finite(moment)
     };

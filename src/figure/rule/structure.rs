@@ -75,7 +75,7 @@ pub fn write_structure(
             plural(left_out, "object is", "objects are")
         ));
     }
-    let source = structure.heading().description.source.as_deref();
+    let source = structure.metadata().description.source.as_deref();
     let page = lay_out(
         &font,
         columns,

@@ -49,7 +49,7 @@ pub fn write_system(
             plan.condensation(),
         ));
     }
-    let source = system.heading().description.source.as_deref();
+    let source = system.metadata().description.source.as_deref();
     let page = lay_out(
         &font,
         columns,

@@ -6,8 +6,8 @@ use crate::document::{
     Written,
 };
 use crate::expression::{Dependence, Expression};
-use crate::heading::Parameter;
-use crate::rule::{Generator, Moment, Placement};
+use crate::metadata::Parameter;
+use crate::rule::{ElementContext, Generator, Placement};
 
 /// Limit of the number of points that are described one by one.
 const MOST_POINTS: usize = 6;
@@ -54,7 +54,7 @@ pub(super) fn shares(generators: &[Generator], weights: &[(f64, usize)]) -> Vec<
 
 /// Description of a generator.
 #[derive(Default)]
-pub(super) struct Said {
+pub(super) struct Description {
     /// Lines of text.
     pub(super) lines: Vec<String>,
     /// Indices of the points that the text names by number.
@@ -65,14 +65,14 @@ pub(super) struct Said {
 pub(super) fn generator(
     generator: &Generator,
     document: &GeneratorDocument,
-    moment: &Moment,
-) -> Said {
-    let mut said = Said::default();
+    moment: &ElementContext,
+) -> Description {
+    let mut said = Description::default();
     for (name, distribution) in &document.random {
         let drawn = self::distribution(&distribution.value);
         said.lines.push(format!("{}: {drawn}", name.value));
     }
-    let slots = Moment::NAMES.len() + generator.variables.len();
+    let slots = ElementContext::NAMES.len() + generator.variables.len();
     let varies = |&number: &usize| {
         let mut programs = generator.points[number].iter();
         programs.any(|it| (0..slots).any(|slot| it.dependence(slot) != Dependence::None))
@@ -100,8 +100,9 @@ pub(super) fn generator(
         let mut programs = generator.programs();
         programs.any(|program| program.dependence(*slot) != Dependence::None)
     };
-    let slots = (0..Moment::NAMES.len()).filter(depends);
-    let values = slots.map(|slot| format!("{} = {}", Moment::NAMES[slot], moment.slots()[slot]));
+    let slots = (0..ElementContext::NAMES.len()).filter(depends);
+    let values =
+        slots.map(|slot| format!("{} = {}", ElementContext::NAMES[slot], moment.slots()[slot]));
     let values: Vec<_> = values.collect();
     if !values.is_empty() {
         said.lines.push(format!("drawn for {}", values.join(", ")));

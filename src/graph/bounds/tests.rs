@@ -7,9 +7,9 @@ use proptest::prelude::*;
 
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, convex_hull, thinned};
 use crate::graph::Graph;
-use crate::heading::Heading;
 use crate::ifs::{Definition, Edge, Ifs, Map, System, Verdict};
-use crate::whole::whole;
+use crate::metadata::Metadata;
+use crate::saturating::whole;
 
 /// Maps, and for each the maps that may follow it.
 struct Maps {
@@ -47,7 +47,7 @@ impl Maps {
         });
         let ifs = ifs.unwrap();
         System {
-            heading: Heading::default(),
+            heading: Metadata::default(),
             contraction: ifs.contraction_within(10_000),
             ifs,
             chained: false,

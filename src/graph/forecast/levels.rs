@@ -59,7 +59,7 @@ impl Totals {
     fn of(&mut self, graph: &Graph, number: usize) -> Total {
         let mut total = Total::default();
         match &graph.objects[number].replacement {
-            Replacement::Kept | Replacement::Beyond => {
+            Replacement::Kept | Replacement::Unresolved => {
                 let sums = Sums {
                     length: 1.0,
                     square: 1.0,

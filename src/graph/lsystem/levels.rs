@@ -79,7 +79,7 @@ const LEAVES: usize = usize::MAX / 2;
 impl Graph {
     /// Builds the graph whose objects are kinds with a number of steps that are left.
     pub(super) fn of_levels(effects: Effects, steps: u32) -> Result<Self, NotCompiled> {
-        let palette = &effects.system.heading().style.palette;
+        let palette = &effects.system.metadata().style.palette;
         let has_colours = effects.system.has_colours();
         let leveller = Leveller {
             effects: &effects,
@@ -315,7 +315,7 @@ impl Leveller<'_> {
                     let behaves = (Master::Subtree(kind, left), key.colour);
                     (self.way(kind, left), behaves, replacement)
                 }
-                Master::Step(true) => (0, (key.of, 0), Replacement::Beyond),
+                Master::Step(true) => (0, (key.of, 0), Replacement::Unresolved),
                 Master::Step(false) => (0, (Master::Step(false), 0), Replacement::Kept),
                 Master::Polygon(number) => (number, (Master::Step(false), 0), Replacement::Kept),
             };
@@ -326,7 +326,7 @@ impl Leveller<'_> {
             } else {
                 Some(Thickness::Times(width)).filter(|_| width != 1.0)
             };
-            let palette = &self.effects.system.heading().style.palette;
+            let palette = &self.effects.system.metadata().style.palette;
             objects.push(Object {
                 base_element,
                 visible: true,

@@ -278,7 +278,7 @@ impl Edges {
     }
 
     /// Returns the drawing of a word whose modules are to be replaced for `left` more steps, relative to
-    /// the chord of a kind (`whole`), or to that of its first part.
+    /// the chord of a kind (`saturating`), or to that of its first part.
     fn shape(
         &self,
         word: &[usize],
@@ -385,7 +385,7 @@ impl Edges {
     /// colour.
     fn key(&self, kind: usize, look: Look, colour: i64) -> Key {
         let system = &self.effects.system;
-        let colours = system.heading().style.palette.entries();
+        let colours = system.metadata().style.palette.entries();
         let colours = i64::try_from(colours).unwrap_or(i64::MAX);
         let (width, sets) = match look.width {
             Thickness::Times(width) => (width, false),
@@ -466,7 +466,7 @@ impl Edges {
                 None => Replacement::Kept,
             };
             let width = f64::from_bits(key.thickness.0);
-            let palette = &system.heading().style.palette;
+            let palette = &system.metadata().style.palette;
             made.push(Object {
                 base_element: 0,
                 visible: true,

@@ -8,7 +8,7 @@ use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Count, Graph};
-use crate::grow::{Element, Fractal, Growth, Visitor, extent, walk};
+use crate::grow::{Element, FractalInfo, Growth, Visitor, extent, walk};
 use crate::lsystem::LSystem;
 use crate::model::Model;
 use crate::style::Colour;
@@ -36,7 +36,7 @@ struct Collector<'g> {
 impl Visitor for Collector<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -56,8 +56,8 @@ impl Visitor for Collector<'_> {
             joined: element.joined,
             fertile: element.fertile,
             direction: element.frame.direction().number(),
-            width: element.coat.width(),
-            colour: element.coat.on(Colour::BLACK),
+            width: element.appearance.width(),
+            colour: element.appearance.on(Colour::BLACK),
         });
         Ok(())
     }
@@ -91,7 +91,7 @@ pub(super) fn drawn(graph: &Graph, steps: u32, seed: u64) -> Vec<Drawn> {
 
 /// Asserts that a compiled graph and the derived word draw equal elements at a step, in order.
 pub(super) fn assert_same(name: &str, compiled: &Graph, system: &LSystem, steps: u32, seed: u64) {
-    let words = Graph::of_words(system, steps, seed, 1_000_000).unwrap();
+    let words = Graph::of_derived_word(system, steps, seed, 1_000_000).unwrap();
     let (ours, theirs) = (drawn(compiled, steps, seed), drawn(&words, steps, seed));
     assert_eq!(ours.len(), theirs.len(), "{name} at step {steps}");
     let size = theirs.iter().flat_map(|element| &element.points);
@@ -146,7 +146,7 @@ fn edges_draw_what_words_draw() {
         let system = system(text);
         let graph = Graph::of_edges(&system).expect(text);
         for steps in 0..=4 {
-            let words = Graph::of_words(&system, steps, 0, 1_000_000).unwrap();
+            let words = Graph::of_derived_word(&system, steps, 0, 1_000_000).unwrap();
             let (ours, theirs) = (drawn(&graph, steps, 0), drawn(&words, steps, 0));
             assert_eq!(ours.len(), theirs.len(), "{text} at {steps}");
             // Applies the similarity that maps the first line to (0, 0) and (1, 0).

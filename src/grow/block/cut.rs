@@ -38,7 +38,7 @@ impl Cuts {
     /// instances are not fixed have no ranges; the list is empty unless all maps are similarities.
     pub(super) fn of(graph: &Graph, most: u64) -> Vec<Self> {
         let knows = graph.objects().len() <= MOST_OBJECTS
-            && !graph.is_levelled()
+            && !graph.is_time_indexed()
             && !graph.counts_index()
             && !graph.resets().contains(&true)
             && graph.is_similar();

@@ -7,7 +7,7 @@ use crate::geometry::Frame;
 use crate::graph::{CompileError, Graph, Replacement};
 
 use super::cut::Cuts;
-use super::{Block, Corners, Leaf, Stick, births, unit};
+use super::{Block, Corners, Leaf, LineElement, births, unit};
 use crate::grow::descent::{Descent, Next, Stop};
 use crate::grow::sizes::Sizes;
 use crate::grow::start::Start;
@@ -67,7 +67,7 @@ impl Blocks {
         Self {
             made: all.slots().into_iter().map(both).collect(),
             known: all,
-            are_plain: graph.is_similar() && !graph.coats(),
+            are_plain: graph.is_similar() && !graph.has_appearances(),
         }
     }
 
@@ -143,7 +143,7 @@ impl Blocks {
             let base_element = &graph.base_elements()[object.base_element];
             if object.visible && base_element.is_line() && self.are_plain {
                 sticks.iter_mut().for_each(|sticks| {
-                    sticks.push(Stick {
+                    sticks.push(LineElement {
                         ends: frame.ends(),
                         octave: libm::log2(frame.length()),
                         joined: found.joined,
@@ -161,7 +161,7 @@ impl Blocks {
             leaves.push(Leaf {
                 frame: frame.with_direction(unit * frame.direction()),
                 length: found.standing.length,
-                coat: found.standing.coat,
+                appearance: found.standing.appearance,
                 object: found.object,
                 born: found.level,
                 joined: found.joined,

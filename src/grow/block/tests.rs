@@ -6,7 +6,7 @@ use super::Run;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::document::Document;
 use crate::graph::Graph;
-use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
+use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, walk};
 
 /// Visitor that compares selections of a run's elements with filters over all of them.
 #[derive(Default)]
@@ -17,7 +17,7 @@ struct Asking {
 impl Visitor for Asking {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -83,7 +83,7 @@ struct Cutting {
 impl Visitor for Cutting {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 

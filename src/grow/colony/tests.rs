@@ -9,7 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::graph::Graph;
-use crate::grow::{Element, Enter, Fractal, Growth, Run, Subtree, Visitor, Walked, walk};
+use crate::grow::{Element, Enter, FractalInfo, Growth, Run, Subtree, Visitor, Walked, walk};
 
 const SHORTEST: f64 = 0.02;
 
@@ -42,7 +42,7 @@ impl Collecting<'_> {
 impl Visitor for Collecting<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -102,7 +102,7 @@ struct Listing(Vec<Element>);
 impl Visitor for Listing {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 

@@ -60,7 +60,7 @@ struct Walked<'g, E> {
 impl<E: Fn(&Subtree) -> Enter> Visitor for Walked<'_, E> {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.extent.begin(fractal)
     }
 

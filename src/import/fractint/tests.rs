@@ -158,7 +158,7 @@ fn systems_of_maps_are_read() {
     );
     let document = imported[0].document.as_ref().expect("it is right");
     let (model, _) = document.resolve(&[]).expect("it is right");
-    let description = &model.heading().description;
+    let description = &model.metadata().description;
     assert_eq!(description.title.as_deref(), Some("fern"));
     assert_eq!(description.about.as_deref(), Some("Barnsley"));
     assert_eq!(

@@ -3,7 +3,7 @@
 
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, NoLimit, Replacement};
-use crate::grow::{Element, Fractal, Growth, Visitor, WalkError, extent, walk};
+use crate::grow::{Element, FractalInfo, Growth, Visitor, WalkError, extent, walk};
 
 use super::region::{Region, TooMany, radius_of};
 use super::squares::Squares;
@@ -27,7 +27,7 @@ pub enum NoCover {
 
 /// The set of a graph that is compared.
 #[derive(Clone, Copy, Debug)]
-pub enum Set<'a> {
+pub enum Subset<'a> {
     /// The limit set.
     Limit,
     /// The visible elements of an approximant.
@@ -40,7 +40,7 @@ pub enum Set<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     graph: &'a Graph,
-    set: Set<'a>,
+    set: Subset<'a>,
     bounds: Bounds,
 }
 
@@ -50,13 +50,13 @@ impl<'a> Subject<'a> {
     /// # Errors
     ///
     /// Returns an error if there is no such set.
-    pub fn new(graph: &'a Graph, set: Set<'a>) -> Result<Self, NoCover> {
+    pub fn new(graph: &'a Graph, set: Subset<'a>) -> Result<Self, NoCover> {
         let bounds = match &set {
-            Set::Limit => {
+            Subset::Limit => {
                 graph.check_limit_set()?;
                 graph.limit_bounds().unwrap_or_else(|| discs(graph))
             }
-            Set::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
+            Subset::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
                 WalkError::TooManyElements { limit } => {
                     NoCover::Walk(WalkError::TooManyElements { limit })
                 }
@@ -107,8 +107,8 @@ impl<'a> Subject<'a> {
     ) -> Result<(), NoCover> {
         let mut region = Region::new(&self.bounds, radius, most, visit);
         match &self.set {
-            Set::Limit => cover_limit(self.graph, most, &mut region)?,
-            Set::Approximant(growth) => {
+            Subset::Limit => cover_limit(self.graph, most, &mut region)?,
+            Subset::Approximant(growth) => {
                 let mut visitor = Approximant {
                     graph: self.graph,
                     region: &mut region,
@@ -209,7 +209,7 @@ struct Approximant<'a, 'v> {
 impl Visitor for Approximant<'_, '_> {
     type Error = TooMany;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), TooMany> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), TooMany> {
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
-use crate::whole::whole;
+use crate::saturating::whole;
 
 /// Error of a set whose cover takes more points than are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::BaseElement;
-use crate::whole::whole;
+use crate::saturating::whole;
 
 use super::cover::reaches;
 use super::region::{Region, TooMany};

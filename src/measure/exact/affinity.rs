@@ -8,7 +8,7 @@ use glam::DMat3;
 
 use super::Effort;
 use super::spectral::dense_radius;
-use super::system::System;
+use super::system::GraphDirectedSystem;
 
 /// Affinity dimension, which bounds the dimension of the set from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ struct Product {
 
 /// Computes the affinity dimension of a strongly connected part. Returns `None` unless all products of some
 /// length contract, up to the length that is reached.
-pub(super) fn affinity(part: &System, effort: Effort) -> Option<Affinity> {
+pub(super) fn affinity(part: &GraphDirectedSystem, effort: Effort) -> Option<Affinity> {
     let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
         .map(|set| (set, set, DMat3::IDENTITY))
         .collect();
@@ -125,7 +125,7 @@ fn root(excess: impl Fn(f64) -> f64) -> Option<f64> {
 }
 
 /// Returns the spectral radius of the matrix of sums of φ^s between sets.
-fn sum(products: &[Product], part: &System, s: f64) -> f64 {
+fn sum(products: &[Product], part: &GraphDirectedSystem, s: f64) -> f64 {
     let space = part.space;
     let mut matrix = vec![0.0; part.size * part.size];
     for product in products {

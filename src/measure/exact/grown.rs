@@ -5,11 +5,14 @@ use crate::measure::similarity_dimension;
 
 use super::closed_form::{plain, settled};
 use super::random::expected_dimension;
-use super::{Dimensions, Effort, Equation, Hausdorff, Overlap, Similar, System, dimensions_within};
+use super::{
+    Dimensions, Effort, Equation, GraphDirectedSystem, Hausdorff, Overlap, Similar,
+    dimensions_within,
+};
 
 /// Exact dimensions of the limit of a graph, as far as they are known.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grown {
+pub struct GraphDimensions {
     /// Dimensions of the limit set of the fertile elements; `None` where there is no limit, or it is not made
     /// of copies of itself.
     pub dimensions: Option<Dimensions>,
@@ -22,22 +25,22 @@ pub struct Grown {
 
 /// Computes the exact dimensions of a graph's limit, as far as they are known.
 #[must_use]
-pub fn dimensions_of_graph(graph: &Graph) -> Grown {
+pub fn dimensions_of_graph(graph: &Graph) -> GraphDimensions {
     dimensions_of_graph_within(graph, Effort::Full)
 }
 
 /// Computes the dimensions of a graph's limit, as [`dimensions_of_graph`] does, within an effort.
 #[must_use]
-pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> Grown {
+pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensions {
     if graph.draws() {
         return at_random(graph);
     }
-    let system = System::of(graph);
+    let system = GraphDirectedSystem::of(graph);
     let dimensions = system.and_then(|system| dimensions_within(&system, effort));
     let Some(dimensions) = dimensions else {
         let reason = similarity_dimension(graph).note;
         let reason = reason.unwrap_or_else(|| "there is no limit set: maps do not shrink".into());
-        return Grown {
+        return GraphDimensions {
             dimensions: None,
             drawn: None,
             notes: vec![reason],
@@ -66,16 +69,16 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> Grown {
                 .or(small.then_some(infertile))
         }
     };
-    Grown {
+    GraphDimensions {
         dimensions: Some(dimensions),
         drawn,
         notes,
     }
 }
 
-fn at_random(graph: &Graph) -> Grown {
+fn at_random(graph: &Graph) -> GraphDimensions {
     match expected_dimension(graph) {
-        Err(reason) => Grown {
+        Err(reason) => GraphDimensions {
             dimensions: None,
             drawn: None,
             notes: vec![format!("the ratios are drawn: {reason}")],
@@ -100,7 +103,7 @@ fn at_random(graph: &Graph) -> Grown {
                 boundary: None,
                 regular: false,
             };
-            Grown {
+            GraphDimensions {
                 dimensions: Some(dimensions),
                 drawn: None,
                 notes: vec!["the expected sum of ratio^D is 1".into()],

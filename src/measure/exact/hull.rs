@@ -5,7 +5,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::system::{Copy, System, ratio};
+use super::system::{Copy, GraphDirectedSystem, ratio};
 
 /// A strongly connected system of similarities in coordinates of the affine hulls of its sets.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl Flat {
     /// Computes the hulls of a system and the maps in their coordinates.
     ///
     /// Precondition: all ratios are below 1, and every set holds a copy.
-    pub(super) fn of(system: &System) -> Self {
+    pub(super) fn of(system: &GraphDirectedSystem) -> Self {
         let points = points(system);
         let mut extent = 0.0;
         for copy in &system.copies {
@@ -82,7 +82,7 @@ impl Flat {
 }
 
 /// Returns a point of every set: the limit along the first copies.
-fn points(system: &System) -> Vec<DVec3> {
+fn points(system: &GraphDirectedSystem) -> Vec<DVec3> {
     let mut first = vec![None; system.size];
     for copy in &system.copies {
         first[copy.from].get_or_insert(copy);

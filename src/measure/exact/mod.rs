@@ -39,9 +39,9 @@ use std::fmt;
 
 pub use affinity::Affinity;
 pub use effort::Effort;
-pub use grown::{Grown, dimensions_of_graph, dimensions_of_graph_within};
-pub use spectrum::{Spectrum, Weighted};
-pub use system::System;
+pub use grown::{GraphDimensions, dimensions_of_graph, dimensions_of_graph_within};
+pub use spectrum::{SelfSimilarMeasure, Spectrum};
+pub use system::GraphDirectedSystem;
 
 pub(super) use pieces::distinct;
 
@@ -150,17 +150,17 @@ pub struct Dimensions {
 ///
 /// Returns `None` if a map does not contract, or if no set holds copies of itself.
 #[must_use]
-pub fn dimensions(system: &System) -> Option<Dimensions> {
+pub fn dimensions(system: &GraphDirectedSystem) -> Option<Dimensions> {
     dimensions_within(system, Effort::Full)
 }
 
 /// Computes the dimensions of the sets of a system, as [`dimensions`] does, within an effort.
 #[must_use]
-pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> {
+pub fn dimensions_within(system: &GraphDirectedSystem, effort: Effort) -> Option<Dimensions> {
     let system = &system.in_own_units();
     let (component, components) = system.components();
     let parts = components.iter().filter(|part| !part.copies.is_empty());
-    let parts: Vec<&System> = parts.collect();
+    let parts: Vec<&GraphDirectedSystem> = parts.collect();
     if parts.is_empty() {
         return None;
     }
@@ -171,7 +171,9 @@ pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> 
         return None;
     }
     let parts = components.iter();
-    let of_part = |part: &System| (!part.copies.is_empty()).then(|| part_dimension(part, effort));
+    let of_part = |part: &GraphDirectedSystem| {
+        (!part.copies.is_empty()).then(|| part_dimension(part, effort))
+    };
     let parts: Vec<Option<PartDimension>> = parts.map(of_part).collect();
     let regular = is_regular(system, &component, &parts);
     let parts: Vec<PartDimension> = parts.into_iter().flatten().collect();
@@ -194,7 +196,11 @@ pub fn dimensions_within(system: &System, effort: Effort) -> Option<Dimensions> 
 /// copies of sets of this kind have a regular measure as well, wherever they lie. Sets of smaller dimensions
 /// may be present, unless they hold copies of the former: these would be infinitely many. Pieces that
 /// coincide are distinguished only [in sets that hold no others](distinct).
-fn is_regular(system: &System, component: &[usize], parts: &[Option<PartDimension>]) -> bool {
+fn is_regular(
+    system: &GraphDirectedSystem,
+    component: &[usize],
+    parts: &[Option<PartDimension>],
+) -> bool {
     const SAME: f64 = 1e-9;
     let decided = || parts.iter().flatten().map(|part| part.hausdorff.value);
     let most = decided().flatten().fold(0.0, f64::max);
@@ -232,7 +238,7 @@ fn rank(part: &PartDimension) -> f64 {
 }
 
 /// Returns the dimensions of a system whose maps are not similarities, as far as they are known.
-fn of_affine(parts: &[&System], space: usize, effort: Effort) -> Option<Dimensions> {
+fn of_affine(parts: &[&GraphDirectedSystem], space: usize, effort: Effort) -> Option<Dimensions> {
     let all: Option<Vec<Affinity>> = parts.iter().map(|part| affinity(part, effort)).collect();
     let all = all?.into_iter();
     let affinity = all.max_by(|a, b| a.upper_bound.total_cmp(&b.upper_bound))?;

@@ -9,7 +9,7 @@ use super::neighbours::{End, Neighbours};
 use super::open_set::{copies_are_apart, hulls_are_open_sets};
 use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
-use super::system::System;
+use super::system::GraphDirectedSystem;
 use super::types::Types;
 use super::{Boundary, Effort, Equation, Hausdorff, Overlap, Similar};
 
@@ -25,7 +25,7 @@ pub(super) struct PartDimension {
 const SAME: f64 = 1e-10;
 
 /// Computes the dimensions of a part, whose maps are similarities with ratios below 1.
-pub(super) fn part_dimension(system: &System, effort: Effort) -> PartDimension {
+pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> PartDimension {
     let (value, moran) = dimension_of_part(system.size, system.ratios());
     let value = settled(value);
     let equation = if moran {

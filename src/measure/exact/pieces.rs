@@ -10,7 +10,7 @@ use super::Effort;
 use super::hull::Flat;
 use super::neighbours::{End, Neighbours};
 use super::sizes::Generations;
-use super::system::System;
+use super::system::GraphDirectedSystem;
 use super::types::Types;
 
 /// Rewrites sets whose pieces coincide as sets of distinct pieces, where pieces are of finitely many types:
@@ -59,7 +59,7 @@ fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Co
     let number = |set: usize| sets.binary_search(&set).unwrap_or(0);
     let inside = copies.iter();
     let inside = inside.map(|copy| (number(copy.from), number(copy.to), copy.map));
-    let system = System::plane(inside).filter(System::shrinks)?;
+    let system = GraphDirectedSystem::plane(inside).filter(GraphDirectedSystem::shrinks)?;
     let flat = Flat::of(&system);
     let generations = Generations::of(&flat)?;
     let neighbours = Neighbours::of(&generations, Effort::Full);

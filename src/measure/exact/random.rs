@@ -4,7 +4,7 @@
 use crate::expression::{Dependence, Program};
 use crate::graph::{Alternative, Evaluated, Graph, Replacement};
 use crate::rule::draw::Distribution;
-use crate::rule::{Generator, Moment, Placement, Rule, Selection};
+use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
 use super::spectral::dense_radius;
 
@@ -26,7 +26,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
     for object in graph.behaviours() {
         match &object.replacement {
             Replacement::Kept => {}
-            Replacement::Beyond => return Err("what replaces an element changes without end"),
+            Replacement::Unresolved => return Err("what replaces an element changes without end"),
             Replacement::Fixed(production) => {
                 for (placement, instance) in production.placed_instances() {
                     if placement == Placement::SeedsAsInitiator {
@@ -121,7 +121,12 @@ fn push_draws(
     (alternative, weight): (&Alternative, f64),
 ) -> Result<(), &'static str> {
     let generator = &rule.generators()[alternative.generator];
-    let moments = [Moment::INDEX, Moment::AGE, Moment::STEP, Moment::LENGTH];
+    let moments = [
+        ElementContext::INDEX,
+        ElementContext::AGE,
+        ElementContext::STEP,
+        ElementContext::LENGTH,
+    ];
     let depends = |program: &Program| {
         let mut slots = moments.iter();
         slots.any(|&slot| program.dependence(slot) != Dependence::None)
@@ -129,7 +134,7 @@ fn push_draws(
     if generator.programs().any(depends) {
         return Err("ratios depend on more than draws");
     }
-    let moment = Moment {
+    let moment = ElementContext {
         index: 1.0,
         age: 0.0,
         step: 0.0,
@@ -153,7 +158,10 @@ fn push_draws(
 }
 
 /// Returns the nodes of all variables by slot, with weights: a product of quadratures.
-fn draws(generator: &Generator, moment: &Moment) -> Result<Vec<(Vec<f64>, f64)>, &'static str> {
+fn draws(
+    generator: &Generator,
+    moment: &ElementContext,
+) -> Result<Vec<(Vec<f64>, f64)>, &'static str> {
     let mut draws = vec![(moment.slots().to_vec(), 1.0)];
     for variable in generator.variables() {
         let mut next = Vec::new();

@@ -4,7 +4,7 @@ use crate::ifs::Ifs;
 use crate::measure::copies::Shared;
 use crate::measure::perron::{Entry, beside_one, crossing, perron};
 
-use super::{Dimensions, Overlap, System, dimensions};
+use super::{Dimensions, GraphDirectedSystem, Overlap, dimensions};
 
 /// Generalised dimensions D_q of a measure (Hentschel & Procaccia 1983), for all real orders q.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,12 +17,12 @@ pub enum Spectrum {
         closed_form: Option<String>,
     },
     /// Dimensions of a measure whose copies have given shares, under the open set condition.
-    Cascade(Weighted),
+    Cascade(SelfSimilarMeasure),
 }
 
 /// Copies of sets by their shares of the mass and their ratios.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Weighted {
+pub struct SelfSimilarMeasure {
     size: usize,
     edges: Vec<Edge>,
 }
@@ -68,7 +68,7 @@ impl Spectrum {
     pub fn of_weights(ifs: &Ifs) -> Option<Self> {
         let Shared { copies, shares, .. } = Shared::of_weights(ifs)?;
         let maps = copies.copies.iter();
-        let system = System::plane(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
+        let system = GraphDirectedSystem::plane(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
         let Dimensions { hausdorff, .. } = dimensions(&system)?;
         let is_open = matches!(hausdorff.overlap, Overlap::None | Overlap::Touching);
         if !is_open || hausdorff.value.is_none() {
@@ -81,7 +81,7 @@ impl Spectrum {
             share: libm::log(share),
             ratio: libm::log(ratio),
         });
-        Some(Self::Cascade(Weighted {
+        Some(Self::Cascade(SelfSimilarMeasure {
             size: copies.size,
             edges: edges.collect(),
         }))
@@ -97,7 +97,7 @@ impl Spectrum {
     }
 }
 
-impl Weighted {
+impl SelfSimilarMeasure {
     fn at(&self, order: f64) -> f64 {
         if (order - 1.0).abs() < NEAR_ONE {
             return self.information();

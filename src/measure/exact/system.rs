@@ -20,14 +20,14 @@ pub(super) struct Copy {
 ///
 /// Guarantees: the numbers of sets are in range, and all maps are finite.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct GraphDirectedSystem {
     /// Dimension of the space: 2 or 3.
     pub(super) space: usize,
     pub(super) size: usize,
     pub(super) copies: Vec<Copy>,
 }
 
-impl System {
+impl GraphDirectedSystem {
     /// Creates sets of the plane from their copies: the number of the set that holds a copy, the number of
     /// the set that is copied, and the map.
     ///

@@ -12,7 +12,7 @@ use rand_pcg::rand_core::Rng;
 
 use crate::geometry::DVec2;
 use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
-use crate::whole::whole;
+use crate::saturating::whole;
 
 use super::{GRAZED, LimitSet, Placed};
 

@@ -92,7 +92,7 @@ fn parts_do_not_know_of_bands() {
         options.style.width = Width::Pixels(1.5);
         let growth = Growth::steps(3);
         let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         let parts = Parts { scene, has_shapes };
         let png = |in_one_piece, rows: u64, threads| {
             let options = Options {

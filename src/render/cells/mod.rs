@@ -17,8 +17,8 @@ use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style};
 
 use self::plan::Plan;
+use super::culling::NEARLY;
 use super::layout::Layout;
-use super::sight::NEARLY;
 use super::surface::{FINE, Paint, Pen, Stroke, Surface, position};
 use super::{Canvas, Classes, Drawing, Empty, Format, Options, Picture, RenderError, Size};
 

@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DAffine2};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::Layer;
-use crate::render::sight::starts_rings;
+use crate::render::culling::starts_rings;
 use crate::render::surface::Pen;
 use crate::render::{Canvas, Classes, NoRoom, Options, RenderError};
 use crate::style::{Cap, ColorBy, Colour, Join, Width};
@@ -50,7 +50,7 @@ impl Plan {
         let style = &options.style;
         let is_known = graph.is_plain()
             && graph.depth().is_none()
-            && !graph.is_levelled()
+            && !graph.is_time_indexed()
             && graph.roots.elements.is_empty()
             && !graph.resets().contains(&true);
         let is_told = match style.color_by {

@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::geometry::{DVec2, Direction};
 use crate::graph::{Chain, Graph};
 use crate::grow::{Growth, WalkError};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::render::surface::FINE;
 use crate::render::svg::{ends_and_corners, opacity};
 use crate::render::{Canvas, Classes, Options, RenderError, Unit, pen};
@@ -84,7 +84,7 @@ impl<'a> Drawing<'a> {
         let aspect = |part| Aspect {
             steps: self.growth.steps + 1,
             part,
-            dress: Dress(Coat::NONE),
+            dress: Dress(Appearance::NONE),
         };
         let aspects = |class| self.parts(class).into_iter().map(aspect).collect();
         let classes = painted.iter().map(|&class| (class, aspects(class)));
@@ -111,7 +111,7 @@ impl<'a> Drawing<'a> {
         writeln!(
             out,
             r#"<g transform="matrix({map})"{}{}>"#,
-            self.width(Coat::NONE, 1.0),
+            self.width(Appearance::NONE, 1.0),
             ends_and_corners(pen(self.style))
         )?;
         if self.symbols.links {
@@ -199,7 +199,7 @@ impl<'a> Drawing<'a> {
     /// Returns the name of the outline of an object in its appearance, which is written on first use.
     fn outline(&mut self, symbol: &Symbol, text: &mut String) -> u64 {
         let number = self.graph.objects()[symbol.object].base_element;
-        let Dress(coat) = symbol.aspect.dress;
+        let Dress(appearance) = symbol.aspect.dress;
         let key = (number, symbol.aspect.dress);
         if let Some(&name) = self.outlines.get(&key) {
             return name;
@@ -209,15 +209,15 @@ impl<'a> Drawing<'a> {
         let own = |what: &str, colour: Option<Colour>| colour.map(|colour| painted(what, colour));
         let fill = match is_closed {
             false => Some(r#" fill="none""#.into()),
-            true => own("fill", self.tint(coat, style.polygons())),
+            true => own("fill", self.tint(appearance, style.polygons())),
         };
         let stroke = match (is_closed, style.outlines_polygons()) {
-            (false, _) => own("stroke", self.tint(coat, style.lines())),
+            (false, _) => own("stroke", self.tint(appearance, style.lines())),
             (true, _) if self.layers() != [Layer::Both] => None,
             (true, true) => own("stroke", style.stroke),
             (true, false) => Some(r#" stroke="none""#.into()),
         };
-        let width = self.graph.widest().map(|_| self.width(coat, 1.0));
+        let width = self.graph.widest().map(|_| self.width(appearance, 1.0));
         let name = self.next_name();
         text.push_str(&format!(
             "<path id=\"{}\" d=\"{}\"{}{}{}{}/>\n",
@@ -263,8 +263,8 @@ impl<'a> Drawing<'a> {
                 && !(from.meets_frame && to.meets_frame)
                 && self.symbols.paints(to.object, to.born, to.direction, part)
             {
-                let Dress(coat) = of.dress;
-                self.link(from.point, &to, coat, text);
+                let Dress(appearance) = of.dress;
+                self.link(from.point, &to, appearance, text);
                 expanded += 1.0;
             }
             before = Some(instance);
@@ -287,13 +287,13 @@ impl<'a> Drawing<'a> {
     }
 
     /// Writes the line that links an element to its predecessor, in an appearance.
-    fn link(&self, from: DVec2, to: &End, coat: Coat, text: &mut String) {
-        let coat = coat.over(to.coat);
-        let stroke = self.tint(coat, self.style.lines());
+    fn link(&self, from: DVec2, to: &End, appearance: Appearance, text: &mut String) {
+        let appearance = appearance.over(to.appearance);
+        let stroke = self.tint(appearance, self.style.lines());
         let stroke = stroke.map(|colour| painted("stroke", colour));
         let has_own_width =
             self.graph.widest().is_some() || matches!(self.style.width, Width::Relative(_));
-        let width = has_own_width.then(|| self.width(coat, to.length));
+        let width = has_own_width.then(|| self.width(appearance, to.length));
         text.push_str(&format!(
             "<path d=\"{}\" fill=\"none\"{}{}{}/>",
             text::line(from, to.point),
@@ -304,8 +304,8 @@ impl<'a> Drawing<'a> {
     }
 
     /// Returns the colour of elements that have their own colour and a tint, if colours depend on tints.
-    fn tint(&self, coat: Coat, own: Colour) -> Option<Colour> {
-        (self.style.color_by == ColorBy::Tint && self.graph.tints()).then(|| coat.on(own))
+    fn tint(&self, appearance: Appearance, own: Colour) -> Option<Colour> {
+        (self.style.color_by == ColorBy::Tint && self.graph.tints()).then(|| appearance.on(own))
     }
 
     /// Returns the layers of every class, in order.
@@ -327,12 +327,12 @@ impl<'a> Drawing<'a> {
 
     /// Returns the attribute for the stroke width in an appearance: relative to the length of elements in the
     /// frame, or in CSS pixels.
-    fn width(&self, coat: Coat, length: f64) -> String {
+    fn width(&self, appearance: Appearance, length: f64) -> String {
         let width = match self.style.width {
             Width::Relative(width) => width * length * self.graph.unit(),
             Width::Pixels(width) => width * self.unit.millimetres() / Unit::Pixel.millimetres(),
         };
-        let width = width * coat.width();
+        let width = width * appearance.width();
         format!(r#" stroke-width="{width}""#)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::geometry::{DVec2, Direction};
 use crate::graph::{Chain, Graph, Instance, Replacement};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::rule::Piece;
 
 /// First or last element of an expanded object, if another element can be joined to it there.
@@ -19,17 +19,17 @@ pub(super) struct End {
     /// Step of its birth, relative to the object's.
     pub(super) born: u32,
     /// Appearance composed of its own and those of its ancestors below the object.
-    pub(super) coat: Coat,
+    pub(super) appearance: Appearance,
 }
 
 impl End {
-    fn within(self, instance: &Instance, coat: Coat) -> Self {
+    fn within(self, instance: &Instance, appearance: Appearance) -> Self {
         Self {
             point: instance.frame.apply(self.point),
             length: self.length * instance.length,
             direction: self.direction * instance.frame.direction(),
             born: self.born + 1,
-            coat: coat.over(self.coat),
+            appearance: appearance.over(self.appearance),
             ..self
         }
     }
@@ -61,7 +61,7 @@ impl<'g> Ends<'g> {
             let next = objects.map(|(number, object)| match &object.replacement {
                 Replacement::Kept => self.all[number],
                 Replacement::Fixed(production) => self.of_chain(&production.body),
-                Replacement::Evaluated(_) | Replacement::Beyond => [None; 2],
+                Replacement::Evaluated(_) | Replacement::Unresolved => [None; 2],
             });
             self.all = next.collect();
             self.steps += 1;
@@ -80,8 +80,8 @@ impl<'g> Ends<'g> {
 
     /// Returns the ends of an expanded instance, in the order of listing and in its parent's frame.
     pub(super) fn of(&self, instance: &Instance) -> [Option<End>; 2] {
-        let coat = self.graph.coat(instance.object);
-        let within = |end: Option<End>| end.map(|end| end.within(instance, coat));
+        let appearance = self.graph.appearance(instance.object);
+        let within = |end: Option<End>| end.map(|end| end.within(instance, appearance));
         let [start, end] = self.all[instance.object].map(within);
         if instance.frame.direction().is_reversed() {
             [end, start]
@@ -112,7 +112,7 @@ fn own(graph: &Graph, number: usize) -> [Option<End>; 2] {
             length: 1.0,
             direction: Direction::Normal,
             born: 0,
-            coat: Coat::NONE,
+            appearance: Appearance::NONE,
         })
     })
 }

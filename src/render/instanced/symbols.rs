@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::geometry::Direction;
 use crate::graph::{Chain, Graph, Instance, Production, Replacement};
-use crate::instancing::Coat;
+use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
 use super::super::Classes;
@@ -38,7 +38,7 @@ pub(super) struct Aspect {
 
 /// Appearance as a key: ordered by the bits of its fields.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Dress(pub(super) Coat);
+pub(super) struct Dress(pub(super) Appearance);
 
 impl PartialEq for Dress {
     fn eq(&self, other: &Self) -> bool {
@@ -168,15 +168,15 @@ impl<'g> Symbols<'g> {
     }
 
     fn dressed(&self, instance: &Instance, of: &Aspect, part: Part) -> Option<Symbol> {
-        let Dress(coat) = of.dress;
-        let dress = Dress(if self.graph.coats() {
-            let coat = coat.over(self.graph.coat(instance.object));
+        let Dress(appearance) = of.dress;
+        let dress = Dress(if self.graph.has_appearances() {
+            let appearance = appearance.over(self.graph.appearance(instance.object));
             match self.by {
-                ColorBy::Tint => coat,
-                _ => coat.without_colour(),
+                ColorBy::Tint => appearance,
+                _ => appearance.without_colour(),
             }
         } else {
-            coat
+            appearance
         });
         let steps = of.steps.checked_sub(1)?;
         self.symbol(instance.object, Aspect { steps, part, dress })

@@ -1,7 +1,7 @@
 //! Points of a plot, identified up to rounding.
 
+use crate::fast_hash::FastMap;
 use crate::geometry::DVec2;
-use crate::mix::MixMap;
 use crate::render::surface::Position;
 
 /// Distance up to which positions are one point: 0.02 units of the picture, the effect of rounding on a place
@@ -16,7 +16,7 @@ pub(super) type Point = u32;
 pub(super) struct Points {
     places: Vec<[i32; 2]>,
     /// Points by squares of side [`MEET`], each of which holds at most one.
-    squares: MixMap<u64, Point>,
+    squares: FastMap<u64, Point>,
 }
 
 impl Points {

@@ -1,6 +1,6 @@
 //! Removal of repeated edges.
 
-use crate::mix::MixSet;
+use crate::fast_hash::FastSet;
 
 use super::points::Point;
 use super::strokes::Strokes;
@@ -13,7 +13,7 @@ use super::tree::Tree;
 pub(super) struct Unique<'a> {
     places: &'a [[i32; 2]],
     tree: Tree,
-    drawn: MixSet<u64>,
+    drawn: FastSet<u64>,
     /// Number of pieces that have been removed.
     pub(super) repeated: u64,
     pieces: Vec<(f64, Point)>,
@@ -25,7 +25,7 @@ impl<'a> Unique<'a> {
         Self {
             places,
             tree: Tree::new(items.collect()),
-            drawn: MixSet::default(),
+            drawn: FastSet::default(),
             repeated: 0,
             pieces: Vec::new(),
         }

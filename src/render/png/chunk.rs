@@ -3,19 +3,19 @@
 use std::sync::Arc;
 
 use crate::parallel::is_cut_short;
-use crate::render::surface::{Position, Stamped, Tuft};
+use crate::render::surface::{PlacedSprite, Position, SegmentBatch};
 
-use super::coverage::Plane;
-use super::nib::{Hand, Nib, Trail};
+use super::coverage::CoverageBuffer;
 use super::part::Layers;
 use super::region::Region;
+use super::stroker::{Hand, Stroker, Trail};
 
 /// Approximate number of commands or positions of a chunk.
 const MANY: usize = 1 << 14;
 
 enum Command {
     /// Stroker of the following lines.
-    Nib(Nib),
+    Stroker(Stroker),
     /// Beginning of a subpath, at a position.
     Start,
     /// Continuation of a subpath from another chunk.
@@ -35,7 +35,7 @@ enum Command {
     /// Number of tufts.
     Tufts(usize),
     /// Number of stamps.
-    Stamps(usize),
+    Sprites(usize),
 }
 
 /// Commands with their operands.
@@ -45,8 +45,8 @@ pub(super) struct Chunk {
     planes: Layers,
     commands: Vec<Command>,
     points: Vec<Position>,
-    tufts: Vec<Tuft>,
-    stamps: Vec<Stamped>,
+    tufts: Vec<SegmentBatch>,
+    sprites: Vec<PlacedSprite>,
 }
 
 impl Chunk {
@@ -56,7 +56,7 @@ impl Chunk {
 
     pub(super) fn is_full(&self) -> bool {
         let most = self.commands.len().max(self.points.len());
-        let apart = self.tufts.len().max(self.stamps.len());
+        let apart = self.tufts.len().max(self.sprites.len());
         most.max(apart) >= MANY || is_cut_short()
     }
 
@@ -67,8 +67,8 @@ impl Chunk {
     }
 
     #[inline]
-    pub(super) fn nib(&mut self, nib: Nib) {
-        self.commands.push(Command::Nib(nib));
+    pub(super) fn stroker(&mut self, stroker: Stroker) {
+        self.commands.push(Command::Stroker(stroker));
     }
 
     #[inline]
@@ -99,7 +99,7 @@ impl Chunk {
         self.commands.push(Command::End);
     }
 
-    /// Adds a polygon that [`Plane::shape`] covers.
+    /// Adds a polygon that [`CoverageBuffer::shape`] covers.
     pub(super) fn polygon(&mut self, polygon: &[Position]) {
         self.points.extend_from_slice(polygon);
         let sides = polygon.len();
@@ -117,20 +117,20 @@ impl Chunk {
         self.commands.push(Command::Region(region, rows));
     }
 
-    pub(super) fn tufts(&mut self, tufts: &[Tuft]) {
+    pub(super) fn tufts(&mut self, tufts: &[SegmentBatch]) {
         self.tufts.extend_from_slice(tufts);
         self.commands.push(Command::Tufts(tufts.len()));
     }
 
-    pub(super) fn stamps(&mut self, stamps: &[Stamped]) {
-        self.stamps.extend_from_slice(stamps);
-        self.commands.push(Command::Stamps(stamps.len()));
+    pub(super) fn sprites(&mut self, sprites: &[PlacedSprite]) {
+        self.sprites.extend_from_slice(sprites);
+        self.commands.push(Command::Sprites(sprites.len()));
     }
 
     /// Makes `next` continue the current subpath with a stroker.
-    pub(super) fn lead_to(&mut self, next: &mut Self, nib: Nib, trail: &Trail) {
-        let is_flat = matches!(nib, Nib::Flat(_));
-        next.nib(nib);
+    pub(super) fn lead_to(&mut self, next: &mut Self, stroker: Stroker, trail: &Trail) {
+        let is_flat = matches!(stroker, Stroker::Flat(_));
+        next.stroker(stroker);
         if let (Some(Command::Start), false) = (self.commands.last(), is_flat) {
             self.commands.pop();
             self.points.pop();
@@ -157,12 +157,12 @@ impl Chunk {
         self.commands.clear();
         self.points.clear();
         self.tufts.clear();
-        self.stamps.clear();
+        self.sprites.clear();
     }
 
-    fn cover_on(&self, plane: &mut Plane, mut strokes: Option<&mut Plane>) {
+    fn cover_on(&self, plane: &mut CoverageBuffer, mut strokes: Option<&mut CoverageBuffer>) {
         let (mut points, mut tufts) = (self.points.as_slice(), self.tufts.as_slice());
-        let mut stamps = self.stamps.as_slice();
+        let mut sprites = self.sprites.as_slice();
         let mut next = |count: usize| {
             let (next, rest) = points.split_at(count.min(points.len()));
             points = rest;
@@ -172,7 +172,7 @@ impl Chunk {
         for command in &self.commands {
             let over = strokes.as_deref_mut().unwrap_or(&mut *plane);
             match command {
-                Command::Nib(next) => hand = Some(Hand::of(next, over.picture())),
+                Command::Stroker(next) => hand = Some(Hand::of(next, over.picture())),
                 Command::Start => {
                     at = next(1).first().copied().unwrap_or(at);
                     if let Some(hand) = &mut hand {
@@ -215,15 +215,15 @@ impl Chunk {
                     });
                     tufts = rest;
                 }
-                Command::Stamps(count) => {
-                    let (now, rest) = stamps.split_at(*count);
-                    for Stamped { stamp, pixel } in now {
-                        over.stamp(&stamp.strokes, *pixel);
+                Command::Sprites(count) => {
+                    let (now, rest) = sprites.split_at(*count);
+                    for PlacedSprite { sprite, pixel } in now {
+                        over.sprite(&sprite.strokes, *pixel);
                     }
-                    for Stamped { stamp, pixel } in now {
-                        plane.stamp(&stamp.areas, *pixel);
+                    for PlacedSprite { sprite, pixel } in now {
+                        plane.sprite(&sprite.areas, *pixel);
                     }
-                    stamps = rest;
+                    sprites = rest;
                 }
             }
         }

@@ -3,9 +3,9 @@
 use crate::render::surface::{FINE, Pen, Position};
 use crate::style::{Cap, Join};
 
-use super::coverage::Plane;
-use super::nib::Trail;
+use super::coverage::CoverageBuffer;
 use super::skia::MITER_LIMIT;
+use super::stroker::Trail;
 
 /// Maximum width of these strokes, in pixels.
 const WIDEST: f64 = 4.0;
@@ -69,7 +69,7 @@ impl FlatStroke {
     }
 
     /// Begins a subpath.
-    pub(super) fn start(&mut self, at: Position, plane: &mut Plane) {
+    pub(super) fn start(&mut self, at: Position, plane: &mut CoverageBuffer) {
         self.end(plane);
         (self.start, self.at) = (at, at);
         self.directions = None;
@@ -85,7 +85,7 @@ impl FlatStroke {
     }
 
     /// Draws a straight line.
-    pub(super) fn line(&mut self, to: Position, plane: &mut Plane) {
+    pub(super) fn line(&mut self, to: Position, plane: &mut CoverageBuffer) {
         let (direction, length) = direction(self.at, to);
         if length == 0.0 {
             return;
@@ -102,7 +102,7 @@ impl FlatStroke {
     }
 
     /// Closes the subpath.
-    pub(super) fn close(&mut self, plane: &mut Plane) {
+    pub(super) fn close(&mut self, plane: &mut CoverageBuffer) {
         self.line(self.start, plane);
         match self.directions {
             Some([first, last]) => {
@@ -114,7 +114,7 @@ impl FlatStroke {
     }
 
     /// Ends the subpath, if it is open.
-    pub(super) fn end(&mut self, plane: &mut Plane) {
+    pub(super) fn end(&mut self, plane: &mut CoverageBuffer) {
         if !std::mem::take(&mut self.is_open) {
             return;
         }
@@ -128,7 +128,7 @@ impl FlatStroke {
     }
 
     /// Draws a line without its ends, in pieces of limited length.
-    fn piece(&self, from: Position, to: Position, direction: [f64; 2], plane: &mut Plane) {
+    fn piece(&self, from: Position, to: Position, direction: [f64; 2], plane: &mut CoverageBuffer) {
         if let Some(axis) = (0..2).find(|&axis| from[axis] == to[axis]) {
             let mut least = [0, 1].map(|axis| from[axis].min(to[axis]));
             let mut most = [0, 1].map(|axis| from[axis].max(to[axis]));
@@ -184,7 +184,7 @@ impl FlatStroke {
     }
 
     /// Fills the gap between two lines that meet.
-    fn corner(&self, at: Position, [a, b]: [f64; 2], [c, d]: [f64; 2], plane: &mut Plane) {
+    fn corner(&self, at: Position, [a, b]: [f64; 2], [c, d]: [f64; 2], plane: &mut CoverageBuffer) {
         let (cross, dot) = (a * d - b * c, a * c + b * d);
         if cross == 0.0 && dot > 0.0 {
             return;
@@ -225,7 +225,7 @@ impl FlatStroke {
     }
 
     /// Draws the cap beyond the end of a line.
-    fn cap(&self, at: Position, direction: [f64; 2], plane: &mut Plane) {
+    fn cap(&self, at: Position, direction: [f64; 2], plane: &mut CoverageBuffer) {
         match self.pen.cap {
             Cap::Butt => {}
             Cap::Round => self.disc(at, plane),
@@ -245,7 +245,7 @@ impl FlatStroke {
         }
     }
 
-    fn disc(&self, at: Position, plane: &mut Plane) {
+    fn disc(&self, at: Position, plane: &mut CoverageBuffer) {
         let middle = point(at);
         // The polygon has the area of the disc.
         let step = std::f64::consts::TAU / DISC as f64;

@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
-use crate::render::filled::Filled;
+use crate::render::covered::CoveredPixels;
 use crate::render::surface::Paint;
 use crate::style::Colour;
 
 use super::MOST_PIXELS;
-use super::coverage::{Plane, WHOLE};
-use super::planes::Planes;
+use super::buffers::CoverageBuffers;
+use super::coverage::{CoverageBuffer, WHOLE};
 use super::split::ROWS;
 
 /// Maximum number of pixels of pictures with coverage buffers; larger ones would take more memory with them
 /// than the largest picture does without.
-const MOST_COVERED: u64 = MOST_PIXELS * 4 / (4 + Plane::BYTES);
+const MOST_COVERED: u64 = MOST_PIXELS * 4 / (4 + CoverageBuffer::BYTES);
 
 /// Part of a picture, or all of it.
 pub(super) struct Part {
@@ -36,12 +36,12 @@ pub(super) struct Part {
 #[derive(Default)]
 struct Layer {
     /// Coverage buffers, once anything has been covered.
-    planes: Option<Arc<Planes>>,
+    planes: Option<Arc<CoverageBuffers>>,
     ink: Option<Colour>,
 }
 
 /// Coverage buffers of a part's layers.
-pub(super) type Layers = [Option<Arc<Planes>>; 2];
+pub(super) type Layers = [Option<Arc<CoverageBuffers>>; 2];
 
 impl Part {
     /// Creates a part of this one, with its rows that lie in the rows of this one, or a few more: the first
@@ -143,12 +143,12 @@ impl Part {
 
     /// Returns the index of pixels that are completely covered by paths (layer 0), or by the strokes on top
     /// (1).
-    pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<Filled> {
+    pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<CoveredPixels> {
         Arc::clone(self.made_planes(layer, threads).filled())
     }
 
-    fn made_planes(&mut self, layer: usize, threads: usize) -> &Arc<Planes> {
-        let planes = || Arc::new(Planes::new(self.size, self.rows.clone(), threads));
+    fn made_planes(&mut self, layer: usize, threads: usize) -> &Arc<CoverageBuffers> {
+        let planes = || Arc::new(CoverageBuffers::new(self.size, self.rows.clone(), threads));
         self.layers[layer].planes.get_or_insert_with(planes)
     }
 

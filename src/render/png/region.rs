@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::render::surface::Position;
 
-use super::coverage::Plane;
+use super::coverage::CoverageBuffer;
 
 /// Number of rows of a block. Blocks begin at multiples of it, independently of bands.
 const ROWS: u16 = 16;
@@ -160,7 +160,7 @@ impl Region {
     }
 
     /// Covers the area in the rows from `first` to `last`.
-    pub(super) fn cover(&self, plane: &mut Plane, [first, last]: [i64; 2]) {
+    pub(super) fn cover(&self, plane: &mut CoverageBuffer, [first, last]: [i64; 2]) {
         for top in (first..=last).step_by(usize::from(ROWS)) {
             let rows = [top, top + i64::from(ROWS) - 1];
             let near = self.stretches.iter().filter(|stretch| {
@@ -188,7 +188,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
     use super::{MANY, Region};
-    use crate::render::png::coverage::Plane;
+    use crate::render::png::coverage::CoverageBuffer;
     use crate::render::surface::Position;
 
     const SIZE: [u32; 2] = [70, 50];
@@ -218,7 +218,7 @@ mod tests {
         region
     }
 
-    fn drained(plane: &mut Plane) -> Vec<(usize, u32)> {
+    fn drained(plane: &mut CoverageBuffer) -> Vec<(usize, u32)> {
         let mut covered = Vec::new();
         plane.drain(|pixel, part| covered.push((pixel, part)));
         covered
@@ -228,10 +228,10 @@ mod tests {
     fn regions_cover_what_polygons_do() {
         for (count, far) in [(5, 900.0), (300, 1500.0), (4000, 2400.0), (9, 40_000.0)] {
             let outline = star(count, far);
-            let mut expected = Plane::new(SIZE);
+            let mut expected = CoverageBuffer::new(SIZE);
             let has_room = expected.polygon(&outline);
             let region = of(&[outline]);
-            let mut whole = Plane::new(SIZE);
+            let mut whole = CoverageBuffer::new(SIZE);
             region
                 .pieces()
                 .for_each(|rows| region.cover(&mut whole, rows));
@@ -244,7 +244,7 @@ mod tests {
             let mut in_bands = Vec::new();
             for top in [0, 4, 20, 32] {
                 let bottom = [0, 4, 20, 32, SIZE[1]].into_iter().find(|end| *end > top);
-                let mut band = Plane::of_rows(SIZE, top..bottom.unwrap());
+                let mut band = CoverageBuffer::of_rows(SIZE, top..bottom.unwrap());
                 region
                     .pieces()
                     .for_each(|rows| region.cover(&mut band, rows));
@@ -266,7 +266,7 @@ mod tests {
         let mut hole = square(1500, 2500);
         hole.reverse();
         let region = of(&[square(500, 4500), hole]);
-        let mut plane = Plane::new(SIZE);
+        let mut plane = CoverageBuffer::new(SIZE);
         region
             .pieces()
             .for_each(|rows| region.cover(&mut plane, rows));
@@ -294,7 +294,7 @@ mod tests {
         // Positions far beyond any picture.
         let far = [[i64::MIN, -5000], [i64::MAX, 2500], [i64::MIN, i64::MAX]];
         let region = of(&[far.to_vec()]);
-        let mut plane = Plane::new(SIZE);
+        let mut plane = CoverageBuffer::new(SIZE);
         region
             .pieces()
             .for_each(|rows| region.cover(&mut plane, rows));

@@ -12,7 +12,7 @@ use crate::document::Document;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
-use crate::render::filled::Filled;
+use crate::render::covered::CoveredPixels;
 use crate::render::layout::Layout;
 use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
 use crate::render::{Drawing, Options, Scene, Size};
@@ -341,7 +341,7 @@ impl Surface for Plain<'_, '_, '_> {
     fn end(&mut self) -> io::Result<()> {
         self.png.end()
     }
-    fn filled(&mut self, paint: &Paint) -> Option<Arc<Filled>> {
+    fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
         self.png.filled(paint).filter(|_| self.hides)
     }
     fn layer(&mut self, layer: u64) {
@@ -404,7 +404,7 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
         };
         let growth = Growth::steps(steps);
         let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         let pixels = |is_combed: bool| {
             with_team(NonZero::<usize>::MIN, |team| {
                 let mut png = Png::begin(scene.size(), None, team).unwrap();
@@ -462,7 +462,7 @@ fn what_is_hidden_would_not_show() {
         };
         let growth = Growth::steps(6);
         let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         let drawn = |threads: usize, hides: bool| {
             with_team(NonZero::new(threads).unwrap(), |team| {
                 let mut png = Png::begin(scene.size(), None, team).unwrap();

@@ -1,12 +1,12 @@
 //! Marks, of which sketches consist.
 
 use crate::render::WIDTHS_AN_OCTAVE;
-use crate::render::surface::{Position, Stamped, Tuft};
+use crate::render::surface::{PlacedSprite, Position, SegmentBatch};
 use crate::style::Colour;
 
 /// Paint key: a path ends where it changes.
 #[derive(Clone, Copy, PartialEq)]
-pub(in crate::render) struct Look {
+pub(in crate::render) struct PaintKey {
     pub(in crate::render) kind: Kind,
     /// Class of the stroke width, in steps of an eighth of an octave, if widths differ; for specks, the width
     /// in eighths of a pixel.
@@ -15,7 +15,7 @@ pub(in crate::render) struct Look {
     pub(in crate::render) colour: Option<Colour>,
 }
 
-impl Look {
+impl PaintKey {
     /// Returns whether shapes with paint key `other` may continue an open path with this one. Specks whose
     /// strokes differ by at most a quarter of a pixel share a path, so that squares alternating between two
     /// sizes do not need a path each.
@@ -64,7 +64,7 @@ pub(in crate::render) enum Kind {
 /// Successive elements with equal paint keys, each joined to the one before.
 #[derive(Clone, Copy)]
 pub(in crate::render) struct Line {
-    pub(in crate::render) look: Look,
+    pub(in crate::render) look: PaintKey,
     /// Whether the first element joins the preceding one.
     pub(in crate::render) joined: bool,
     /// Whether the first element starts, and the last one ends, where its frame does.
@@ -81,10 +81,10 @@ pub(in crate::render) enum Mark {
     /// Beginning of a line, at a point.
     Line(Line),
     /// Beginning of a polygon, at a point.
-    Polygon(Look),
+    Polygon(PaintKey),
     /// Polygons with equal paint keys and equal numbers of vertices.
     Polygons {
-        look: Look,
+        look: PaintKey,
         vertices: usize,
         count: usize,
     },
@@ -97,7 +97,7 @@ pub(in crate::render) enum Mark {
     /// Number of tufts.
     Tufts(usize),
     /// Stamps with equal paint keys.
-    Stamps { look: Look, count: usize },
+    Sprites { look: PaintKey, count: usize },
     /// End of a polygon, with whether it has returned to its start.
     Close { returned: bool },
     /// Open element that is not drawn, by its end, with whether its frame ends there.
@@ -113,8 +113,8 @@ pub(in crate::render) enum Mark {
 pub(in crate::render) struct Sketch {
     pub(in crate::render) marks: Vec<Mark>,
     pub(in crate::render) points: Vec<Position>,
-    pub(in crate::render) tufts: Vec<Tuft>,
-    pub(in crate::render) stamps: Vec<Stamped>,
+    pub(in crate::render) tufts: Vec<SegmentBatch>,
+    pub(in crate::render) sprites: Vec<PlacedSprite>,
 }
 
 /// Returns the class of a stroke width, from the logarithm of the width in hundredths of a pixel. Smaller

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
-use crate::grow::{Colony, Element, Run, Stick};
-use crate::render::stamps::{Painted, Put};
+use crate::grow::{Colony, Element, LineElement, Run};
+use crate::render::sprites::{Painted, Put};
 use crate::render::surface::{FINE, position};
 
-use super::{Kind, Line, Look, Mark, Sketcher, width_class};
+use super::{Kind, Line, Mark, PaintKey, Sketcher, width_class};
 
 impl Sketcher<'_> {
     /// Draws lines of one class that end in the given points, one after another.
@@ -23,20 +23,24 @@ impl Sketcher<'_> {
     }
 
     /// Draws lines of one class that need not join.
-    pub(super) fn sticks(&mut self, run: &Run<'_>, sticks: &[Stick], first: &Element) {
+    pub(super) fn sticks(&mut self, run: &Run<'_>, sticks: &[LineElement], first: &Element) {
         self.see(first);
         let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
         self.draw_sticks(run, rest);
     }
 
     /// Draws lines, each with whether it joins the one before.
-    fn draw_sticks<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = (&'b Stick, bool)>) {
+    fn draw_sticks<'b>(
+        &mut self,
+        run: &Run<'_>,
+        sticks: impl Iterator<Item = (&'b LineElement, bool)>,
+    ) {
         let map = self.scene.canvas.map(run.map());
         let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
         let whole = self.octave(run.map().matrix2.x_axis.length());
         let kind = self.kind();
         for (stick, joined) in sticks {
-            let look = Look {
+            let look = PaintKey {
                 kind,
                 width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
                 colour: None,
@@ -75,7 +79,7 @@ impl Sketcher<'_> {
 
     /// Draws lines of one class, short and thin ones as tufts. Returns `false`, and draws nothing, if there
     /// are no tufts.
-    pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[Stick]) -> bool {
+    pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[LineElement]) -> bool {
         let (Some(comb), Some(last)) = (&self.means.comb, sticks.last()) else {
             return false;
         };
@@ -100,39 +104,39 @@ impl Sketcher<'_> {
 
     /// Draws the part of a colony that is painted, by a stamp or element by element.
     pub(super) fn stamp_colony(&mut self, colony: &Colony<'_>) {
-        let Some(stamps) = self.means.stamps.as_ref() else {
+        let Some(sprites) = self.means.sprites.as_ref() else {
             return;
         };
-        match stamps.of_colony(self.scene, colony) {
+        match sprites.of_colony(self.scene, colony) {
             Put::Nothing => return,
-            Put::Stamp(stamped) => {
-                let kind = stamps.kind();
-                self.sketch.stamps.push(stamped);
+            Put::Sprite(placed) => {
+                let kind = sprites.kind();
+                self.sketch.sprites.push(placed);
                 return self.mark_stamps(kind);
             }
             Put::Elements => {}
         }
-        let stamps = Arc::clone(stamps);
-        stamps.see(self.scene, colony, |element| self.see(element));
+        let sprites = Arc::clone(sprites);
+        sprites.see(self.scene, colony, |element| self.see(element));
         self.pass_by(Mark::Break);
     }
 
     /// Adds one stamp to the last mark, or begins a mark.
     fn mark_stamps(&mut self, kind: Kind) {
-        let look = Look {
+        let look = PaintKey {
             kind,
-            ..Look::TUFTS
+            ..PaintKey::TUFTS
         };
         match self.sketch.marks.last_mut() {
-            Some(Mark::Stamps { look: last, count }) if *last == look => *count += 1,
-            _ => self.mark(Mark::Stamps { look, count: 1 }),
+            Some(Mark::Sprites { look: last, count }) if *last == look => *count += 1,
+            _ => self.mark(Mark::Sprites { look, count: 1 }),
         }
     }
 
     /// Draws the part of a run that is painted by a stamp; returns whether there is a stamp.
-    pub(super) fn stamp(&mut self, run: &Run<'_>, painted: Painted) -> bool {
-        let stamps = self.means.stamps.as_ref();
-        let Some(stamped) = stamps.and_then(|stamps| stamps.of(self.scene, run, painted)) else {
+    pub(super) fn sprite(&mut self, run: &Run<'_>, painted: Painted) -> bool {
+        let sprites = self.means.sprites.as_ref();
+        let Some(placed) = sprites.and_then(|sprites| sprites.of(self.scene, run, painted)) else {
             return false;
         };
         let graph = self.scene.graph;
@@ -141,7 +145,7 @@ impl Sketcher<'_> {
             object.visible && !graph.base_elements()[object.base_element].is_closed()
         };
         let end = run.last().filter(is_open);
-        self.sketch.stamps.push(stamped);
+        self.sketch.sprites.push(placed);
         // Elements that join the run continue at its end; nothing joins runs of closed elements.
         if let Some(end) = end {
             self.mark_stamps(Kind::Line);

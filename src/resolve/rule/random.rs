@@ -8,7 +8,7 @@ use crate::expression::{Program, Scope, Type, is_name, is_reserved};
 use super::OfRule;
 use crate::resolve::{Resolver, whole_number};
 use crate::rule::draw::{Distribution, Variable};
-use crate::rule::{Moment, Move};
+use crate::rule::{ElementContext, Move};
 
 /// Maximum number of moves of a generator: each takes time in every replacement.
 const MOST_MOVES: usize = 1000;
@@ -39,7 +39,7 @@ impl Resolver<OfRule> {
                 self.error_with_hint(&name.place, message, "give the variable another name");
             }
             let distribution = self.distribution(number, scope);
-            scope.variable(&name.value, Moment::NAMES.len() + variables.len());
+            scope.variable(&name.value, ElementContext::NAMES.len() + variables.len());
             variables.push(Variable::new(&name.value, distribution));
         }
         variables

@@ -57,7 +57,7 @@ impl<'a> OfRule<'a> {
         let moment = parent.moment.seen(parent.standing);
         let slots = generator.slots(&moment, parent.standing.path);
         let variables = generator.variables().iter().map(rule::draw::Variable::name);
-        let names = rule::Moment::NAMES.into_iter().chain(variables);
+        let names = rule::ElementContext::NAMES.into_iter().chain(variables);
         let names: Vec<(&str, Precise)> = names.zip(slots.into_iter().map(Precise::of)).collect();
         let mut points: BTreeMap<usize, Vector> = BTreeMap::new();
         for instance in wanted {

@@ -70,7 +70,7 @@ proptest! {
         let effects = Effects::of_system(&system, 4).unwrap();
         let graph = Graph::of_levels(effects, 4).unwrap();
         for steps in 0..=4 {
-            if Graph::of_words(&system, steps, 0, 2_000).is_ok() {
+            if Graph::of_derived_word(&system, steps, 0, 2_000).is_ok() {
                 assert_same(&text, &graph, &system, steps, 0);
                 assert_told(&graph, steps);
             }
@@ -85,7 +85,7 @@ proptest! {
             return Ok(());
         };
         for steps in 0..=4 {
-            if Graph::of_words(&system, steps, seed, 2_000).is_ok() {
+            if Graph::of_derived_word(&system, steps, seed, 2_000).is_ok() {
                 assert_same(&text, &graph, &system, steps, seed);
             }
         }

@@ -1,7 +1,7 @@
 //! Areas of outlines of limited size, decided for every sample.
 
 use super::polygon::bounds;
-use super::{FINE, Plane, Position, SAMPLES, cover, index};
+use super::{CoverageBuffer, FINE, Position, SAMPLES, cover, index};
 
 /// Maximum number of vertices of an outline whose area is covered.
 pub(crate) const MOST_CORNERS: usize = 1 << 12;
@@ -27,7 +27,7 @@ const BESIDE: [f64; SAMPLES as usize] = {
     beside
 };
 
-/// Returns whether an outline is within the limits, so that [`Plane::polygon`] covers its area whatever its
+/// Returns whether an outline is within the limits, so that [`CoverageBuffer::polygon`] covers its area whatever its
 /// shape.
 pub(crate) fn has_room(vertices: &[Position]) -> bool {
     let [least, most] = bounds(vertices);
@@ -35,7 +35,7 @@ pub(crate) fn has_room(vertices: &[Position]) -> bool {
     (1..=MOST_CORNERS).contains(&vertices.len()) && side(0).saturating_mul(side(1)) <= MOST_PIXELS
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Covers the area of an outline, the samples with nonzero winding number, if it is within the limits.
     /// Otherwise covers nothing and returns `false`.
     ///
@@ -80,7 +80,7 @@ impl Plane {
         true
     }
 
-    /// Covers a convex polygon in at most two columns and two rows, by the same samples as [`Plane::area`].
+    /// Covers a convex polygon in at most two columns and two rows, by the same samples as [`CoverageBuffer::area`].
     #[inline]
     pub(super) fn tiny(&mut self, vertices: &[Position], columns: [i64; 2], rows: [i64; 2]) {
         let mut masks = [[0; 2]; 2];

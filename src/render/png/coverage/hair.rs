@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use super::{FINE, MARGIN, Plane, Position, index};
+use super::{CoverageBuffer, FINE, MARGIN, Position, index};
 
 /// Maximum length of the pieces of a line, along either axis, in hundredths of a pixel.
 const PIECE: i64 = 25;
@@ -114,7 +114,7 @@ fn add(cell: &AtomicU32, ink: u32) {
     cell.store(cell.load(Relaxed).saturating_add(ink), Relaxed);
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Draws a line of a hairline pen. `ends` adds the length of both ends, for the first line of a path.
     #[inline]
     pub(crate) fn hair(&mut self, pen: &HairPen, from: Position, to: Position, ends: bool) {

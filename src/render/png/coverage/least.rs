@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use super::polygon::{HalfPlane, MOST_PIXELS, MOST_VERTICES, SOME_VERTICES};
 use super::polygon::{bounds, orientation, rounded, sides};
-use super::{FINE, Plane, Position, RoundPen};
+use super::{CoverageBuffer, FINE, Position, RoundPen};
 
 /// Minimum width of a filled shape, in hundredths of a pixel.
 const NARROWEST: i64 = FINE;
@@ -23,8 +23,8 @@ const LINE: f64 = 1.0;
 /// Pen for dots and lines.
 static PEN: LazyLock<RoundPen> = LazyLock::new(|| RoundPen::new(NARROWEST as f64 / FINE as f64));
 
-impl Plane {
-    /// Covers a polygon as [`Plane::polygon`] does, but at least a pixel wide if it is convex or fits in a
+impl CoverageBuffer {
+    /// Covers a polygon as [`CoverageBuffer::polygon`] does, but at least a pixel wide if it is convex or fits in a
     /// pixel.
     #[inline]
     pub(crate) fn shape(&mut self, vertices: &[Position]) -> bool {
@@ -202,11 +202,11 @@ fn farthest(vertices: &[Position]) -> [Position; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Plane, WHOLE};
+    use super::super::{CoverageBuffer, WHOLE};
 
     /// Returns the area that a shape covers, in pixels.
     fn ink(vertices: &[[i64; 2]]) -> f64 {
-        let mut plane = Plane::new([30, 30]);
+        let mut plane = CoverageBuffer::new([30, 30]);
         assert!(plane.shape(vertices));
         let mut ink = 0;
         plane.drain(|_, covered| ink += covered);

@@ -11,7 +11,7 @@ mod hair;
 mod least;
 mod pen;
 mod polygon;
-mod stamp;
+mod sprite;
 #[cfg(test)]
 mod tests;
 mod winding;
@@ -26,7 +26,7 @@ pub(crate) use curve::{bounding, bounding_within, flattened, flattened_within};
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
-pub(crate) use stamp::{Sheet, Stamp};
+pub(crate) use sprite::{Sprite, SpriteSheet};
 
 /// Position in hundredths of a pixel.
 type Position = [i64; 2];
@@ -64,7 +64,7 @@ fn mask(covers: impl Fn([f64; 2]) -> bool) -> u64 {
 }
 
 /// Coverage buffer: the covered samples of some rows of a picture.
-pub(crate) struct Plane {
+pub(crate) struct CoverageBuffer {
     /// Width and height of the picture, in pixels.
     picture: [i64; 2],
     /// Width and number of the rows, in pixels.
@@ -106,7 +106,7 @@ impl Touched {
     }
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Memory per pixel, in bytes.
     pub(crate) const BYTES: u64 = 12;
 

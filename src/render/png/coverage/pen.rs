@@ -1,6 +1,6 @@
 //! Round pens: strokes as rows of prints of a disc, which are tabulated.
 
-use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
+use super::{CoverageBuffer, FINE, MARGIN, Position, cover, index, mask};
 
 /// Steps per pixel at which the pen can stand, as a power of two.
 const STEP_BITS: u32 = 4;
@@ -97,7 +97,7 @@ fn prints<const SIDE: usize>(radius: f64) -> Vec<Print<SIDE>> {
         .collect()
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Draws a dot.
     #[inline]
     pub(crate) fn dot(&mut self, pen: &RoundPen, at: Position) {
@@ -122,7 +122,7 @@ impl Plane {
     }
 
     /// Draws a line from a position where the pen has been on this buffer: by a dot, a line or
-    /// [`Plane::reach`].
+    /// [`CoverageBuffer::reach`].
     #[inline]
     pub(crate) fn line(&mut self, pen: &RoundPen, from: Position, to: Position) {
         if self.is_near(from) && self.is_near(to) {

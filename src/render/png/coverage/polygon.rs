@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 #[cfg(doc)]
 use super::has_room;
-use super::{FINE, MARGIN, Plane, Position, cover, index, mask};
+use super::{CoverageBuffer, FINE, MARGIN, Position, cover, index, mask};
 
 /// Maximum number of vertices of such a polygon.
 pub(super) const MOST_VERTICES: usize = 32;
@@ -161,7 +161,7 @@ pub(super) fn sides<const MOST: usize>(vertices: &[Position]) -> [[i64; 2]; MOST
     sides
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Covers a polygon, under the nonzero rule, if it is small and convex or [within the limits](has_room).
     /// Otherwise covers nothing and returns `false`.
     #[inline]
@@ -230,7 +230,7 @@ impl Plane {
         true
     }
 
-    /// Covers a rectangle of horizontal and vertical sides as [`Plane::polygon`] does, if it is small and not
+    /// Covers a rectangle of horizontal and vertical sides as [`CoverageBuffer::polygon`] does, if it is small and not
     /// too narrow. Otherwise covers nothing and returns `false`.
     #[inline]
     pub(crate) fn rectangle(&mut self, least: Position, most: Position) -> bool {

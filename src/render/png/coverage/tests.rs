@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use proptest::prelude::*;
 
-use super::{HairPen, Plane, Position, RoundPen, SAMPLES, WHOLE};
+use super::{CoverageBuffer, HairPen, Position, RoundPen, SAMPLES, WHOLE};
 
 const SIZE: u32 = 64;
 
@@ -21,7 +21,7 @@ fn lines_go_on_on_other_planes() {
             .windows(2)
             .for_each(|line| plane.line(&pen, line[0], line[1]));
     });
-    let mut planes = [0; 3].map(|_| Plane::new([SIZE; 2]));
+    let mut planes = [0; 3].map(|_| CoverageBuffer::new([SIZE; 2]));
     planes[0].dot(&pen, corners[0]);
     for (line, plane) in corners.windows(2).zip(&mut planes) {
         plane.reach(&pen, line[0]);
@@ -36,13 +36,13 @@ fn lines_go_on_on_other_planes() {
 }
 
 /// Returns the coverage of every pixel.
-fn covered(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
-    let mut plane = Plane::new([SIZE; 2]);
+fn covered(draw: impl FnOnce(&mut CoverageBuffer)) -> Vec<u32> {
+    let mut plane = CoverageBuffer::new([SIZE; 2]);
     draw(&mut plane);
     drained(&mut plane)
 }
 
-fn drained(plane: &mut Plane) -> Vec<u32> {
+fn drained(plane: &mut CoverageBuffer) -> Vec<u32> {
     let mut covered = vec![0; (SIZE * SIZE) as usize];
     plane.drain(|pixel, part| covered[pixel] = part);
     plane.drain(|pixel, _| panic!("pixel {pixel} is still covered"));
@@ -50,7 +50,7 @@ fn drained(plane: &mut Plane) -> Vec<u32> {
 }
 
 /// Returns the number of covered samples of every pixel.
-fn samples(draw: impl FnOnce(&mut Plane)) -> Vec<u32> {
+fn samples(draw: impl FnOnce(&mut CoverageBuffer)) -> Vec<u32> {
     let covered = covered(draw);
     covered
         .iter()
@@ -133,7 +133,7 @@ proptest! {
         mut lines in proptest::collection::vec((inside(), inside()), 1..20),
     ) {
         let pens = [0.7, 1.5, 3.0].map(RoundPen::new);
-        let draw = |plane: &mut Plane, lines: &[(Position, Position)]| {
+        let draw = |plane: &mut CoverageBuffer, lines: &[(Position, Position)]| {
             for (from, to) in lines {
                 plane.line(&pens[from[0].unsigned_abs() as usize % 3], *from, *to);
             }
@@ -184,14 +184,14 @@ proptest! {
         lines in proptest::collection::vec((0.001..0.25, inside(), inside()), 2..40),
     ) {
         let triangle = |[x, y]: Position| [[x, y], [x + 150, y + 40], [x + 60, y + 170]];
-        let draw = |plane: &mut Plane, (width, from, to): &(f64, Position, Position)| {
+        let draw = |plane: &mut CoverageBuffer, (width, from, to): &(f64, Position, Position)| {
             plane.hair(&HairPen::new(*width, 0.0), *from, *to, false);
             plane.polygon(&triangle(*to));
         };
         let whole = covered(|plane| lines.iter().for_each(|line| draw(plane, line)));
         let backwards = covered(|plane| lines.iter().rev().for_each(|line| draw(plane, line)));
         prop_assert!(whole == backwards);
-        let mut halves = [Plane::new([SIZE; 2]), Plane::new([SIZE; 2])];
+        let mut halves = [CoverageBuffer::new([SIZE; 2]), CoverageBuffer::new([SIZE; 2])];
         for (line, number) in lines.iter().zip(0..) {
             draw(&mut halves[number % 2], line);
         }
@@ -460,12 +460,12 @@ fn small_ellipses_and_bars_have_their_ink_on_average() {
             (0..corners).map(corner).collect::<Vec<Position>>()
         };
         let shapes = || (0..1000).map(shape);
-        let sum = |draw: fn(&mut Plane, &[Position]) -> bool| {
+        let sum = |draw: fn(&mut CoverageBuffer, &[Position]) -> bool| {
             let covered =
                 shapes().map(|shape| area(&samples(|plane| assert!(draw(plane, &shape)))));
             covered.sum::<f64>()
         };
-        let (soon, exact) = (sum(Plane::polygon), sum(Plane::area));
+        let (soon, exact) = (sum(CoverageBuffer::polygon), sum(CoverageBuffer::area));
         assert!(
             (soon / exact - 1.0).abs() <= 0.02,
             "{soon} instead of {exact}: {corners} corners, {along}, {across}"

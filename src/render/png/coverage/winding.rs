@@ -3,7 +3,7 @@
 //! Only pixels that a side crosses are processed one by one; the winding numbers are constant between them.
 
 use super::area::{follow_side, wound};
-use super::{Plane, Position, SAMPLES, cover, index};
+use super::{CoverageBuffer, Position, SAMPLES, cover, index};
 
 /// Number for each sample of a pixel.
 type Samples = [i16; SAMPLES as usize];
@@ -18,7 +18,7 @@ pub(super) struct Windings {
     marks: Vec<u64>,
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Covers the samples with nonzero winding number, modulo 2^16, in the rows of pixels from `first` to
     /// `last`. The sides of the closed outlines may come in any order.
     pub(crate) fn wound_around(

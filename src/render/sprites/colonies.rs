@@ -4,14 +4,14 @@ use std::convert::Infallible;
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::{
-    Colony, ColonyKind, ColonyKinds, Element, Enter, Fractal, Subtree, Taken, Visitor,
+    Colony, ColonyKind, ColonyKinds, Element, Enter, FractalInfo, Subtree, Taken, Visitor,
 };
-use crate::render::hidden::Hidden;
-use crate::render::png::Sheet;
+use crate::render::occlusion::Occlusion;
+use crate::render::png::SpriteSheet;
 use crate::render::scene::Scene;
-use crate::render::surface::Stamped;
+use crate::render::surface::PlacedSprite;
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, whole};
 
 /// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
@@ -60,7 +60,7 @@ enum Shows {
 pub(in crate::render) enum Put {
     /// No element of it is painted.
     Nothing,
-    Stamp(Stamped),
+    Sprite(PlacedSprite),
     /// Element by element.
     Elements,
 }
@@ -69,12 +69,12 @@ impl<'a> Colonies<'a> {
     /// Creates the colonies of a scene, if any are numerous enough for stamps.
     pub(super) fn of(
         scene: &'a Scene<'a>,
-        hidden: &Hidden,
+        hidden: &Occlusion,
         painted: Painted,
         strokes: bool,
     ) -> Option<Self> {
         let kinds = scene.colonies.get_or_init(|| {
-            let shortest = scene.sight.shortest().unwrap_or(0.0);
+            let shortest = scene.culling.shortest().unwrap_or(0.0);
             ColonyKinds::of(scene.graph, scene.growth.steps, shortest)
         });
         let phases = if strokes { PLACES / 2.0 } else { PLACES };
@@ -107,7 +107,7 @@ impl Means {
     /// Decides about the colonies of a kind, for stamps at `places` positions in a pixel.
     fn of(
         scene: &Scene<'_>,
-        hidden: &Hidden,
+        hidden: &Occlusion,
         kind: &ColonyKind,
         (painted, places): (Painted, u64),
     ) -> Self {
@@ -173,7 +173,7 @@ impl Painted {
     }
 }
 
-impl Stamps<'_> {
+impl Sprites<'_> {
     /// Returns the part of a colony that is put as a stamp.
     pub(in crate::render) fn takes(&self, colony: &Colony<'_>) -> Taken {
         let means = self.colonies.as_ref().and_then(|all| all.means(colony));
@@ -188,20 +188,20 @@ impl Stamps<'_> {
         match colonies.means(colony) {
             Some((_, means)) if means.shows == Shows::Nothing => Put::Nothing,
             Some((number, means)) => {
-                let stamped = self.stamped(scene, colony, colonies, (number, means));
-                stamped.map_or(Put::Elements, Put::Stamp)
+                let placed = self.placed(scene, colony, colonies, (number, means));
+                placed.map_or(Put::Elements, Put::Sprite)
             }
             None => Put::Elements,
         }
     }
 
-    fn stamped(
+    fn placed(
         &self,
         scene: &Scene<'_>,
         colony: &Colony<'_>,
         colonies: &Colonies<'_>,
         (number, means): (usize, &Means),
-    ) -> Option<Stamped> {
+    ) -> Option<PlacedSprite> {
         let kind = &colonies.kinds.all[number];
         let map = scene.canvas.map(&kind.turned(colony.frame().map()));
         let key = Key {
@@ -215,7 +215,7 @@ impl Stamps<'_> {
             let reach = self
                 .hidden
                 .reach_of(scene, means.radius, length / scene.canvas.scale());
-            let draw = |map: DAffine2, sheet: &mut Sheet| {
+            let draw = |map: DAffine2, sheet: &mut SpriteSheet| {
                 let mut points = Vec::new();
                 let mut visitor = Members {
                     scene,
@@ -278,14 +278,14 @@ struct Members<'s, F> {
 impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         if self
             .scene
-            .sight
+            .culling
             .is_short(subtree.frame.stretch() / self.scale)
         {
             return Enter::Keep;
@@ -341,13 +341,13 @@ struct TooMany;
 impl Visitor for Census<'_> {
     type Error = TooMany;
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), TooMany> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), TooMany> {
         self.is_seeded = fractal.number > 0;
         Ok(())
     }
 
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        if self.scene.sight.is_short(subtree.frame.stretch()) {
+        if self.scene.culling.is_short(subtree.frame.stretch()) {
             Enter::Keep
         } else {
             Enter::Replace

@@ -18,14 +18,14 @@ const LEVELS: usize = 16;
 const MOST_TRIES: u32 = 8;
 
 /// Simplified outlines of base elements, by tolerance.
-pub(super) struct Coarse {
+pub(super) struct LevelOfDetail {
     /// Largest deviation of an outline that is invisible, in pixels.
     grain: f64,
     /// Corners by base element and tolerance; `None` for base elements that are not simplified.
     outlines: Vec<Option<[OnceLock<Vec<DVec2>>; LEVELS]>>,
 }
 
-impl Coarse {
+impl LevelOfDetail {
     /// Creates the simplified outlines of a graph, for a surface that shows no detail finer than `grain`
     /// pixels; `None` if no base element needs them.
     pub(super) fn of(graph: &Graph, grain: f64) -> Option<Self> {

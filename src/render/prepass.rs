@@ -8,12 +8,12 @@ use std::sync::Arc;
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
-    self, Census, Element, Enter, Fractal, Growth, Reaches, Seam, Subtree, Visitor, WalkError,
+    self, Census, Element, Enter, FractalInfo, Growth, Reaches, Seam, Subtree, Visitor, WalkError,
     search, walk_in_spans,
 };
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
-use super::sight::{Sight, starts_rings};
+use super::culling::{Culling, starts_rings};
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
 /// Approximate number of elements of a span, in surveys and in the walks that follow them.
@@ -73,7 +73,7 @@ impl Ranks {
 
 /// Properties of an approximant that are determined before it is drawn.
 #[derive(Clone, Debug)]
-pub struct Survey<'g> {
+pub struct Prepass<'g> {
     graph: &'g Graph,
     style: &'g Style,
     /// Bounding box of the outlines, without strokes whose width is in pixels.
@@ -100,12 +100,12 @@ pub struct Survey<'g> {
     pub(super) is_to_detail: bool,
     /// Ranks, if the colour depends on them and they are known.
     pub(super) ranks: Option<Ranks>,
-    sight: Sight,
+    culling: Culling,
     /// Part of the plane that is shown, if it is restricted.
     shown: Option<Bounds>,
     /// Whether the box of an outline meets that part; without a walk, whether the box of all outlines does.
     is_met: bool,
-    fractal: Fractal,
+    fractal: FractalInfo,
     /// Last rank in the fractal that the span continues, without the number of elements before the span.
     last_index: Option<u128>,
     goes_on: bool,
@@ -114,7 +114,7 @@ pub struct Survey<'g> {
     used: Vec<bool>,
 }
 
-impl<'g> Survey<'g> {
+impl<'g> Prepass<'g> {
     /// Creates an empty survey.
     #[must_use]
     pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
@@ -133,10 +133,10 @@ impl<'g> Survey<'g> {
             steps: 0,
             is_to_detail: false,
             ranks: None,
-            sight: Sight::unbounded(),
+            culling: Culling::unbounded(),
             shown: None,
             is_met: false,
-            fractal: Fractal::default(),
+            fractal: FractalInfo::default(),
             last_index: None,
             goes_on: false,
             used: Vec::new(),
@@ -146,8 +146,8 @@ impl<'g> Survey<'g> {
 
     /// Restricts the survey to visible subtrees.
     #[must_use]
-    pub(super) fn of_what_is_in(self, sight: Sight) -> Self {
-        Self { sight, ..self }
+    pub(super) fn of_what_is_in(self, culling: Culling) -> Self {
+        Self { culling, ..self }
     }
 
     /// Lets the survey determine as well whether any outline meets a part of the plane.
@@ -172,7 +172,7 @@ impl<'g> Survey<'g> {
     /// Adds the ranks that the graph determines, if the colour depends on ranks.
     pub(super) fn with_ranks_of(mut self, growth: &Growth<'_>) -> Self {
         if self.style.color_by == ColorBy::Index && self.ranks.is_none() {
-            let shortest = self.sight.shortest().unwrap_or(0.0);
+            let shortest = self.culling.shortest().unwrap_or(0.0);
             let census = Census::of(self.graph, growth.steps, shortest);
             self.count_ranks(census, growth.steps);
         }
@@ -195,8 +195,8 @@ impl<'g> Survey<'g> {
     }
 
     /// Returns the visible part of the approximant.
-    pub(super) fn sight(&self) -> &Sight {
-        &self.sight
+    pub(super) fn culling(&self) -> &Culling {
+        &self.culling
     }
 
     /// Returns the graph.
@@ -253,7 +253,7 @@ impl<'g> Survey<'g> {
     }
 
     /// Records the value of a visible element.
-    pub(super) fn use_value_of(&mut self, element: &Element, fractal: &Fractal) {
+    pub(super) fn use_value_of(&mut self, element: &Element, fractal: &FractalInfo) {
         let value = self.classes.value(element, fractal, self.graph);
         self.use_value(value);
     }
@@ -282,13 +282,13 @@ impl<'g> Survey<'g> {
             pads: &objects().map(|object| self.pad(object)).collect::<Vec<_>>(),
         };
         // The box of the last approximant is used for time-indexed graphs, even if short elements are kept.
-        let levelled = self.graph.is_levelled();
+        let levelled = self.graph.is_time_indexed();
         let pad = |object: &Object| self.pad(object);
         let whole = levelled.then(|| self.graph.padded_bounds(growth.steps, pad));
         self.bounds = match whole.flatten() {
             Some(bounds) => bounds,
             None => search(self.graph, growth, &reaches, |subtree| {
-                self.sight.enter(subtree)
+                self.culling.enter(subtree)
             })?,
         };
         self.is_bounded = true;
@@ -313,7 +313,7 @@ impl<'g> Survey<'g> {
         let is_told = |object: &Object| is_one || self.classes.of_object(object).is_some();
         let start = self.graph.initiator(0).instances.iter();
         let longest = start.map(|instance| instance.frame.stretch());
-        let steps = self.sight.steps_of(longest.fold(0.0, f64::max))?;
+        let steps = self.culling.steps_of(longest.fold(0.0, f64::max))?;
         self.graph.objects().iter().all(is_told).then(|| Self {
             elements,
             has_more: true,
@@ -353,19 +353,19 @@ impl<'g> Survey<'g> {
         growth: &Growth<'_>,
         threads: NonZero<usize>,
     ) -> Result<Self, WalkError<Infallible>> {
-        let mut survey = self.with_ranks_of(growth);
-        survey.walked = true;
-        let none = survey.clone();
+        let mut prepass = self.with_ranks_of(growth);
+        prepass.walked = true;
+        let none = prepass.clone();
         let fresh = || none.clone();
         let mut before = Vec::new();
         walk_in_spans(
-            survey.graph,
+            prepass.graph,
             growth,
             threads,
-            Some(span(survey.graph)),
+            Some(span(prepass.graph)),
             fresh,
             |seen, seam| {
-                survey.add(seen, seam);
+                prepass.add(seen, seam);
                 before.push(seam.before);
                 let fractal = seen.fractal;
                 *seen = Self {
@@ -375,18 +375,18 @@ impl<'g> Survey<'g> {
                 Ok(())
             },
         )?;
-        if survey.style.color_by == ColorBy::Index && survey.ranks.is_none() {
-            if survey.sight.cuts() {
+        if prepass.style.color_by == ColorBy::Index && prepass.ranks.is_none() {
+            if prepass.culling.cuts() {
                 // The last visitor only decided about replacement, and belongs to no span.
                 before.pop();
             }
-            before.push(survey.largest_index);
-            survey.ranks = Some(Ranks {
+            before.push(prepass.largest_index);
+            prepass.ranks = Some(Ranks {
                 steps: growth.steps,
                 how: Known::Told(before.into()),
             });
         }
-        Ok(survey)
+        Ok(prepass)
     }
 
     /// Returns the distance, in pixels, by which strokes of a width in pixels extend beyond their paths.
@@ -416,11 +416,11 @@ pub(super) fn relative_overhang(style: &Style) -> f64 {
     libm::exp2(0.5 / WIDTHS_AN_OCTAVE) * overhang(style)
 }
 
-impl Visitor for Survey<'_> {
+impl Visitor for Prepass<'_> {
     type Error = Infallible;
 
     fn takes_runs(&self) -> bool {
-        !self.sight.is_bounded()
+        !self.culling.is_bounded()
     }
 
     fn longest_run(&self) -> u64 {
@@ -428,15 +428,15 @@ impl Visitor for Survey<'_> {
     }
 
     fn cuts(&self) -> Option<f64> {
-        self.sight.shortest()
+        self.culling.shortest()
     }
 
-    fn go_on(&mut self, fractal: Fractal) {
+    fn go_on(&mut self, fractal: FractalInfo) {
         self.fractal = fractal;
         self.goes_on = true;
     }
 
-    fn begin(&mut self, fractal: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
         self.fractal = fractal;
         self.goes_on = false;
         self.fractals += 1;
@@ -445,7 +445,7 @@ impl Visitor for Survey<'_> {
 
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        let enter = self.sight.enter(subtree);
+        let enter = self.culling.enter(subtree);
         // Skipped elements count, too: without a further step they would be drawn.
         if enter != Enter::Keep {
             self.steps = self.steps.max(subtree.born + 1);

@@ -16,9 +16,9 @@ pub enum Thickness {
 /// Appearance: tints composed from the outside in, the outermost on top (Hart 1992, section 5), and the
 /// width of strokes, for which the innermost setting applies.
 ///
-/// Guarantee: composition is associative up to rounding, and [`Coat::NONE`] is its identity.
+/// Guarantee: composition is associative up to rounding, and [`Appearance::NONE`] is its identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coat {
+pub struct Appearance {
     /// Red, green and blue from 0 to 1, each multiplied by `alpha`.
     colour: [f32; 3],
     /// Coverage, from 0 to 1.
@@ -31,7 +31,7 @@ pub struct Coat {
     paints: bool,
 }
 
-impl Coat {
+impl Appearance {
     /// Identity: neither tint nor change of width.
     pub const NONE: Self = Self {
         colour: [0.0; 3],
@@ -155,19 +155,19 @@ impl Coat {
 
 #[cfg(test)]
 mod tests {
-    use super::{Coat, Thickness, Tint};
+    use super::{Appearance, Thickness, Tint};
     use crate::style::Colour;
 
-    fn coat(rgb: [u8; 3], alpha: f64) -> Coat {
+    fn appearance(rgb: [u8; 3], alpha: f64) -> Appearance {
         let [red, green, blue] = rgb;
         let colour = Colour::of_rgba([red, green, blue, 255]);
-        Coat::of(Tint { colour, alpha })
+        Appearance::of(Tint { colour, alpha })
     }
 
     #[test]
     fn the_equations_are_those_of_the_paper() {
         // Half is red, half of the remaining half is blue, and the last quarter is black.
-        let both = coat([255, 0, 0], 0.5).over(coat([0, 0, 255], 0.5));
+        let both = appearance([255, 0, 0], 0.5).over(appearance([0, 0, 255], 0.5));
         assert_eq!(both.colour, [0.5, 0.0, 0.25]);
         assert_eq!(both.alpha, 0.75);
         assert_eq!(both.on(Colour::BLACK).rgba(), [128, 0, 64, 255]);
@@ -181,18 +181,19 @@ mod tests {
     #[test]
     fn coats_are_associative_and_nothing_changes_nothing() {
         let [a, b, c] = [
-            coat([200, 17, 99], 0.3),
-            coat([12, 250, 0], 0.6),
-            coat([0, 40, 255], 0.45),
+            appearance([200, 17, 99], 0.3),
+            appearance([12, 250, 0], 0.6),
+            appearance([0, 40, 255], 0.45),
         ];
         let (left, right) = (a.over(b).over(c), a.over(b.over(c)));
         assert!((left.alpha - right.alpha).abs() < 1e-6);
         for (left, right) in left.colour.iter().zip(right.colour) {
             assert!((left - right).abs() < 1e-6);
         }
-        assert_eq!(Coat::NONE.over(a), a);
-        assert_eq!(a.over(Coat::NONE), a);
-        let [half, wide] = [Thickness::Times(0.5), Thickness::Set(3.0)].map(Coat::of_thickness);
+        assert_eq!(Appearance::NONE.over(a), a);
+        assert_eq!(a.over(Appearance::NONE), a);
+        let [half, wide] =
+            [Thickness::Times(0.5), Thickness::Set(3.0)].map(Appearance::of_thickness);
         for (outer, inner, width) in [(half, half, 0.25), (wide, half, 1.5), (half, wide, 3.0)] {
             let both = a.over(outer).over(inner);
             assert_eq!(both.width(), width);
@@ -203,6 +204,6 @@ mod tests {
             );
         }
         let teal = Colour::of_rgba([0, 128, 127, 77]);
-        assert_eq!(Coat::NONE.on(teal), teal);
+        assert_eq!(Appearance::NONE.on(teal), teal);
     }
 }

@@ -1,12 +1,12 @@
 //! Reading of metadata, which files of all kinds have.
 
 use crate::diagnostic::Diagnostics;
-use crate::document::heading::HeadingDocument;
+use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key};
 use crate::document::style::{STYLE, VIEW, read_style, read_view};
-use crate::heading::Description;
+use crate::metadata::Description;
 use crate::resolve::MOST_STEPS;
 
 use super::parameters::read_params;
@@ -61,8 +61,8 @@ pub(super) const LIKING: [Member; 5] = [
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.
-pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> HeadingDocument {
-    HeadingDocument {
+pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> MetadataDocument {
+    MetadataDocument {
         description: read_description(reader, fields),
         params: read_params(reader, fields.take("params")),
         steps: reader.optional_number(fields.take("steps")),

@@ -4,16 +4,16 @@ use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// Map with the fast hash; nothing iterates over it, because the order of its entries is arbitrary.
-pub(crate) type MixMap<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
+pub(crate) type FastMap<K, V> = HashMap<K, V, BuildHasherDefault<FastHasher>>;
 
 /// Set with the fast hash; nothing iterates over it, because the order of its entries is arbitrary.
-pub(crate) type MixSet<K> = HashSet<K, BuildHasherDefault<Mix>>;
+pub(crate) type FastSet<K> = HashSet<K, BuildHasherDefault<FastHasher>>;
 
 /// Hasher that folds the two halves of a 128-bit product for each word.
 #[derive(Default)]
-pub(crate) struct Mix(u64);
+pub(crate) struct FastHasher(u64);
 
-impl Hasher for Mix {
+impl Hasher for FastHasher {
     fn write(&mut self, bytes: &[u8]) {
         for chunk in bytes.chunks(8) {
             let mut word = [0; 8];

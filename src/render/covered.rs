@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::geometry::DVec2;
 use crate::parallel::is_too_early;
-use crate::whole::whole;
+use crate::saturating::whole;
 
 /// Number of no layer.
 const NONE: u64 = 0;
@@ -29,7 +29,7 @@ const PAD: f64 = 0.25;
 /// read before and after the pixels, ensures that (a sequence lock; Boehm, "Can seqlocks get along with
 /// programming language memory models?", 2012).
 #[derive(Debug)]
-pub(crate) struct Filled {
+pub(crate) struct CoveredPixels {
     /// Width and height of the drawn rows of the picture, in pixels.
     size: [usize; 2],
     /// First drawn row.
@@ -44,8 +44,8 @@ pub(crate) struct Filled {
     planes: Box<[OnceLock<Arc<[AtomicU64]>>]>,
 }
 
-impl Filled {
-    /// Creates an empty index for `planes` coverage buffers of some rows of a picture, with a margin on every
+impl CoveredPixels {
+    /// Creates an empty index for `buffers` coverage buffers of some rows of a picture, with a margin on every
     /// side.
     pub(crate) fn new(width: u32, rows: Range<u32>, margin: i64, planes: usize) -> Self {
         let size = [width, rows.end - rows.start].map(|side| side as usize);
@@ -126,13 +126,13 @@ mod tests {
     use std::sync::atomic::AtomicU64;
     use std::sync::atomic::Ordering::Relaxed;
 
-    use super::Filled;
+    use super::CoveredPixels;
     use crate::geometry::DVec2;
 
     /// Returns an index of 8 by 8 pixels and two coverage buffers. Pixels 2 to 5 of both axes are covered,
     /// half of each on either buffer.
-    fn filled() -> (Filled, Vec<Arc<[AtomicU64]>>) {
-        let filled = Filled::new(8, 0..8, 1, 3);
+    fn filled() -> (CoveredPixels, Vec<Arc<[AtomicU64]>>) {
+        let filled = CoveredPixels::new(8, 0..8, 1, 3);
         let half = |mask: u64| -> Arc<[AtomicU64]> {
             let cells = (0..100).map(|cell: usize| {
                 let inside = |place: usize| (3..7).contains(&place);

@@ -10,10 +10,10 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::grow::Stick;
+use crate::grow::LineElement;
 
 use super::sketch::{class_width, width_class};
-use super::surface::{FINE, Pen, Tuft};
+use super::surface::{FINE, Pen, SegmentBatch};
 
 /// Maximum width of the lines of tufts, in pixels; wider lines are drawn one by one.
 const THIN: f64 = 0.05;
@@ -31,7 +31,7 @@ const SCALES_AN_OCTAVE: f64 = 64.0;
 const MOST_KEPT: usize = 1 << 17;
 
 /// Combines the lines of the segment batches of one walk into tufts.
-pub(super) struct Comb {
+pub(super) struct BatchBuilder {
     /// Logarithm to base 2 of the stroke width of a line of one pixel, in hundredths of a pixel.
     octave: f64,
     /// Length that the caps add to a line, in widths.
@@ -66,7 +66,7 @@ struct Bundle {
     width: f32,
 }
 
-impl Comb {
+impl BatchBuilder {
     /// Creates a comb for strokes of relative width that are thinner than `below` pixels.
     pub(super) fn new(width: f64, pen: Pen, below: f64) -> Self {
         Self {
@@ -79,7 +79,7 @@ impl Comb {
 
     /// Combines the lines of a segment batch that is drawn at `scale` pixels per unit. Returns the result and
     /// the ratio of that scale to the one for which it was computed.
-    pub(super) fn comb(&self, sticks: &[Stick], scale: f64) -> (Arc<Combed>, f64) {
+    pub(super) fn comb(&self, sticks: &[LineElement], scale: f64) -> (Arc<Combed>, f64) {
         let octave = libm::log2(scale) * SCALES_AN_OCTAVE;
         #[expect(
             clippy::cast_possible_truncation,
@@ -102,7 +102,7 @@ impl Comb {
         (combed, scale / combed_scale)
     }
 
-    fn combed(&self, sticks: &[Stick], scale: f64) -> Combed {
+    fn combed(&self, sticks: &[LineElement], scale: f64) -> Combed {
         let octave = self.octave + libm::log2(scale);
         let mut combed = Combed::default();
         let mut open = Open::default();
@@ -153,7 +153,7 @@ impl Combed {
         clippy::cast_sign_loss,
         reason = "casts from floats saturate; single precision is enough"
     )]
-    pub(super) fn tufts(&self, map: DAffine2, longer: f64) -> impl Iterator<Item = Tuft> {
+    pub(super) fn tufts(&self, map: DAffine2, longer: f64) -> impl Iterator<Item = SegmentBatch> {
         let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis].map(|axis| axis * FINE);
         let [along, across, both] = [x * x, y * y, x * y * 2.0].map(|square| {
             // The square of a line's length is twelve times its variance.
@@ -167,7 +167,7 @@ impl Combed {
                 let square = along[axis] * xx + across[axis] * yy + both[axis] * xy;
                 (square.sqrt() + width) as u32
             });
-            Tuft {
+            SegmentBatch {
                 middle: [middle.x as i32, middle.y as i32],
                 extent,
                 area: bundle.area * longer as f32,

@@ -43,12 +43,12 @@ fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
             pixels: 0.5,
             decides_steps: true,
         }),
-        ..Options::of(model.heading())
+        ..Options::of(model.metadata())
     };
     style(&mut options.style);
     let growth = Growth::steps(30);
     let layout = Layout::find(&graph, &growth, &options).unwrap();
-    let mut scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+    let mut scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
     // Assume enough elements for stamps.
     scene.elements = u64::MAX;
     if graph.seeds {
@@ -57,12 +57,12 @@ fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     scene.is_to_detail = false;
     let one_by_one = drawn(&scene, 1);
     scene.is_to_detail = true;
-    let stamped = drawn(&scene, 1);
+    let placed = drawn(&scene, 1);
     // Squares of some fractals lie on the grid.
-    let shows = stamped != one_by_one || ["square-filled", "t-square"].contains(&name);
+    let shows = placed != one_by_one || ["square-filled", "t-square"].contains(&name);
     assert!(shows, "{name}: nothing is stamped");
-    assert!(stamped == drawn(&scene, 3), "{name} on three threads");
-    let (most, mean, of_means) = difference(&stamped, &one_by_one);
+    assert!(placed == drawn(&scene, 3), "{name} on three threads");
+    let (most, mean, of_means) = difference(&placed, &one_by_one);
     let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
     assert!(is_near, "{name}: {most}, {mean}, {of_means}");
 }

@@ -46,7 +46,7 @@ impl Parameter {
 
 /// Metadata of a file: its description, its parameters, published dimensions, and how it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Heading {
+pub struct Metadata {
     /// Title, source and related metadata.
     pub description: Description,
     /// Parameters with their values.

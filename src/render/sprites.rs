@@ -18,19 +18,19 @@ mod runs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
+use crate::fast_hash::FastMap;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::Element;
-use crate::mix::MixMap;
 use crate::rule::Piece;
 
 use self::colonies::Colonies;
 pub(super) use self::colonies::Put;
 use self::runs::Runs;
-use super::hidden::Hidden;
-use super::png::{Sheet, Stamp};
+use super::occlusion::Occlusion;
+use super::png::{Sprite, SpriteSheet};
 use super::scene::Scene;
 use super::sketch::Kind;
-use super::surface::{FINE, Position, Stamped, Stencil, position};
+use super::surface::{FINE, PlacedSprite, Position, SpritePaint, position};
 
 /// Steps per pixel in which linear parts are quantised.
 const LINEAR: f64 = 4096.0;
@@ -70,7 +70,7 @@ enum Of {
 }
 
 /// Stamps with equal keys, by position in a pixel; `None` for stamps that could not be drawn.
-type Places = [OnceLock<Option<Arc<Stamp>>>];
+type Places = [OnceLock<Option<Arc<Sprite>>>];
 
 /// Selection of painted elements.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -96,22 +96,22 @@ impl Painted {
 }
 
 /// Stamps of a pass.
-pub(super) struct Stamps<'a> {
-    stencil: Stencil,
-    hidden: Arc<Hidden>,
+pub(super) struct Sprites<'a> {
+    stencil: SpritePaint,
+    hidden: Arc<Occlusion>,
     runs: Option<Runs>,
     colonies: Option<Colonies<'a>>,
-    tables: Vec<RwLock<MixMap<Key, Arc<Places>>>>,
+    tables: Vec<RwLock<FastMap<Key, Arc<Places>>>>,
     bytes: AtomicUsize,
 }
 
-impl<'a> Stamps<'a> {
+impl<'a> Sprites<'a> {
     /// Creates the stamps of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
-        stencil: Stencil,
+        stencil: SpritePaint,
         painted: Option<Painted>,
-        hidden: Arc<Hidden>,
+        hidden: Arc<Occlusion>,
     ) -> Option<Self> {
         let Scene { graph, .. } = scene;
         let drawn = graph.objects().iter().filter(|object| object.visible);
@@ -119,11 +119,11 @@ impl<'a> Stamps<'a> {
         let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
         let is_large =
             scene.is_to_detail && scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
-        if !is_large || graph.coats() {
+        if !is_large || graph.has_appearances() {
             return None;
         }
         let has_pen = stencil.pen.is_some();
-        let painted = painted.filter(|_| !scene.sight.is_bounded());
+        let painted = painted.filter(|_| !scene.culling.is_bounded());
         let colonies = painted.and_then(|painted| Colonies::of(scene, &hidden, painted, has_pen));
         let runs = Runs::of(scene, &stencil, worth);
         let is_any = runs.is_some() || colonies.is_some();
@@ -152,7 +152,7 @@ impl<'a> Stamps<'a> {
     }
 }
 
-impl Stamps<'_> {
+impl Sprites<'_> {
     /// Returns the stamp for a position, which is rounded to a grid of `phases` steps per pixel. The stamp is
     /// drawn if there is none yet for the position in the pixel.
     fn put(
@@ -160,8 +160,8 @@ impl Stamps<'_> {
         key: &Key,
         at: DVec2,
         phases: f64,
-        drawn: impl FnOnce(DVec2) -> Option<Stamp>,
-    ) -> Option<Stamped> {
+        drawn: impl FnOnce(DVec2) -> Option<Sprite>,
+    ) -> Option<PlacedSprite> {
         let grid = at * phases;
         let place = [grid.x, grid.y].map(whole);
         let count = whole(phases);
@@ -175,16 +175,16 @@ impl Stamps<'_> {
         let number = usize::try_from(phase[0] + count * phase[1]).ok()?;
         let places = self.places(key, usize::try_from(count * count).ok()?);
         let known = places.as_deref().map(|places| &places[number]);
-        let stamp = known.and_then(OnceLock::get).cloned().unwrap_or_else(|| {
-            let stamp = drawn();
-            let bytes = stamp.as_ref().map_or(0, |stamp| stamp.bytes());
+        let sprite = known.and_then(OnceLock::get).cloned().unwrap_or_else(|| {
+            let sprite = drawn();
+            let bytes = sprite.as_ref().map_or(0, |sprite| sprite.bytes());
             if let Some(known) = known.filter(|_| self.take(bytes)) {
-                let _ = known.set(stamp.clone());
+                let _ = known.set(sprite.clone());
             }
-            stamp
+            sprite
         });
-        let stamp = stamp?;
-        Some(Stamped { stamp, pixel })
+        let sprite = sprite?;
+        Some(PlacedSprite { sprite, pixel })
     }
 
     /// Returns the stamps of a key by position in a pixel, if there is memory for them.
@@ -199,7 +199,7 @@ impl Stamps<'_> {
             return Some(Arc::clone(places));
         }
         drop(known);
-        if !self.take(count * size_of::<OnceLock<Option<Arc<Stamp>>>>()) {
+        if !self.take(count * size_of::<OnceLock<Option<Arc<Sprite>>>>()) {
             return None;
         }
         let made = || (0..count).map(|_| OnceLock::new()).collect();
@@ -218,8 +218,8 @@ impl Stamps<'_> {
         linear: DMat2,
         phase: DVec2,
         (middle, reach): (DVec2, f64),
-        draw: impl FnOnce(DAffine2, &mut Sheet),
-    ) -> Option<Stamp> {
+        draw: impl FnOnce(DAffine2, &mut SpriteSheet),
+    ) -> Option<Sprite> {
         // Everything lies on the sheet, with a pixel on every side.
         let reach = reach + 2.0;
         let corner = phase + middle - reach;
@@ -227,8 +227,8 @@ impl Stamps<'_> {
         #[expect(clippy::cast_precision_loss, reason = "places in a small picture")]
         let shift = DVec2::new(pixel[0] as f64, pixel[1] as f64);
         let side = u32::try_from(whole(2.0 * reach) + 2).ok()?;
-        let Stencil { pen, outlines } = &self.stencil;
-        let mut sheet = Sheet::new([side; 2], pen.clone(), *outlines);
+        let SpritePaint { pen, outlines } = &self.stencil;
+        let mut sheet = SpriteSheet::new([side; 2], pen.clone(), *outlines);
         let map = DAffine2 {
             matrix2: linear,
             translation: phase + shift,
@@ -239,7 +239,12 @@ impl Stamps<'_> {
 }
 
 /// Draws an element on a sheet. The frame of the element is in pixels of the sheet.
-fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, sheet: &mut Sheet) {
+fn outline(
+    scene: &Scene<'_>,
+    element: &Element,
+    points: &mut Vec<Position>,
+    sheet: &mut SpriteSheet,
+) {
     let object = &scene.graph.objects()[element.object];
     if !object.visible {
         return;
@@ -265,7 +270,7 @@ fn outline(scene: &Scene<'_>, element: &Element, points: &mut Vec<Position>, she
                 Piece::Line(end) => points.push(fine(end)),
                 Piece::Cubic(a, b, end) => {
                     let curve = [at, fine(a), fine(b), fine(end)];
-                    Sheet::add_curve(points, curve, encircles);
+                    SpriteSheet::add_curve(points, curve, encircles);
                 }
             }
             at = fine(piece.end());

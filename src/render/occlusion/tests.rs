@@ -34,7 +34,7 @@ fn drawn(
 ) -> Option<Vec<u8>> {
     with_adversary(seed, late, || {
         let layout = Layout::find(graph, growth, options).ok()?;
-        let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         with_team(NonZero::new(threads).unwrap(), |team| {
             let mut png = Png::begin(scene.size(), scene.background(), team).unwrap();
             scene.draw(&mut png, team).ok()?;
@@ -66,7 +66,7 @@ fn shows_no_threads(
     };
     let mut drawing = Options {
         threads: NonZero::<usize>::MIN,
-        ..Options::of(model.heading())
+        ..Options::of(model.metadata())
     };
     options(&mut drawing);
     let draw = |threads, timing| drawn(&graph, &growth, &drawing, threads, timing);

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use crate::render::surface::{Pen, Position};
 use crate::style::{Cap, Join};
 
-use super::coverage::{HairPen, Plane, RoundPen};
+use super::coverage::{CoverageBuffer, HairPen, RoundPen};
 use super::flat::{FlatPen, FlatStroke};
 
 /// Stroker.
 #[derive(Clone)]
-pub(super) enum Nib {
+pub(super) enum Stroker {
     /// Round pen.
     Round(Arc<RoundPen>),
     /// Hairline.
@@ -21,22 +21,22 @@ pub(super) enum Nib {
 
 /// Round pens that have been used, by width.
 #[derive(Default)]
-pub(super) struct Nibs(Vec<(f64, Arc<RoundPen>)>);
+pub(super) struct Strokers(Vec<(f64, Arc<RoundPen>)>);
 
-impl Nibs {
+impl Strokers {
     /// Returns the stroker of a pen, if its strokes are drawn as coverage.
     #[inline]
-    pub(super) fn nib(&mut self, pen: Pen) -> Option<Nib> {
+    pub(super) fn stroker(&mut self, pen: Pen) -> Option<Stroker> {
         let width = pen.width;
         if pen.dash != 0.0 {
             return None;
         }
         if width > 0.0 && width < HairPen::TOO_WIDE {
-            return Some(Nib::Hair(HairPen::new(width, pen.overshoot())));
+            return Some(Stroker::Hair(HairPen::new(width, pen.overshoot())));
         }
         let is_round = pen.cap == Cap::Round && pen.join == Join::Round;
         if !is_round || !RoundPen::WIDTHS.contains(&width) {
-            return FlatPen::of(pen).map(Nib::Flat);
+            return FlatPen::of(pen).map(Stroker::Flat);
         }
         let known = self.0.iter().find(|(known, _)| *known == width);
         let pen = known.map(|(_, pen)| Arc::clone(pen)).unwrap_or_else(|| {
@@ -44,7 +44,7 @@ impl Nibs {
             self.0.push((width, Arc::clone(&pen)));
             pen
         });
-        Some(Nib::Round(pen))
+        Some(Stroker::Round(pen))
     }
 }
 
@@ -97,20 +97,20 @@ pub(super) enum Hand {
 
 impl Hand {
     /// Puts a stroker to use on a picture of a given size in pixels.
-    pub(super) fn of(nib: &Nib, size: [i64; 2]) -> Self {
-        match nib {
-            Nib::Round(pen) => Self::Round(Arc::clone(pen)),
-            Nib::Hair(pen) => Self::Hair {
+    pub(super) fn of(stroker: &Stroker, size: [i64; 2]) -> Self {
+        match stroker {
+            Stroker::Round(pen) => Self::Round(Arc::clone(pen)),
+            Stroker::Hair(pen) => Self::Hair {
                 pen: *pen,
                 begins: false,
             },
-            Nib::Flat(pen) => Self::Flat(FlatStroke::new(*pen, size)),
+            Stroker::Flat(pen) => Self::Flat(FlatStroke::new(*pen, size)),
         }
     }
 
     /// Begins a subpath.
     #[inline]
-    pub(super) fn start(&mut self, plane: &mut Plane, at: Position) {
+    pub(super) fn start(&mut self, plane: &mut CoverageBuffer, at: Position) {
         match self {
             Self::Round(pen) => plane.dot(pen, at),
             Self::Hair { begins, .. } => *begins = true,
@@ -120,7 +120,7 @@ impl Hand {
 
     /// Continues a subpath, the beginning of which may have been drawn on another coverage buffer.
     #[inline]
-    pub(super) fn go_on(&mut self, plane: &mut Plane, trail: &Trail) {
+    pub(super) fn go_on(&mut self, plane: &mut CoverageBuffer, trail: &Trail) {
         match self {
             Self::Round(pen) => plane.reach(pen, trail.at),
             Self::Hair { .. } => {}
@@ -130,7 +130,12 @@ impl Hand {
 
     /// Draws lines from a position to the following ones, one after another.
     #[inline]
-    pub(super) fn lines(&mut self, plane: &mut Plane, mut from: Position, to: &[Position]) {
+    pub(super) fn lines(
+        &mut self,
+        plane: &mut CoverageBuffer,
+        mut from: Position,
+        to: &[Position],
+    ) {
         match self {
             Self::Round(pen) => {
                 for &to in to {
@@ -149,14 +154,14 @@ impl Hand {
     }
 
     /// Closes the subpath; its last line leads to its start.
-    pub(super) fn close(&mut self, plane: &mut Plane) {
+    pub(super) fn close(&mut self, plane: &mut CoverageBuffer) {
         if let Self::Flat(stroke) = self {
             stroke.close(plane);
         }
     }
 
     /// Ends the subpath at its current position.
-    pub(super) fn end(&mut self, plane: &mut Plane) {
+    pub(super) fn end(&mut self, plane: &mut CoverageBuffer) {
         if let Self::Flat(stroke) = self {
             stroke.end(plane);
         }

@@ -12,11 +12,11 @@ use super::*;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
-use crate::grow::{Element, Fractal, Visitor, walk};
+use crate::grow::{Element, FractalInfo, Visitor, walk};
 use crate::parallel::with_team;
 use crate::random_rules::{self as rules, Features};
 use crate::render::layout::Layout;
-use crate::render::{Detail, Drawing, Options, Paint, Position, Scene, Size, Surface, Survey};
+use crate::render::{Detail, Drawing, Options, Paint, Position, Prepass, Scene, Size, Surface};
 use crate::rule::Rule;
 use crate::style::{Colour, View};
 
@@ -170,12 +170,14 @@ fn compare(
     };
     let growth = Growth::steps(steps);
     let layout = Layout::find(&graph, &growth, &options).unwrap();
-    let Layout { survey, canvas, .. } = layout;
+    let Layout {
+        prepass, canvas, ..
+    } = layout;
     let shortest = options
         .detail
         .map_or(0.0, |detail| detail.pixels / canvas.scale());
-    let everything = Sight::to_length(&graph, shortest);
-    let mut all = Survey::new(&graph, style, layout.growth.steps).of_what_is_in(everything);
+    let everything = Culling::to_length(&graph, shortest);
+    let mut all = Prepass::new(&graph, style, layout.growth.steps).of_what_is_in(everything);
     // The walk visits and counts all elements.
     walk(&graph, &growth, &mut all).unwrap();
     let draw = |scene: &Scene<'_>, threads: usize| {
@@ -185,7 +187,7 @@ fn compare(
         // Round caps look like a round corner.
         shown(&recorder, style.join != Join::Round)
     };
-    let some_shown = draw(&Scene::new(&survey, &layout.growth, canvas), 2);
+    let some_shown = draw(&Scene::new(&prepass, &layout.growth, canvas), 2);
     let all_shown = draw(&Scene::new(&all, &growth, canvas), 1);
     for (what, count) in &all_shown {
         assert_eq!(some_shown.get(what), Some(count), "{what} is missing");
@@ -193,7 +195,7 @@ fn compare(
     for (what, count) in &some_shown {
         assert_eq!(all_shown.get(what), Some(count), "{what} is too much");
     }
-    [survey.elements, all.elements]
+    [prepass.elements, all.elements]
 }
 
 fn read(text: &str) -> Arc<Rule> {
@@ -340,7 +342,7 @@ fn ranks_may_be_larger_than_any_walk_counts() {
         let model = document.resolve(&[]).unwrap().0;
         let style = Style {
             color_by: ColorBy::Index,
-            ..model.heading().style.clone()
+            ..model.metadata().style.clone()
         };
         let rough = model.compile(3).unwrap();
         let growth = Growth::steps(3);
@@ -368,7 +370,7 @@ fn ranks_may_be_larger_than_any_walk_counts() {
             };
             let layout = Layout::find(&graph, &growth, &options).unwrap();
             let mut recorder = Recorder::default();
-            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
             with_team(NonZero::new(3).unwrap(), |team| {
                 scene.draw(&mut recorder, team)
             })
@@ -391,7 +393,7 @@ struct Cells(Vec<DVec2>);
 impl Visitor for Cells {
     type Error = Infallible;
 
-    fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
@@ -432,9 +434,11 @@ fn colours_by_step_leave_out_nothing() {
                 },
                 ..Options::default()
             };
-            let Layout { survey, canvas, .. } = Layout::find(&graph, &growth, &options).unwrap();
+            let Layout {
+                prepass, canvas, ..
+            } = Layout::find(&graph, &growth, &options).unwrap();
             let mut recorder = Recorder::default();
-            let scene = Scene::new(&survey, &growth, canvas);
+            let scene = Scene::new(&prepass, &growth, canvas);
             with_team(NonZero::<usize>::MIN, |team| {
                 scene.draw(&mut recorder, team)
             })

@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use crate::parallel::pick;
-use crate::render::filled::Filled;
+use crate::render::covered::CoveredPixels;
 
-use super::coverage::{MARGIN, Plane};
+use super::coverage::{CoverageBuffer, MARGIN};
 
 /// Maximum total number of pixels of the buffers other than the first.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -16,15 +16,15 @@ const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
 
 /// Coverage buffers of one part of a picture, so that several threads cover it at once. The buffers are
 /// united when the part is coloured, so that the division of paths between them has no effect.
-pub(super) struct Planes {
+pub(super) struct CoverageBuffers {
     picture: [u32; 2],
     rows: Range<u32>,
     /// Buffers; `None` while nothing is covered.
-    planes: Vec<Mutex<Option<Plane>>>,
-    filled: Arc<Filled>,
+    planes: Vec<Mutex<Option<CoverageBuffer>>>,
+    filled: Arc<CoveredPixels>,
 }
 
-impl Planes {
+impl CoverageBuffers {
     /// Creates one buffer per thread, within the limits of memory.
     pub(super) fn new(picture: [u32; 2], rows: Range<u32>, threads: usize) -> Self {
         let pixels = u64::from(picture[0]) * u64::from(rows.end - rows.start).max(1);
@@ -39,7 +39,7 @@ impl Planes {
         Self {
             picture,
             planes: std::iter::repeat_with(Mutex::default).take(count).collect(),
-            filled: Arc::new(Filled::new(picture[0], rows.clone(), MARGIN, count)),
+            filled: Arc::new(CoveredPixels::new(picture[0], rows.clone(), MARGIN, count)),
             rows,
         }
     }
@@ -50,7 +50,7 @@ impl Planes {
             return None;
         }
         let Self { picture, .. } = self;
-        let filled = Filled::new(picture[0], rows.clone(), MARGIN, self.planes.len());
+        let filled = CoveredPixels::new(picture[0], rows.clone(), MARGIN, self.planes.len());
         let planes = (0..).zip(self.planes).map(|(number, plane)| {
             let mut plane = plane.into_inner().unwrap_or_else(PoisonError::into_inner);
             if let Some(plane) = &mut plane {
@@ -68,7 +68,7 @@ impl Planes {
     }
 
     /// Covers something on a buffer on which no other thread draws.
-    pub(super) fn with_one(&self, cover: impl FnOnce(&mut Plane)) {
+    pub(super) fn with_one(&self, cover: impl FnOnce(&mut CoverageBuffer)) {
         let planes = (0..).zip(&self.planes);
         let planes = planes.skip(pick(self.planes.len()));
         let mut free = planes.filter_map(|(number, plane)| match plane.try_lock() {
@@ -77,19 +77,23 @@ impl Planes {
             Err(TryLockError::WouldBlock) => None,
         });
         let (number, mut plane) = free.next().unwrap_or_else(|| (0, lock(&self.planes[0])));
-        Filled::draw();
+        CoveredPixels::draw();
         cover(self.made(number, &mut plane));
     }
 
     /// Returns the index of the pixels that are covered completely.
-    pub(super) fn filled(&self) -> &Arc<Filled> {
+    pub(super) fn filled(&self) -> &Arc<CoveredPixels> {
         &self.filled
     }
 
     /// Returns a buffer, which is created if it does not exist yet.
-    fn made<'p>(&self, number: usize, plane: &'p mut Option<Plane>) -> &'p mut Plane {
+    fn made<'p>(
+        &self,
+        number: usize,
+        plane: &'p mut Option<CoverageBuffer>,
+    ) -> &'p mut CoverageBuffer {
         plane.get_or_insert_with(|| {
-            let plane = Plane::of_rows(self.picture, self.rows.clone());
+            let plane = CoverageBuffer::of_rows(self.picture, self.rows.clone());
             self.filled.add(number, plane.cells());
             plane
         })
@@ -112,6 +116,6 @@ impl Planes {
     }
 }
 
-fn lock(plane: &Mutex<Option<Plane>>) -> MutexGuard<'_, Option<Plane>> {
+fn lock(plane: &Mutex<Option<CoverageBuffer>>) -> MutexGuard<'_, Option<CoverageBuffer>> {
     plane.lock().unwrap_or_else(PoisonError::into_inner)
 }

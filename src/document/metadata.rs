@@ -2,14 +2,14 @@
 
 use crate::diagnostic::{Place, did_you_mean};
 use crate::expression::PARTS;
-use crate::heading::Description;
+use crate::metadata::Description;
 use crate::style::{Style, View};
 
 use super::{Number, Written};
 
 /// Metadata of a file as written.
 #[derive(Clone, Debug)]
-pub struct HeadingDocument {
+pub struct MetadataDocument {
     /// Title, description, source and tags.
     pub description: Description,
     /// Parameters, in the order of the file.
@@ -57,7 +57,7 @@ impl ParameterDocument {
     }
 }
 
-impl HeadingDocument {
+impl MetadataDocument {
     /// Returns a help text for a setting of an unknown parameter: how to set it if it is complex or
     /// real, the nearest name, or all names.
     pub(crate) fn instead_of(&self, name: &str) -> String {

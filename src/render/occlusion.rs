@@ -7,12 +7,12 @@ use crate::graph::Graph;
 use crate::grow::Subtree;
 use crate::style::{ColorBy, Style, Width};
 
-use super::filled::Filled;
+use super::covered::CoveredPixels;
+use super::culling::own_reach;
 use super::png::WIDEST_COVERED;
+use super::prepass::overhang;
 use super::scene::{Pass, Scene};
-use super::sight::own_reach;
 use super::sketch::stands_alone;
-use super::survey::overhang;
 
 /// Maximum number of sweeps in the search for the longest descendants.
 const MOST_SWEEPS: usize = 64;
@@ -36,8 +36,8 @@ const BROADENED: f64 = 0.75;
 ///   covered, and no caps or corners are visible there;
 /// - all of them would be drawn as coverage, which has no order. Paths that are divided by the number of
 ///   their vertices may have seams; elements that are drawn by such paths are not left out.
-pub(super) struct Hidden {
-    filled: Arc<Filled>,
+pub(super) struct Occlusion {
+    filled: Arc<CoveredPixels>,
     /// Layer of the first class.
     pub(super) first: u64,
     /// By object, radius of its descendants about the centre of its frame, as a multiple of its length.
@@ -49,7 +49,7 @@ pub(super) struct Hidden {
     widths: Vec<f64>,
 }
 
-impl Hidden {
+impl Occlusion {
     /// Returns whether any elements of a pass may be left out.
     pub(super) fn may_be(scene: &Scene<'_>, pass: Pass) -> bool {
         let Scene { graph, style, .. } = scene;
@@ -68,12 +68,12 @@ impl Hidden {
     }
 
     /// Creates the occlusion of a scene.
-    pub(super) fn new(scene: &Scene<'_>, filled: Arc<Filled>) -> Self {
+    pub(super) fn new(scene: &Scene<'_>, filled: Arc<CoveredPixels>) -> Self {
         let Scene { graph, style, .. } = scene;
         let reaches = graph.reaches(|object| own_reach(graph, object, style));
         Self {
             filled,
-            first: Filled::layers(scene.classes.count()),
+            first: CoveredPixels::layers(scene.classes.count()),
             reaches: reaches.into(),
             overhang: match style.width {
                 Width::Pixels(width) => width * graph.widest().unwrap_or(1.0) * overhang(style),

@@ -1,13 +1,13 @@
 //! Stamps of runs of elements.
 
+use crate::fast_hash::FastSet;
 use crate::geometry::{DAffine2, DMat2, Direction};
 use crate::grow::{Element, Run};
-use crate::mix::MixSet;
-use crate::render::png::Sheet;
+use crate::render::png::SpriteSheet;
 use crate::render::scene::Scene;
-use crate::render::surface::{Stamped, Stencil};
+use crate::render::surface::{PlacedSprite, SpritePaint};
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Stamps, outline, whole};
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, whole};
 
 /// Numbers of steps per pixel, along either axis, and maximum numbers of elements of a run: the first of
 /// these for which there are enough runs is used. For strokes there are half as many steps; for outlines of
@@ -33,7 +33,7 @@ pub(super) struct Runs {
 
 impl Runs {
     /// Creates the runs of a scene if many are congruent; `worth` is the cost of an element, in simple ones.
-    pub(super) fn of(scene: &Scene<'_>, stencil: &Stencil, worth: u64) -> Option<Self> {
+    pub(super) fn of(scene: &Scene<'_>, stencil: &SpritePaint, worth: u64) -> Option<Self> {
         let Scene { graph, .. } = scene;
         // Lines of unequal lengths are drawn as fast one by one.
         let is_filled = stencil.pen.is_none() || stencil.outlines;
@@ -60,14 +60,14 @@ impl Runs {
     }
 }
 
-impl Stamps<'_> {
+impl Sprites<'_> {
     /// Returns the stamp of the part of a run that is painted.
     pub(in crate::render) fn of(
         &self,
         scene: &Scene<'_>,
         run: &Run<'_>,
         painted: Painted,
-    ) -> Option<Stamped> {
+    ) -> Option<PlacedSprite> {
         let Runs { worth, phases, .. } = *self.runs.as_ref()?;
         let map = scene.canvas.map(run.map());
         let reach = self
@@ -84,14 +84,21 @@ impl Stamps<'_> {
         self.put(&key, map.translation, phases, |phase| {
             #[expect(clippy::cast_precision_loss, reason = "steps in a small picture")]
             let linear = DMat2::from_cols_array(&key.linear.map(|part| part as f64 / LINEAR));
-            let draw = |map: DAffine2, sheet: &mut Sheet| draw(scene, run, painted, map, sheet);
+            let draw =
+                |map: DAffine2, sheet: &mut SpriteSheet| draw(scene, run, painted, map, sheet);
             self.drawn(linear, phase, (linear * scene.graph.middle(), reach), draw)
         })
     }
 }
 
 /// Draws the part of a run that is painted on a sheet; `map` is into the pixels of the sheet.
-fn draw(scene: &Scene<'_>, run: &Run<'_>, painted: Painted, map: DAffine2, sheet: &mut Sheet) {
+fn draw(
+    scene: &Scene<'_>,
+    run: &Run<'_>,
+    painted: Painted,
+    map: DAffine2,
+    sheet: &mut SpriteSheet,
+) {
     let moved = run.moved_to(map);
     let mut points = Vec::new();
     let mut draw = |element: Element| outline(scene, &element, &mut points, sheet);
@@ -118,7 +125,7 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
     /// Steps in which orientations and lengths are quantised.
     const TURNS: f64 = 1e9;
     let Scene { graph, growth, .. } = scene;
-    let shortest = scene.sight.shortest().filter(|&shortest| shortest > 0.0);
+    let shortest = scene.culling.shortest().filter(|&shortest| shortest > 0.0);
     // A shorter element becomes at most such a run, if it fills an area.
     #[expect(clippy::cast_precision_loss, reason = "a small number")]
     let long = shortest.map_or(0.0, |shortest| shortest * (longest_run as f64).sqrt());
@@ -126,9 +133,9 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
     let start = graph.initiator(0).instances.iter();
     let start = start.map(|instance| (DMat2::IDENTITY, Direction::Normal, instance));
     let mut standing = start.collect::<Vec<_>>();
-    let (mut runs, mut sides) = (MixSet::default(), Vec::new());
+    let (mut runs, mut sides) = (FastSet::default(), Vec::new());
     for step in 0..=growth.steps {
-        let mut known = MixSet::default();
+        let mut known = FastSet::default();
         sides.clear();
         for (linear, direction, instance) in standing.drain(..) {
             let linear = linear * instance.frame.map().matrix2;

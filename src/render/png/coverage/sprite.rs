@@ -3,18 +3,18 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-use super::{MARGIN, Plane, Position, RoundPen, bounding, cover, flattened, index};
+use super::{CoverageBuffer, MARGIN, Position, RoundPen, bounding, cover, flattened, index};
 
 /// Coverage of some pixels, drawn once and put in many places.
 #[derive(Debug)]
-pub(crate) struct Stamp {
+pub(crate) struct Sprite {
     /// Coverage of areas.
     pub(crate) areas: Print,
     /// Coverage of lines and outlines, which may lie on top in another colour.
     pub(crate) strokes: Print,
 }
 
-impl Stamp {
+impl Sprite {
     /// Returns its size in memory, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let cells = [&self.areas, &self.strokes].map(|print| size_of_val(&*print.cells));
@@ -35,11 +35,11 @@ pub(crate) struct Print {
 }
 
 /// Small coverage buffers on which a stamp is drawn.
-pub(crate) struct Sheet {
+pub(crate) struct SpriteSheet {
     /// Buffer of areas.
-    areas: Plane,
+    areas: CoverageBuffer,
     /// Buffer of strokes, if there is a pen.
-    strokes: Option<Plane>,
+    strokes: Option<CoverageBuffer>,
     /// Pen of lines and outlines.
     pen: Option<Arc<RoundPen>>,
     /// Whether areas are outlined.
@@ -48,10 +48,10 @@ pub(crate) struct Sheet {
     is_whole: bool,
 }
 
-impl Sheet {
+impl SpriteSheet {
     /// Creates an empty sheet of a size in pixels.
     pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>, outlines: bool) -> Self {
-        let plane = || Plane::of_rows(size, 0..size[1]);
+        let plane = || CoverageBuffer::of_rows(size, 0..size[1]);
         Self {
             areas: plane(),
             strokes: pen.is_some().then(plane),
@@ -104,9 +104,9 @@ impl Sheet {
 
     /// Returns the stamp, if everything could be drawn. `pixel` is the pixel of the sheet that is put on the
     /// pixel of the picture.
-    pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Stamp> {
+    pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Sprite> {
         let strokes = self.strokes.map(|plane| Print::of(plane, pixel));
-        self.is_whole.then(|| Stamp {
+        self.is_whole.then(|| Sprite {
             areas: Print::of(self.areas, pixel),
             strokes: strokes.unwrap_or_default(),
         })
@@ -115,7 +115,7 @@ impl Sheet {
 
 impl Print {
     /// Creates the print of a buffer whose pixel `pixel` is its origin.
-    fn of(mut plane: Plane, pixel: [i64; 2]) -> Self {
+    fn of(mut plane: CoverageBuffer, pixel: [i64; 2]) -> Self {
         let [rows, columns] = plane.take_touched();
         let stride = plane.stride;
         let first = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
@@ -134,16 +134,16 @@ impl Print {
     }
 }
 
-impl Plane {
+impl CoverageBuffer {
     /// Covers the samples of a print whose origin is put on a pixel.
-    pub(crate) fn stamp(&mut self, stamp: &Print, pixel: [i64; 2]) {
-        let Print { corner, width, .. } = *stamp;
+    pub(crate) fn sprite(&mut self, sprite: &Print, pixel: [i64; 2]) {
+        let Print { corner, width, .. } = *sprite;
         if width == 0 {
             return;
         }
         let [left, top] = [0, 1].map(|axis| pixel[axis] + corner[axis]);
         let side = |count: usize| i64::try_from(count).unwrap_or(i64::MAX);
-        let height = stamp.cells.len() / width;
+        let height = sprite.cells.len() / width;
         // Position in cells of the buffer.
         let (x, y) = (left + MARGIN, top - self.top + MARGIN);
         let within = |from: i64, count: usize, most: i64| {
@@ -159,8 +159,8 @@ impl Plane {
         for row in rows {
             let start = index(y + side(row)) * self.stride + index(x + side(columns.start));
             let cells = &self.cells[start..start + columns.len()];
-            let stamped = &stamp.cells[row * width..][columns.clone()];
-            for (cell, &samples) in cells.iter().zip(stamped) {
+            let placed = &sprite.cells[row * width..][columns.clone()];
+            for (cell, &samples) in cells.iter().zip(placed) {
                 cover(cell, samples);
             }
         }
@@ -176,9 +176,9 @@ mod tests {
     use std::sync::Arc;
 
     use super::super::FINE;
-    use super::{Plane, RoundPen, Sheet};
+    use super::{CoverageBuffer, RoundPen, SpriteSheet};
 
-    fn drained(plane: &mut Plane) -> Vec<(usize, u32)> {
+    fn drained(plane: &mut CoverageBuffer) -> Vec<(usize, u32)> {
         let mut covered = Vec::new();
         plane.drain(|pixel, part| covered.push((pixel, part)));
         covered
@@ -190,16 +190,16 @@ mod tests {
         let square = [[310, 290], [370, 300], [360, 360], [300, 350]];
         let line = [[120, 150], [310, 480], [150, 600]];
         for pixel in [[3, 4], [0, 0], [-3, 2], [9, 9], [40, 4], [-20, -20]] {
-            let mut sheet = Sheet::new([8, 8], Some(Arc::clone(&pen)), true);
+            let mut sheet = SpriteSheet::new([8, 8], Some(Arc::clone(&pen)), true);
             sheet.polygon(&square);
             sheet.line(&line);
             sheet.outline(&square);
-            let stamp = sheet.into_stamp([2, 2]).unwrap();
-            let mut stamped = [Plane::new([12, 12]), Plane::new([12, 12])];
-            stamped[0].stamp(&stamp.areas, pixel);
-            stamped[1].stamp(&stamp.strokes, pixel);
+            let sprite = sheet.into_stamp([2, 2]).unwrap();
+            let mut placed = [CoverageBuffer::new([12, 12]), CoverageBuffer::new([12, 12])];
+            placed[0].sprite(&sprite.areas, pixel);
+            placed[1].sprite(&sprite.strokes, pixel);
             let moved = |point: [i64; 2]| [0, 1].map(|a| point[a] + (pixel[a] - 2) * FINE);
-            let mut drawn = [Plane::new([12, 12]), Plane::new([12, 12])];
+            let mut drawn = [CoverageBuffer::new([12, 12]), CoverageBuffer::new([12, 12])];
             let [square, line] = [square.map(moved).to_vec(), line.map(moved).to_vec()];
             drawn[0].shape(&square);
             let ring = [&square[..], &square[..1]].concat();
@@ -210,7 +210,7 @@ mod tests {
                 }
             }
             assert_eq!(
-                stamped.each_mut().map(drained),
+                placed.each_mut().map(drained),
                 drawn.each_mut().map(drained),
                 "{pixel:?}"
             );
@@ -219,10 +219,10 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_makes_no_stamp() {
-        let mut sheet = Sheet::new([8, 8], None, false);
+        let mut sheet = SpriteSheet::new([8, 8], None, false);
         sheet.polygon(&[[100, 100], [50_000, 100], [300, 20_000], [400, 60_000]]);
         assert!(sheet.into_stamp([0, 0]).is_none());
-        let mut sheet = Sheet::new([8, 8], None, false);
+        let mut sheet = SpriteSheet::new([8, 8], None, false);
         sheet.line(&[[100, 100], [500, 100]]);
         assert!(sheet.into_stamp([0, 0]).is_none());
     }

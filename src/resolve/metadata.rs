@@ -1,20 +1,24 @@
 //! Resolution of metadata, which files of all kinds have.
 
-use crate::document::{HeadingDocument, Number, Setting};
-use crate::heading::Heading;
+use crate::document::{MetadataDocument, Number, Setting};
+use crate::metadata::Metadata;
 
 use super::{MOST_STEPS, Resolver, numbers, whole_number};
 
 impl<K> Resolver<K> {
     /// Resolves the metadata of a file and adds its parameters to the scope of expressions.
-    pub(super) fn heading(&mut self, document: &HeadingDocument, settings: &[Setting]) -> Heading {
+    pub(super) fn metadata(
+        &mut self,
+        document: &MetadataDocument,
+        settings: &[Setting],
+    ) -> Metadata {
         self.incomplete = !document.complete;
         let parameters = self.parameters(document, settings);
         if self.incomplete {
             self.constants.accept_any_name();
         }
         let steps = document.steps.as_ref();
-        Heading {
+        Metadata {
             description: document.description.clone(),
             parameters,
             steps: steps.and_then(|number| self.steps(number)),

@@ -7,11 +7,11 @@ use crate::grow::Subtree;
 
 use super::scene::{Pass, Scene};
 use super::sketch::stands_alone;
-use super::stamps::Painted;
+use super::sprites::Painted;
 
 /// Elements that a pass paints, as far as they are known before replacement. Elements without painted
 /// descendants are left out.
-pub(super) struct Aim {
+pub(super) struct ContributionMask {
     /// Whether nothing needs to be known of elements that are not painted.
     pub(super) stands_alone: bool,
     /// Steps in which painted elements are born, if the colour depends on steps.
@@ -28,7 +28,7 @@ enum Part {
     Everything,
 }
 
-impl Aim {
+impl ContributionMask {
     pub(super) fn of(scene: &Scene<'_>, pass: Pass) -> Self {
         let stands_alone = stands_alone(scene);
         let class = match pass {
@@ -51,7 +51,7 @@ impl Aim {
         self.steps.as_ref().is_none_or(|steps| {
             let before = steps.start().saturating_sub(subtree.born + 1);
             let length = subtree.frame.stretch();
-            subtree.born < *steps.end() && scene.sight.lasts(length, before)
+            subtree.born < *steps.end() && scene.culling.lasts(length, before)
         })
     }
 
@@ -110,7 +110,7 @@ mod tests {
     use crate::catalogue::Catalogue;
     use crate::document::Document;
     use crate::graph::Graph;
-    use crate::grow::{Element, Enter, Fractal, Growth, Subtree, Visitor, walk};
+    use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, walk};
     use crate::model::Model;
     use crate::render::Options;
     use crate::render::layout::Layout;
@@ -135,7 +135,7 @@ mod tests {
     impl Visitor for Lineage<'_> {
         type Error = Infallible;
 
-        fn begin(&mut self, _: Fractal) -> Result<(), Infallible> {
+        fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
             Ok(())
         }
 
@@ -180,14 +180,14 @@ mod tests {
             let document = Document::read(&source, &catalogue).unwrap();
             let model = document.resolve(&[]).unwrap().0;
             let graph = match &model {
-                Model::Ifs(system) => Graph::telling_last_maps(system).unwrap(),
+                Model::Ifs(system) => Graph::with_last_maps(system).unwrap(),
                 model => model.compile(4).unwrap(),
             };
-            let mut options = Options::of(model.heading());
+            let mut options = Options::of(model.metadata());
             options.style.color_by = color_by;
             let growth = Growth::steps(4);
             let layout = Layout::find(&graph, &growth, &options).unwrap();
-            let scene = Scene::new(&layout.survey, &layout.growth, layout.canvas);
+            let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
             let mut lineage = Lineage {
                 scene: &scene,
                 path: Vec::new(),

@@ -9,7 +9,7 @@ use crate::rule::Part;
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
 use super::Classes;
-use super::survey::relative_overhang;
+use super::prepass::relative_overhang;
 
 #[cfg(test)]
 mod tests;
@@ -22,7 +22,7 @@ pub(super) const NEARLY: f64 = 1.0 - 1e-9;
 
 /// Culling of the walks for a picture.
 #[derive(Clone, Debug)]
-pub(super) struct Sight {
+pub(super) struct Culling {
     /// Length of frames below which elements are not replaced, in multiples of [`Graph::unit`].
     shortest: f64,
     window: Option<Window>,
@@ -47,7 +47,7 @@ struct Window {
     outside: Enter,
 }
 
-impl Sight {
+impl Culling {
     /// Returns a sight without culling.
     pub(super) fn unbounded() -> Self {
         Self {
@@ -262,7 +262,7 @@ pub(super) fn starts_rings(graph: &Graph) -> bool {
                     let is_ring = |part: &Part| part.elements.first().is_some_and(|e| e.joined);
                     seeds.any(is_ring)
                 }),
-                Replacement::Kept | Replacement::Beyond => false,
+                Replacement::Kept | Replacement::Unresolved => false,
             })
 }
 

@@ -25,7 +25,7 @@ impl Graph {
     /// ‖ratio(c)‖ · ‖M(c)‖)^q. Numbers that satisfy this inequality in place of the norms are upper
     /// bounds of them; by Markov's inequality M(o) exceeds t with a probability of at most (‖M(o)‖ /
     /// t)^q.
-    pub(crate) fn likely_reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
+    pub(crate) fn probable_radii(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let mut reaches = vec![f64::INFINITY; own.len()];
         if self.resets().contains(&true) {
@@ -95,7 +95,7 @@ mod tests {
     use crate::document::Document;
     use crate::geometry::DVec2;
     use crate::graph::{Graph, Production, Replacement};
-    use crate::grow::{Evaluator, Moment, Standing};
+    use crate::grow::{Evaluator, ReplacementContext, Standing};
 
     /// Returns the largest distance of end points in the subtree of an element from its middle, down to
     /// elements of length 0.01.
@@ -115,7 +115,7 @@ mod tests {
             let production = match &graph.objects()[object].replacement {
                 Replacement::Fixed(production) => production,
                 Replacement::Evaluated(_) => {
-                    let moment = Moment {
+                    let moment = ReplacementContext {
                         born,
                         level,
                         rank: 0,
@@ -147,7 +147,7 @@ mod tests {
         let graph = document.resolve(&[]).unwrap().0.compile(40).unwrap();
         let own = |object: &_| graph.outline_radius(object);
         assert!(graph.reaches(own).contains(&f64::INFINITY));
-        let reaches = graph.likely_reaches(own);
+        let reaches = graph.probable_radii(own);
         assert!(reaches.iter().all(|reach| *reach < 50.0), "{reaches:?}");
         let mut farthest: f64 = 0.0;
         let object = graph.initiator(0).instances[0].object;
