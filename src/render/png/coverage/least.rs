@@ -162,23 +162,41 @@ fn middle(vertices: &[Position]) -> Option<Position> {
 }
 
 /// Returns the least distance between two parallel lines that enclose a convex polygon; 0 if it has no area.
+///
+/// One of the lines holds a side. The vertex farthest from it moves on with the side (rotating calipers,
+/// Shamos 1978).
 fn width(vertices: &[Position]) -> f64 {
-    let mut square = f64::INFINITY;
-    let mut before = vertices.last().copied().unwrap_or_default();
-    for &vertex in vertices {
-        let [x, y] = [vertex[0] - before[0], vertex[1] - before[1]];
-        if [x, y] != [0, 0] {
-            let across = vertices.iter().map(|other| {
-                let area = x * (other[1] - before[1]) - y * (other[0] - before[0]);
-                area.abs()
-            });
-            let farthest = across.max().unwrap_or(0) as f64;
-            square = square.min(farthest * farthest / (x * x + y * y) as f64);
+    let count = vertices.len();
+    let next = |number: usize| if number + 1 == count { 0 } else { number + 1 };
+    // The least distance as a fraction of squares.
+    let (mut square, mut of) = (f64::INFINITY, 1.0);
+    let mut opposite = 0;
+    for (number, &from) in vertices.iter().enumerate() {
+        let to = vertices[next(number)];
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        if [x, y] == [0, 0] {
+            continue;
         }
-        before = vertex;
+        let twice_area = |vertex: Position| {
+            let [across, up] = [vertex[0] - from[0], vertex[1] - from[1]];
+            (x * up - y * across).abs()
+        };
+        let mut farthest = twice_area(vertices[opposite]);
+        for _ in 0..count {
+            let behind = next(opposite);
+            let area = twice_area(vertices[behind]);
+            if area < farthest {
+                break;
+            }
+            (opposite, farthest) = (behind, area);
+        }
+        let (farthest, length) = (farthest as f64, (x * x + y * y) as f64);
+        if farthest * farthest * of < square * length {
+            (square, of) = (farthest * farthest, length);
+        }
     }
     if square.is_finite() {
-        square.sqrt()
+        (square / of).sqrt()
     } else {
         0.0
     }
@@ -202,7 +220,10 @@ fn farthest(vertices: &[Position]) -> [Position; 2] {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::super::{CoverageBuffer, WHOLE};
+    use super::width;
 
     /// Returns the area that a shape covers, in pixels.
     fn ink(vertices: &[[i64; 2]]) -> f64 {
@@ -248,6 +269,56 @@ mod tests {
                     "{x}, {y}, {width}: {ink} of {long}"
                 );
             }
+        }
+    }
+
+    /// Rounds to a grid so fine that convex polygons stay convex.
+    #[expect(clippy::cast_possible_truncation, reason = "coordinates are small")]
+    fn rounded(at: f64) -> i64 {
+        (at * 1e4).round() as i64
+    }
+
+    /// Returns the least over all sides of the distance to the farthest vertex.
+    fn width_by_all(vertices: &[[i64; 2]]) -> f64 {
+        let next = vertices.iter().cycle().skip(1);
+        let sides = vertices.iter().zip(next).filter(|(from, to)| from != to);
+        let distances = sides.map(|(from, to)| {
+            let [x, y] = [to[0] - from[0], to[1] - from[1]];
+            let area = |it: &[i64; 2]| (x * (it[1] - from[1]) - y * (it[0] - from[0])).abs();
+            let farthest = vertices.iter().map(area).max().unwrap_or_default();
+            farthest as f64 / ((x * x + y * y) as f64).sqrt()
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Polygons in an ellipse, with equal and collinear vertices, and both senses of rotation.
+        #[test]
+        fn calipers_find_the_width(
+            mut turns in proptest::collection::vec(0_u32..360, 3..16),
+            [long, short] in [1.0..500.0, 1.0..500.0],
+            tilt in 0.0..3.0,
+            is_reversed: bool,
+        ) {
+            turns.sort_unstable();
+            let mut vertices: Vec<[i64; 2]> = turns
+                .iter()
+                .map(|&turn| {
+                    let (sine, cosine) = f64::from(turn).to_radians().sin_cos();
+                    let (x, y) = (long * cosine, short * sine);
+                    let (sine, cosine) = f64::sin_cos(tilt);
+                    [x * cosine - y * sine, x * sine + y * cosine].map(rounded)
+                })
+                .collect();
+            if is_reversed {
+                vertices.reverse();
+            }
+            prop_assume!(vertices.iter().any(|it| *it != vertices[0]));
+            let expected = width_by_all(&vertices);
+            let found = width(&vertices);
+            prop_assert!((found - expected).abs() <= 1e-6 * expected.max(1.0), "{found}, {expected}");
         }
     }
 }
