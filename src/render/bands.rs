@@ -35,7 +35,7 @@ struct Bands<'a> {
     progress: Option<&'a Progress>,
 }
 
-/// Draws and encodes a surveyed approximant.
+/// Draws and encodes a measured approximant.
 pub(super) fn write_survey(
     prepass: &Prepass<'_>,
     growth: &Growth<'_>,

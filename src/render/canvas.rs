@@ -154,7 +154,7 @@ impl Canvas {
         })
     }
 
-    /// Creates a canvas that shows the bounding boxes of surveys at a common scale, or a window.
+    /// Creates a canvas that shows the bounding boxes of prepasses at a common scale, or a window.
     pub(crate) fn of(surveys: &[Prepass<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
         let mut all = Bounds::EMPTY;
         for prepass in surveys {

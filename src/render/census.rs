@@ -1,4 +1,4 @@
-//! Prepass without a walk for a cutoff length: surveys from numbers of elements by kind.
+//! Prepass without a walk for a cutoff length: prepasses from numbers of elements by kind.
 
 use std::convert::Infallible;
 
@@ -25,7 +25,7 @@ fn element(kind: &Kind, born: u32) -> Element {
 }
 
 impl Prepass<'_> {
-    /// Computes the survey if elements are kept for their length only; `None` if that requires a walk.
+    /// Computes the prepass if elements are kept for their length only; `None` if that requires a walk.
     pub(super) fn counted(
         &self,
         growth: &Growth<'_>,

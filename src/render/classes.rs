@@ -39,12 +39,12 @@ impl Classes {
         Self { largest, ..self }
     }
 
-    /// Returns whether classes are known without a survey.
+    /// Returns whether classes are known without a prepass.
     pub(super) fn need_no_survey(&self) -> bool {
         !matches!(self.by, ColorBy::Fractal | ColorBy::Index)
     }
 
-    /// Returns the classes of approximant `steps` of a graph, as far as they are known without a survey.
+    /// Returns the classes of approximant `steps` of a graph, as far as they are known without a prepass.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let before = u128::from(draws_unmade(by, graph, steps));
         let largest = match by {

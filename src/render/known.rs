@@ -1,4 +1,4 @@
-//! Prepass without a walk: surveys that the graph determines.
+//! Prepass without a walk: prepasses that the graph determines.
 
 use std::collections::BTreeSet;
 
@@ -10,17 +10,17 @@ use crate::style::{ColorBy, Style};
 
 use super::{Classes, Prepass};
 
-/// Size of a set, relative to the unit length and to its coordinates, below which it is surveyed by a walk.
+/// Size of a set, relative to the unit length and to its coordinates, below which it is measured by a walk.
 const SPECK: f64 = 1e-6;
 
 /// Maximum number of steps for which the ages of seeded fractals are computed.
 const MOST_AGES: u32 = 256;
 
-/// Maximum number of steps of a forecast; beyond it the set is surveyed by a walk.
+/// Maximum number of steps of a forecast; beyond it the set is measured by a walk.
 const MOST_STEPS: u32 = 10_000;
 
 impl<'g> Prepass<'g> {
-    /// Computes the survey of an approximant from the graph, if that determines all of it; if the colour
+    /// Computes the prepass of an approximant from the graph, if that determines all of it; if the colour
     /// depends on steps, its classes span `steps` of them.
     pub(super) fn known(
         graph: &'g Graph,
@@ -39,7 +39,7 @@ impl<'g> Prepass<'g> {
         Some(prepass)
     }
 
-    /// Computes the survey without the numbers of elements, which may exceed all limits.
+    /// Computes the prepass without the numbers of elements, which may exceed all limits.
     pub(super) fn outlined(
         graph: &'g Graph,
         growth: &Growth<'_>,

@@ -1,4 +1,4 @@
-//! Layout of a picture: survey, canvas and number of steps.
+//! Layout of a picture: prepass, canvas and number of steps.
 
 use crate::geometry::Bounds;
 use crate::graph::Graph;
@@ -72,14 +72,14 @@ struct Surveyor<'a> {
     options: &'a Options,
     /// Limit of steps.
     limit: u32,
-    /// Number of elements of discarded surveys.
+    /// Number of elements of discarded prepasses.
     elements: u64,
     /// Radii of the objects' subtrees, computed on first use.
     reaches: Option<Vec<f64>>,
 }
 
 impl<'a> Layout<'a> {
-    /// Surveys a graph repeatedly until the size of a pixel is known.
+    /// Repeats the prepass of a graph until the size of a pixel is known.
     pub(super) fn find(
         graph: &'a Graph,
         growth: &Growth<'a>,
@@ -142,7 +142,7 @@ impl<'a> Surveyor<'a> {
         Ok(Canvas::of(std::slice::from_ref(prepass), view, *size)?)
     }
 
-    /// Returns an error if the detail decides the number of steps and the survey reached the limit of steps.
+    /// Returns an error if the detail decides the number of steps and the prepass reached the limit of steps.
     fn check(&self, prepass: &Prepass<'a>) -> Result<(), NoDetail> {
         let steps = self.limit;
         let decides = |detail: Detail| detail.decides_steps;
@@ -152,7 +152,7 @@ impl<'a> Surveyor<'a> {
         Ok(())
     }
 
-    /// Surveys the part of the set that lies in a window.
+    /// Makes the prepass of the part of the set that lies in a window.
     fn survey_window(&mut self, window: [f64; 4]) -> Result<Prepass<'a>, RenderError> {
         let Options {
             style,
@@ -218,7 +218,7 @@ impl<'a> Surveyor<'a> {
         true
     }
 
-    /// Surveys the set down to a cutoff length, completely or as far as the size of a pixel depends on it.
+    /// Makes the prepass of the set down to a cutoff length, completely or as far as the size of a pixel depends on it.
     fn look_down_to(&mut self, shortest: f64) -> Result<Prepass<'a>, RenderError> {
         if !self.step_down_to(shortest) {
             let culling = Culling::to_length(self.graph, shortest);
@@ -236,7 +236,7 @@ impl<'a> Surveyor<'a> {
         Ok(prepass)
     }
 
-    /// Completes a survey.
+    /// Completes a prepass.
     fn completed(&self, prepass: Prepass<'a>) -> Result<Prepass<'a>, RenderError> {
         let prepass = if prepass.is_bounded {
             self.counted(prepass)?
@@ -275,7 +275,7 @@ impl<'a> Surveyor<'a> {
         }
     }
 
-    /// Surveys the set down to a detail in pixels.
+    /// Makes the prepass of the set down to a detail in pixels.
     fn survey_to(&mut self, pixels: f64) -> Result<Prepass<'a>, RenderError> {
         let start = self.graph.initiator(self.growth.steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();

@@ -142,7 +142,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         Some(hidden)
     }
 
-    /// Creates the stamps of a pass, if they may be put in one opaque colour per class: under the conditions
+    /// Creates the sprites of a pass, if they may be put in one opaque colour per class: under the conditions
     /// of occlusion.
     pub(super) fn sprites(
         &mut self,

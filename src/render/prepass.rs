@@ -16,7 +16,7 @@ use crate::style::{Cap, ColorBy, Join, Style, Width};
 use super::culling::{Culling, starts_rings};
 use super::{Classes, WIDTHS_AN_OCTAVE};
 
-/// Approximate number of elements of a span, in surveys and in the walks that follow them.
+/// Approximate number of elements of a span, in prepasses and in the walks that follow them.
 const SPAN: u64 = 1 << 12;
 
 /// Approximate maximum number of points of a span, on which the size of its sketch depends.
@@ -115,7 +115,7 @@ pub struct Prepass<'g> {
 }
 
 impl<'g> Prepass<'g> {
-    /// Creates an empty survey.
+    /// Creates an empty prepass.
     #[must_use]
     pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
         Self {
@@ -144,13 +144,13 @@ impl<'g> Prepass<'g> {
         }
     }
 
-    /// Restricts the survey to visible subtrees.
+    /// Restricts the prepass to visible subtrees.
     #[must_use]
     pub(super) fn of_what_is_in(self, culling: Culling) -> Self {
         Self { culling, ..self }
     }
 
-    /// Lets the survey determine as well whether any outline meets a part of the plane.
+    /// Lets the prepass determine as well whether any outline meets a part of the plane.
     pub(super) fn of_what_comes_into(self, shown: Bounds) -> Self {
         Self {
             is_met: shown.meets(&self.bounds),
@@ -258,7 +258,7 @@ impl<'g> Prepass<'g> {
         self.use_value(value);
     }
 
-    /// Returns the survey of the approximant `fewer` steps earlier, which consists of the same elements.
+    /// Returns the prepass of the approximant `fewer` steps earlier, which consists of the same elements.
     pub(super) fn sooner(mut self, growth: &Growth<'_>, fewer: u32) -> Self {
         let Style { color_by, .. } = self.style;
         if *color_by == ColorBy::Age {
@@ -306,7 +306,7 @@ impl<'g> Prepass<'g> {
         !numbers_change && !self.graph.seeds
     }
 
-    /// Returns the survey of at least `elements` elements, if nothing else needs to be known about them: if
+    /// Returns the prepass of at least `elements` elements, if nothing else needs to be known about them: if
     /// they have one colour, or if objects determine it.
     pub(super) fn uncounted(&self, elements: u64) -> Option<Self> {
         let is_one = self.classes.count() == 1;
@@ -329,7 +329,7 @@ impl<'g> Prepass<'g> {
         self.graph.reaches(own)
     }
 
-    /// Adds the survey of the next span.
+    /// Adds the prepass of the next span.
     fn add(&mut self, span: &Self, seam: Seam) {
         self.bounds.add_all(&span.bounds);
         self.strokes |= span.strokes;
@@ -347,7 +347,7 @@ impl<'g> Prepass<'g> {
         }
     }
 
-    /// Completes the survey by a walk on several threads.
+    /// Completes the prepass by a walk on several threads.
     pub(super) fn walked(
         self,
         growth: &Growth<'_>,

@@ -34,9 +34,9 @@ pub(crate) struct Scene<'a> {
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
-    /// Kinds of colonies, computed when stamps are first made.
+    /// Kinds of colonies, computed when sprites are first made.
     pub(super) colonies: OnceLock<ColonyKinds>,
-    /// Minimum number of uses of a stamp.
+    /// Minimum number of uses of a sprite.
     pub(super) uses: u64,
     /// Whether one path fills and strokes closed chains.
     pub(super) fills_strokes: bool,
@@ -56,7 +56,7 @@ pub(super) enum Pass {
 }
 
 impl<'a> Scene<'a> {
-    /// Creates the scene of a surveyed approximant on a canvas.
+    /// Creates the scene of a measured approximant on a canvas.
     pub(crate) fn new(prepass: &Prepass<'a>, growth: &'a Growth<'a>, canvas: Canvas) -> Self {
         let (graph, style) = (prepass.graph(), prepass.style());
         let (classes, painted) = prepass.classes();
@@ -75,7 +75,7 @@ impl<'a> Scene<'a> {
         };
         let passes: Vec<_> = areas.into_iter().chain(painted).collect();
         if let Some(progress) = growth.progress {
-            // The survey, and a walk for every pass.
+            // The prepass, and a walk for every pass.
             let walks = u64::from(prepass.walked) + passes.len() as u64;
             progress.expect(prepass.elements * walks);
         }
@@ -166,7 +166,7 @@ impl Drawing for Scene<'_> {
 }
 
 impl<'a> Prepass<'a> {
-    /// Surveys an approximant: from the graph if it determines everything, otherwise by a walk. Colours that
+    /// Makes the prepass of an approximant: from the graph if it determines everything, otherwise by a walk. Colours that
     /// depend on steps span `steps` of them.
     pub(crate) fn of(
         graph: &'a Graph,

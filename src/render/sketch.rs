@@ -68,7 +68,7 @@ pub(super) struct Means<'a> {
     pub(super) broadens: bool,
     /// Occlusion.
     pub(super) hidden: Option<Arc<Occlusion>>,
-    /// Stamps of congruent runs and colonies.
+    /// Sprites of congruent runs and colonies.
     pub(super) sprites: Option<Arc<Sprites<'a>>>,
     /// Contribution mask of the pass.
     pub(super) aim: Arc<ContributionMask>,

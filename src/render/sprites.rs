@@ -1,4 +1,4 @@
-//! Stamps: the coverage of runs of small elements, and of small seeded fractals, drawn once for all that are
+//! Sprites: the coverage of runs of small elements, and of small seeded fractals, drawn once for all that are
 //! congruent.
 //!
 //! If the maps of a graph have few orientations, or all of a step have the same, runs differ by translations
@@ -37,16 +37,16 @@ const LINEAR: f64 = 4096.0;
 
 /// Minimum number of elements of a run that is stamped; an element with many pieces counts as several.
 const FEWEST_IN_RUN: u64 = 4;
-/// Minimum number of elements of a picture with stamps, counted likewise.
+/// Minimum number of elements of a picture with sprites, counted likewise.
 const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
 /// Maximum size of a run that is stamped, in pixels.
 const LARGEST: f64 = 32.0;
 
-/// Minimum average number of uses of a stamp.
+/// Minimum average number of uses of a sprite.
 pub(super) const USES: u64 = 3;
 
-/// Maximum memory of all stamps, in bytes.
+/// Maximum memory of all sprites, in bytes.
 const MOST_MEMORY: usize = 1 << 26;
 
 /// Number of tables with separate locks.
@@ -60,7 +60,7 @@ struct Key {
     painted: Painted,
 }
 
-/// Subject of a stamp.
+/// Subject of a sprite.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Of {
     /// Run, by the number of its block.
@@ -69,7 +69,7 @@ enum Of {
     Colony(usize),
 }
 
-/// Stamps with equal keys, by position in a pixel; `None` for stamps that could not be drawn.
+/// Sprites with equal keys, by position in a pixel; `None` for sprites that could not be drawn.
 type Places = [OnceLock<Option<Arc<Sprite>>>];
 
 /// Selection of painted elements.
@@ -95,7 +95,7 @@ impl Painted {
     }
 }
 
-/// Stamps of a pass.
+/// Sprites of a pass.
 pub(super) struct Sprites<'a> {
     stencil: SpritePaint,
     hidden: Arc<Occlusion>,
@@ -106,7 +106,7 @@ pub(super) struct Sprites<'a> {
 }
 
 impl<'a> Sprites<'a> {
-    /// Creates the stamps of a scene if many of its runs, or of its seeded fractals, are congruent.
+    /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
         stencil: SpritePaint,
@@ -153,7 +153,7 @@ impl<'a> Sprites<'a> {
 }
 
 impl Sprites<'_> {
-    /// Returns the stamp for a position, which is rounded to a grid of `phases` steps per pixel. The stamp is
+    /// Returns the sprite for a position, which is rounded to a grid of `phases` steps per pixel. The sprite is
     /// drawn if there is none yet for the position in the pixel.
     fn put(
         &self,
@@ -187,7 +187,7 @@ impl Sprites<'_> {
         Some(PlacedSprite { sprite, pixel })
     }
 
-    /// Returns the stamps of a key by position in a pixel, if there is memory for them.
+    /// Returns the sprites of a key by position in a pixel, if there is memory for them.
     fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
         let number = match key.of {
             Of::Run(number) => number,
@@ -212,7 +212,7 @@ impl Sprites<'_> {
         self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
     }
 
-    /// Draws a stamp with a linear map at a position in a pixel, inside a disc relative to that position.
+    /// Draws a sprite with a linear map at a position in a pixel, inside a disc relative to that position.
     fn drawn(
         &self,
         linear: DMat2,

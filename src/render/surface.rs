@@ -91,14 +91,14 @@ pub(crate) struct SegmentBatch {
     pub(crate) width: f32,
 }
 
-/// Stamp, and the pixel on which it is put.
+/// Sprite, and the pixel on which it is put.
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedSprite {
     pub(crate) sprite: Arc<Sprite>,
     pub(crate) pixel: [i64; 2],
 }
 
-/// Means by which stamps are drawn: shapes are filled, and lines are drawn with the pen.
+/// Means by which sprites are drawn: shapes are filled, and lines are drawn with the pen.
 #[derive(Clone)]
 pub(crate) struct SpritePaint {
     /// Pen of lines and outlines.
@@ -158,12 +158,12 @@ pub(crate) trait Surface {
     /// Draws tufts, within a path whose stroke permits them.
     fn tufts(&mut self, _: &[SegmentBatch]) {}
 
-    /// Returns the stencil of stamps that may be put in paths with this paint, if the surface permits them.
+    /// Returns the stencil of sprites that may be put in paths with this paint, if the surface permits them.
     /// Pixels that they cover repeatedly are covered once.
     fn stencil(&mut self, _: &Paint) -> Option<SpritePaint> {
         None
     }
-    /// Draws stamps, within a path whose paint permits them.
+    /// Draws sprites, within a path whose paint permits them.
     fn sprites(&mut self, _: &[PlacedSprite]) {}
 
     /// Returns the index of completely covered pixels, if paths with this paint are drawn in layers, each of

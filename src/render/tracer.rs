@@ -167,7 +167,7 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.stencil(paint)
     }
 
-    /// Draws stamps, regardless of the position of the pen.
+    /// Draws sprites, regardless of the position of the pen.
     pub(crate) fn sprites(&mut self, sprites: &[PlacedSprite]) {
         self.surface.sprites(sprites);
     }

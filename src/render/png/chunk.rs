@@ -34,7 +34,7 @@ enum Command {
     Region(Arc<Region>, [i64; 2]),
     /// Number of tufts.
     Tufts(usize),
-    /// Number of stamps.
+    /// Number of sprites.
     Sprites(usize),
 }
 

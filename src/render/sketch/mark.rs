@@ -96,7 +96,7 @@ pub(in crate::render) enum Mark {
     Curve,
     /// Number of tufts.
     Tufts(usize),
-    /// Stamps with equal paint keys.
+    /// Sprites with equal paint keys.
     Sprites { look: PaintKey, count: usize },
     /// End of a polygon, with whether it has returned to its start.
     Close { returned: bool },
@@ -108,7 +108,7 @@ pub(in crate::render) enum Mark {
     End(bool),
 }
 
-/// Marks with their points, tufts and stamps.
+/// Marks with their points, tufts and sprites.
 #[derive(Default)]
 pub(in crate::render) struct Sketch {
     pub(in crate::render) marks: Vec<Mark>,

@@ -102,7 +102,7 @@ impl Sketcher<'_> {
         true
     }
 
-    /// Draws the part of a colony that is painted, by a stamp or element by element.
+    /// Draws the part of a colony that is painted, by a sprite or element by element.
     pub(super) fn stamp_colony(&mut self, colony: &Colony<'_>) {
         let Some(sprites) = self.means.sprites.as_ref() else {
             return;
@@ -121,7 +121,7 @@ impl Sketcher<'_> {
         self.pass_by(Mark::Break);
     }
 
-    /// Adds one stamp to the last mark, or begins a mark.
+    /// Adds one sprite to the last mark, or begins a mark.
     fn mark_stamps(&mut self, kind: Kind) {
         let look = PaintKey {
             kind,
@@ -133,7 +133,7 @@ impl Sketcher<'_> {
         }
     }
 
-    /// Draws the part of a run that is painted by a stamp; returns whether there is a stamp.
+    /// Draws the part of a run that is painted by a sprite; returns whether there is a sprite.
     pub(super) fn sprite(&mut self, run: &Run<'_>, painted: Painted) -> bool {
         let sprites = self.means.sprites.as_ref();
         let Some(placed) = sprites.and_then(|sprites| sprites.of(self.scene, run, painted)) else {

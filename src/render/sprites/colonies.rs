@@ -1,4 +1,4 @@
-//! Stamps of colonies: seeded fractals, alone or with all their descendant fractals.
+//! Sprites of colonies: seeded fractals, alone or with all their descendant fractals.
 
 use std::convert::Infallible;
 
@@ -16,13 +16,13 @@ use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, 
 /// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
 
-/// Minimum number of uses of a stamp of a whole colony, relative to that of other stamps.
+/// Minimum number of uses of a sprite of a whole colony, relative to that of other sprites.
 const USES_OF_WHOLE: u64 = 5;
 /// Number of elements of descendant fractals for which a whole colony needs one more use, if that is more:
-/// these cost less as stamps of their own.
+/// these cost less as sprites of their own.
 const SEEDED_A_USE: u64 = 12;
 
-/// Maximum number of elements of a stamp of a whole colony.
+/// Maximum number of elements of a sprite of a whole colony.
 const MOST_ELEMENTS: u64 = 1 << 10;
 
 /// Colonies that are stamped in a pass.
@@ -66,7 +66,7 @@ pub(in crate::render) enum Put {
 }
 
 impl<'a> Colonies<'a> {
-    /// Creates the colonies of a scene, if any are numerous enough for stamps.
+    /// Creates the colonies of a scene, if any are numerous enough for sprites.
     pub(super) fn of(
         scene: &'a Scene<'a>,
         hidden: &Occlusion,
@@ -104,7 +104,7 @@ impl Means {
         radius: 0.0,
     };
 
-    /// Decides about the colonies of a kind, for stamps at `places` positions in a pixel.
+    /// Decides about the colonies of a kind, for sprites at `places` positions in a pixel.
     fn of(
         scene: &Scene<'_>,
         hidden: &Occlusion,
@@ -174,7 +174,7 @@ impl Painted {
 }
 
 impl Sprites<'_> {
-    /// Returns the part of a colony that is put as a stamp.
+    /// Returns the part of a colony that is put as a sprite.
     pub(in crate::render) fn takes(&self, colony: &Colony<'_>) -> Taken {
         let means = self.colonies.as_ref().and_then(|all| all.means(colony));
         means.map_or(Taken::Nothing, |(_, means)| means.taken)

@@ -1,4 +1,4 @@
-//! Stamps of runs of elements.
+//! Sprites of runs of elements.
 
 use crate::fast_hash::FastSet;
 use crate::geometry::{DAffine2, DMat2, Direction};
@@ -61,7 +61,7 @@ impl Runs {
 }
 
 impl Sprites<'_> {
-    /// Returns the stamp of the part of a run that is painted.
+    /// Returns the sprite of the part of a run that is painted.
     pub(in crate::render) fn of(
         &self,
         scene: &Scene<'_>,

@@ -1,4 +1,4 @@
-//! Tests of stamps: pictures with stamps, against pictures in which every element is drawn.
+//! Tests of sprites: pictures with sprites, against pictures in which every element is drawn.
 
 use std::num::NonZero;
 
@@ -30,7 +30,7 @@ fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
     (differences.max().unwrap(), mean, of_means.abs())
 }
 
-/// Compares a picture made with stamps, for an assumed large number of elements, with one without stamps.
+/// Compares a picture made with sprites, for an assumed large number of elements, with one without sprites.
 fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
@@ -49,7 +49,7 @@ fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
     let growth = Growth::steps(30);
     let layout = Layout::find(&graph, &growth, &options).unwrap();
     let mut scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
-    // Assume enough elements for stamps.
+    // Assume enough elements for sprites.
     scene.elements = u64::MAX;
     if graph.seeds {
         scene.uses = 0;

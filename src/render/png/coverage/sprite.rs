@@ -1,4 +1,4 @@
-//! Stamps: coverage that is drawn once and put in many places.
+//! Sprites: coverage that is drawn once and put in many places.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -34,7 +34,7 @@ pub(crate) struct Print {
     cells: Box<[u64]>,
 }
 
-/// Small coverage buffers on which a stamp is drawn.
+/// Small coverage buffers on which a sprite is drawn.
 pub(crate) struct SpriteSheet {
     /// Buffer of areas.
     areas: CoverageBuffer,
@@ -102,7 +102,7 @@ impl SpriteSheet {
         }
     }
 
-    /// Returns the stamp, if everything could be drawn. `pixel` is the pixel of the sheet that is put on the
+    /// Returns the sprite, if everything could be drawn. `pixel` is the pixel of the sheet that is put on the
     /// pixel of the picture.
     pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Sprite> {
         let strokes = self.strokes.map(|plane| Print::of(plane, pixel));
