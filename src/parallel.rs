@@ -16,6 +16,34 @@ pub fn all_cores() -> NonZero<usize> {
     thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
 }
 
+/// Applies `work` to every item, in any order on at most `threads` threads, including the calling one.
+pub(crate) fn for_each<T: Send>(
+    items: impl Iterator<Item = T> + Send,
+    threads: usize,
+    work: impl Fn(T) + Sync,
+) {
+    let mut items = items.peekable();
+    let first = items.next();
+    let others = if items.peek().is_some() {
+        threads.saturating_sub(1)
+    } else {
+        0
+    };
+    let items = Mutex::new(first.into_iter().chain(items));
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work_on = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..others {
+            scope.spawn(work_on);
+        }
+        work_on();
+    });
+}
+
 /// A pool of threads that execute submitted jobs. The thread that submits them helps while it waits.
 pub(crate) struct Team<'w> {
     queue: Mutex<Queue<'w>>,

@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-use crate::parallel::pick;
+use crate::parallel::{for_each, pick};
 use crate::render::covered::CoveredPixels;
 
-use super::coverage::{CoverageBuffer, MARGIN};
+use super::coverage::{CoverageBuffer, Drain, MARGIN};
 
 /// Maximum total number of pixels of the buffers other than the first.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -22,6 +22,8 @@ pub(super) struct CoverageBuffers {
     /// Buffers; `None` while nothing is covered.
     planes: Vec<Mutex<Option<CoverageBuffer>>>,
     filled: Arc<CoveredPixels>,
+    /// Number of threads that colour pixels.
+    threads: usize,
 }
 
 impl CoverageBuffers {
@@ -41,6 +43,7 @@ impl CoverageBuffers {
             planes: std::iter::repeat_with(Mutex::default).take(count).collect(),
             filled: Arc::new(CoveredPixels::new(picture[0], rows.clone(), MARGIN, count)),
             rows,
+            threads,
         }
     }
 
@@ -49,7 +52,9 @@ impl CoverageBuffers {
         if self.rows.len() != rows.len() {
             return None;
         }
-        let Self { picture, .. } = self;
+        let Self {
+            picture, threads, ..
+        } = self;
         let filled = CoveredPixels::new(picture[0], rows.clone(), MARGIN, self.planes.len());
         let planes = (0..).zip(self.planes).map(|(number, plane)| {
             let mut plane = plane.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -64,6 +69,7 @@ impl CoverageBuffers {
             rows: rows.clone(),
             planes: planes.collect(),
             filled: Arc::new(filled),
+            threads,
         })
     }
 
@@ -99,20 +105,16 @@ impl CoverageBuffers {
         })
     }
 
-    /// Calls `paint` with every covered pixel and its coverage, in any order, and clears the buffers.
-    pub(super) fn drain(&self, paint: impl FnMut(usize, u32)) {
-        let mut planes = self.planes.iter().map(lock);
-        let Some(mut first) = planes.next() else {
-            return;
-        };
+    /// Calls `paint` with every covered pixel and its coverage, in any order on all threads, and clears the
+    /// buffers. `pixels` are those of the rows, row by row.
+    pub(super) fn drain<T: Send>(&self, pixels: &mut [T], paint: impl Fn(&mut T, u32) + Sync) {
+        let mut planes: Vec<_> = self.planes.iter().map(lock).collect();
         self.filled.end();
-        let first = self.made(0, &mut first);
-        for mut other in planes {
-            if let Some(other) = &mut *other {
-                first.take_over(other);
-            }
+        let made = planes.iter_mut().filter_map(|plane| plane.as_mut());
+        if let Some(drain) = Drain::of(made) {
+            let blocks = drain.blocks(pixels);
+            for_each(blocks, self.threads, |block| drain.paint(block, &paint));
         }
-        first.drain(paint);
     }
 }
 

@@ -161,18 +161,17 @@ impl Part {
 
     /// Colours the coverage, once all threads have finished.
     pub(super) fn settle(&mut self) {
-        let data = self.pixmap.data_mut();
+        let (pixels, _) = self.pixmap.data_mut().as_chunks_mut::<4>();
         for Layer { planes, ink } in &mut self.layers {
             let (Some(planes), Some(ink)) = (planes, ink.take()) else {
                 continue;
             };
             let [red, green, blue, opacity] = ink.rgba();
             let whole = WHOLE * 255;
-            planes.drain(|pixel, covered| {
+            planes.drain(pixels, |values, covered| {
                 let part = covered * u32::from(opacity);
-                let values = &mut data[4 * pixel..][..4];
                 if part == whole {
-                    values.copy_from_slice(&[red, green, blue, 255]);
+                    *values = [red, green, blue, 255];
                     return;
                 }
                 for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {

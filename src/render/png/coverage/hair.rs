@@ -1,6 +1,5 @@
 //! Hairlines: strokes so thin that their lines would fall between the samples.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::{CoverageBuffer, FINE, MARGIN, Position, index};
@@ -66,29 +65,20 @@ pub(super) struct Hairs {
 }
 
 impl Hairs {
-    /// Returns the fraction of a cell's light that hairlines absorb, and clears the cell.
+    /// Returns the absorption of a cell, in `UNIT`s, and clears the cell.
     #[inline]
-    pub(super) fn take(&mut self, cell: usize) -> f32 {
-        let cell = self.cells.get_mut(cell);
-        let taken = cell.map_or(0, |cell| std::mem::take(cell.get_mut()));
-        if taken == 0 {
-            return 0.0;
-        }
-        #[expect(clippy::cast_precision_loss, reason = "seven digits are enough")]
-        let taken = taken as f32;
-        -libm::expm1f(-taken / UNIT)
+    pub(super) fn take(&self, cell: usize) -> u32 {
+        let Some(cell) = self.cells.get(cell) else {
+            return 0;
+        };
+        let taken = cell.load(Relaxed);
+        cell.store(0, Relaxed);
+        taken
     }
 
     /// Returns whether no hairline has ever been drawn.
     pub(super) fn is_empty(&self) -> bool {
         self.cells.is_empty()
-    }
-
-    /// Allocates cells if `others` has some.
-    pub(super) fn make_room_for(&mut self, others: &Self) {
-        if self.cells.is_empty() {
-            self.make_room(others.cells.len());
-        }
     }
 
     fn make_room(&mut self, count: usize) {
@@ -97,16 +87,23 @@ impl Hairs {
             .collect();
     }
 
-    /// Moves the absorption of some cells from `others` to this one.
-    pub(super) fn take_over(&mut self, others: &mut Self, cells: Range<usize>) {
-        if others.cells.is_empty() {
-            return;
-        }
-        let others = &mut others.cells[cells.clone()];
-        for (cell, other) in self.cells[cells].iter().zip(others) {
-            add(cell, std::mem::take(other.get_mut()));
-        }
+    /// Returns whether no cell absorbs anything.
+    #[cfg(test)]
+    pub(super) fn is_clear(&self) -> bool {
+        self.cells.iter().all(|cell| cell.load(Relaxed) == 0)
     }
+}
+
+/// Returns the fraction of a pixel's light that hairlines absorb, from the absorptions of several buffers.
+#[inline]
+pub(super) fn absorbed(taken: impl Iterator<Item = u32>) -> f32 {
+    let taken = taken.fold(0, u32::saturating_add);
+    if taken == 0 {
+        return 0.0;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "seven digits are enough")]
+    let taken = taken as f32;
+    -libm::expm1f(-taken / UNIT)
 }
 
 #[inline]

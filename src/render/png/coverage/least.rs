@@ -2,9 +2,10 @@
 //! pieces become.
 //!
 //! The sides of a convex shape of width w, the least distance between two parallel lines that enclose it, are
-//! moved outwards by (1 − w) / 2 pixels. Shapes of at least a pixel are drawn as they are; shrinking shapes
+//! moved outwards by (1 − w) / 2 pixels; a slim shape no longer than a pixel becomes a line of equal area. Shapes of at least a pixel are drawn as they are; shrinking shapes
 //! tend to a dot or a line of a round pen of one pixel.
 
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::polygon::{HalfPlane, MOST_PIXELS, MOST_VERTICES, SOME_VERTICES};
@@ -19,6 +20,10 @@ const LONGEST_DOT: i64 = 25;
 
 /// Width below which a shape has lost its sides by rounding, in hundredths of a pixel.
 const LINE: f64 = 1.0;
+
+/// Ratio of the width of a shape no longer than a pixel to its length below which a line replaces it, as
+/// for the petals of a flower: many sides would be moved for the same pixels.
+const SLIM: f64 = 0.5;
 
 /// Pen for dots and lines.
 static PEN: LazyLock<RoundPen> = LazyLock::new(|| RoundPen::new(NARROWEST as f64 / FINE as f64));
@@ -44,6 +49,12 @@ impl CoverageBuffer {
             if let Some(middle) = middle(vertices) {
                 self.dot(&PEN, middle);
             }
+            return true;
+        }
+        if longest <= NARROWEST
+            && let Some(ends) = slim(vertices)
+        {
+            self.pen_line(ends);
             return true;
         }
         let mut hull = [[0; 2]; SOME_VERTICES];
@@ -82,10 +93,13 @@ impl CoverageBuffer {
             self.moved(vertices, missing / 2.0, ends);
             return true;
         }
-        let [from, to] = ends;
+        self.pen_line(ends);
+        width < LINE || self.polygon(vertices)
+    }
+
+    fn pen_line(&mut self, [from, to]: [Position; 2]) {
         self.dot(&PEN, from);
         self.line(&PEN, from, to);
-        width < LINE || self.polygon(vertices)
     }
 
     /// Covers a small convex polygon with its sides moved outwards by `by` hundredths of a pixel, and
@@ -202,6 +216,38 @@ fn width(vertices: &[Position]) -> f64 {
     }
 }
 
+/// Returns the ends of the line of [`PEN`] that replaces a shape no longer than a pixel, if the shape is slim.
+/// The line covers the area of the shape once it is a pixel wide.
+#[expect(clippy::cast_possible_truncation, reason = "ends of a small shape")]
+fn slim(vertices: &[Position]) -> Option<[Position; 2]> {
+    let farthest = |from: &Position| {
+        let distance = |to: &&Position| (to[0] - from[0]).pow(2) + (to[1] - from[1]).pow(2);
+        vertices.iter().max_by_key(distance).copied()
+    };
+    // One of the longest diagonals, or nearly so, of a slim shape.
+    let from = farthest(vertices.first()?)?;
+    let to = farthest(&from)?;
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let across = vertices
+        .iter()
+        .map(|at| way[0] * (at[1] - from[1]) - way[1] * (at[0] - from[0]));
+    let (least, most) = across.fold((0, 0), |(least, most), at| (least.min(at), most.max(at)));
+    let square = (way[0] * way[0] + way[1] * way[1]) as f64;
+    // Width and length, times the length.
+    let width = (most - least) as f64;
+    if width > SLIM * square || square == 0.0 {
+        return None;
+    }
+    // A cap is a half disc instead of a half square.
+    let lost = (1.0 - PI / 4.0) * NARROWEST as f64;
+    let by = (width - lost * square.sqrt()) / (2.0 * square);
+    let step = way.map(|along| (along as f64 * by).round() as i64);
+    Some([
+        [from[0] + step[0], from[1] + step[1]],
+        [to[0] - step[0], to[1] - step[1]],
+    ])
+}
+
 /// Returns two vertices at the largest distance from each other.
 fn farthest(vertices: &[Position]) -> [Position; 2] {
     let first = vertices.first().copied().unwrap_or_default();
@@ -229,8 +275,7 @@ mod tests {
     fn ink(vertices: &[[i64; 2]]) -> f64 {
         let mut plane = CoverageBuffer::new([30, 30]);
         assert!(plane.shape(vertices));
-        let mut ink = 0;
-        plane.drain(|_, covered| ink += covered);
+        let ink = plane.drained().iter().sum::<u32>();
         f64::from(ink) / f64::from(WHOLE)
     }
 
@@ -269,6 +314,37 @@ mod tests {
                     "{x}, {y}, {width}: {ink} of {long}"
                 );
             }
+        }
+    }
+
+    /// The pen stands on a grid of sixteenths of a pixel, hence the tolerance of a single petal.
+    #[test]
+    fn petals_cover_their_broadened_area() {
+        let petal = [
+            [-1.0, 0.0],
+            [-0.5, -1.0],
+            [0.5, -1.0],
+            [1.0, 0.0],
+            [0.5, 1.0],
+            [-0.5, 1.0],
+        ];
+        for (long, ratio) in [(40.0, 0.4), (45.0, 0.1), (60.0, 0.3), (90.0, 0.45)] {
+            let wide: f64 = long * ratio;
+            let expected = 1.0 + (long - wide) / 100.0;
+            let errors = (0..200).map(|number| {
+                let (sine, cosine) = (f64::from(number) * 0.3).sin_cos();
+                let vertices = petal.map(|[x, y]| {
+                    let (x, y) = (x * long / 2.0, y * wide / 2.0);
+                    let turned = [x * cosine - y * sine, x * sine + y * cosine];
+                    #[expect(clippy::cast_possible_truncation, reason = "a small shape")]
+                    turned.map(|at| (1000.0 + f64::from(number) * 7.3 + at).round() as i64)
+                });
+                let error = ink(&vertices) - expected;
+                assert!(error.abs() < 0.25, "{long}, {ratio}, {number}: {error}");
+                error
+            });
+            let mean = errors.sum::<f64>() / 200.0;
+            assert!(mean.abs() < 0.05, "{long}, {ratio}: {mean} in the mean");
         }
     }
 

@@ -7,6 +7,7 @@
 
 mod area;
 mod curve;
+mod drain;
 mod hair;
 mod least;
 mod pen;
@@ -23,6 +24,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 pub(crate) use area::{MOST_CORNERS, has_room};
 pub(crate) use curve::{bounding, bounding_within, flattened, flattened_within};
+pub(crate) use drain::Drain;
 pub(crate) use hair::HairPen;
 use hair::Hairs;
 pub(crate) use pen::RoundPen;
@@ -151,10 +153,8 @@ impl CoverageBuffer {
         Arc::clone(&self.cells)
     }
 
-    /// Returns the rows and columns, including margins, where anything may be covered, and resets them.
-    fn take_touched(&mut self) -> [Range<usize>; 2] {
-        let Touched { columns, rows } = std::mem::replace(&mut self.touched, Touched::NOTHING);
-        let rows = rows.map(|row| row.saturating_sub(self.top));
+    /// Returns the rows and columns of cells, including margins, where anything may be covered.
+    fn cells_in(&self, touched: Touched) -> [Range<usize>; 2] {
         let range = |[first, last]: [i64; 2], side: i64| {
             let (first, last) = (first.max(-MARGIN), last.min(side + MARGIN - 1));
             if first > last {
@@ -162,59 +162,11 @@ impl CoverageBuffer {
             }
             index(first + MARGIN)..index(last + MARGIN + 1)
         };
-        [range(rows, self.size[1]), range(columns, self.size[0])]
-    }
-
-    /// Moves the coverage of another buffer of the same size to this one. The order of such moves has no
-    /// effect.
-    pub(crate) fn take_over(&mut self, other: &mut Self) {
-        let touched = other.touched;
-        self.touched.add(touched.columns, touched.rows);
-        self.hairs.make_room_for(&other.hairs);
-        let [rows, columns] = other.take_touched();
-        for row in rows {
-            let start = row * self.stride;
-            let cells = start + columns.start..start + columns.end;
-            let others = &other.cells[cells.clone()];
-            for (cell, other) in self.cells[cells.clone()].iter().zip(others) {
-                let samples = other.load(Relaxed);
-                if samples > 0 {
-                    cover(cell, samples);
-                    other.store(0, Relaxed);
-                }
-            }
-            self.hairs.take_over(&mut other.hairs, cells);
-        }
-    }
-
-    /// Calls `paint` with every covered pixel and its coverage, in any order, and clears the buffer. Pixels
-    /// are numbered row by row.
-    pub(crate) fn drain(&mut self, mut paint: impl FnMut(usize, u32)) {
-        let [rows, columns] = self.take_touched();
-        let [width, height] = self.size.map(index);
-        let margin = index(MARGIN);
-        let has_hairs = !self.hairs.is_empty();
-        // The margins are cleared, too.
-        let seen = margin..margin + width;
-        for row in rows {
-            let start = row * self.stride;
-            let shown = (margin..margin + height).contains(&row);
-            let cells = start + columns.start..start + columns.end;
-            for (column, cell) in columns.clone().zip(&self.cells[cells]) {
-                let samples = cell.load(Relaxed).count_ones();
-                // Most cells of many layers are empty.
-                if samples == 0 && !has_hairs {
-                    continue;
-                }
-                cell.store(0, Relaxed);
-                let hairs = self.hairs.take(start + column);
-                let covered = covered(samples, hairs);
-                if covered > 0 && shown && seen.contains(&column) {
-                    let pixel = (row - margin) * width + column - margin;
-                    paint(pixel, covered);
-                }
-            }
-        }
+        let rows = touched.rows.map(|row| row.saturating_sub(self.top));
+        [
+            range(rows, self.size[1]),
+            range(touched.columns, self.size[0]),
+        ]
     }
 }
 
@@ -222,19 +174,6 @@ impl CoverageBuffer {
 #[inline(always)]
 fn cover(cell: &AtomicU64, samples: u64) {
     cell.store(cell.load(Relaxed) | samples, Relaxed);
-}
-
-/// Returns the coverage of a pixel from its covered samples and from the covered fraction of the rest.
-#[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "no more than `WHOLE`, and exact"
-)]
-fn covered(samples: u32, part: f32) -> u32 {
-    let free = WHOLE - samples * (WHOLE / SAMPLES);
-    WHOLE - free + (free as f32 * part + 0.5) as u32
 }
 
 /// Converts a number to an index; negative numbers become larger than any index of a buffer.

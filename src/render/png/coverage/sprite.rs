@@ -115,8 +115,8 @@ impl SpriteSheet {
 
 impl Print {
     /// Creates the print of a buffer whose pixel `pixel` is its origin.
-    fn of(mut plane: CoverageBuffer, pixel: [i64; 2]) -> Self {
-        let [rows, columns] = plane.take_touched();
+    fn of(plane: CoverageBuffer, pixel: [i64; 2]) -> Self {
+        let [rows, columns] = plane.cells_in(plane.touched);
         let stride = plane.stride;
         let first = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
         let cells = rows.clone().flat_map(|row| {
@@ -178,12 +178,6 @@ mod tests {
     use super::super::FINE;
     use super::{CoverageBuffer, RoundPen, SpriteSheet};
 
-    fn drained(plane: &mut CoverageBuffer) -> Vec<(usize, u32)> {
-        let mut covered = Vec::new();
-        plane.drain(|pixel, part| covered.push((pixel, part)));
-        covered
-    }
-
     #[test]
     fn a_stamp_covers_what_was_drawn_wherever_it_is_put() {
         let pen = Arc::new(RoundPen::new(1.0));
@@ -210,8 +204,8 @@ mod tests {
                 }
             }
             assert_eq!(
-                placed.each_mut().map(drained),
-                drawn.each_mut().map(drained),
+                placed.each_mut().map(CoverageBuffer::drained),
+                drawn.each_mut().map(CoverageBuffer::drained),
                 "{pixel:?}"
             );
         }

@@ -2,10 +2,9 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "positions are small")]
 
-use std::sync::atomic::Ordering::Relaxed;
-
 use proptest::prelude::*;
 
+use super::drain::drained;
 use super::{CoverageBuffer, HairPen, Position, RoundPen, SAMPLES, WHOLE};
 
 const SIZE: u32 = 64;
@@ -27,26 +26,14 @@ fn lines_go_on_on_other_planes() {
         plane.reach(&pen, line[0]);
         plane.line(&pen, line[0], line[1]);
     }
-    let [first, others @ ..] = &mut planes;
-    others.iter_mut().for_each(|other| first.take_over(other));
-    assert!(drained(first) == whole);
-    others
-        .iter_mut()
-        .for_each(|other| assert!(other.cells.iter().all(|cell| cell.load(Relaxed) == 0)));
+    assert!(drained(&mut planes) == whole);
 }
 
 /// Returns the coverage of every pixel.
 fn covered(draw: impl FnOnce(&mut CoverageBuffer)) -> Vec<u32> {
     let mut plane = CoverageBuffer::new([SIZE; 2]);
     draw(&mut plane);
-    drained(&mut plane)
-}
-
-fn drained(plane: &mut CoverageBuffer) -> Vec<u32> {
-    let mut covered = vec![0; (SIZE * SIZE) as usize];
-    plane.drain(|pixel, part| covered[pixel] = part);
-    plane.drain(|pixel, _| panic!("pixel {pixel} is still covered"));
-    covered
+    plane.drained()
 }
 
 /// Returns the number of covered samples of every pixel.
@@ -135,7 +122,9 @@ proptest! {
         let pens = [0.7, 1.5, 3.0].map(RoundPen::new);
         let draw = |plane: &mut CoverageBuffer, lines: &[(Position, Position)]| {
             for (from, to) in lines {
-                plane.line(&pens[from[0].unsigned_abs() as usize % 3], *from, *to);
+                let pen = &pens[from[0].unsigned_abs() as usize % 3];
+                plane.reach(pen, *from);
+                plane.line(pen, *from, *to);
             }
         };
         let once = samples(|plane| draw(plane, &lines));
@@ -195,10 +184,7 @@ proptest! {
         for (line, number) in lines.iter().zip(0..) {
             draw(&mut halves[number % 2], line);
         }
-        let [mut one, mut other] = halves;
-        one.take_over(&mut other);
-        prop_assert!(whole == drained(&mut one));
-        prop_assert!(drained(&mut other).iter().all(|&part| part == 0));
+        prop_assert!(whole == drained(&mut halves));
     }
 
     #[test]
