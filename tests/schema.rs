@@ -27,8 +27,8 @@ fn validator(shelf: Shelf) -> Validator {
 
 /// Parses a text as editors do, by YAML 1.2.
 fn yaml(text: &str) -> Option<Value> {
-    let options = serde_yaml::options! { strict_booleans: true };
-    serde_yaml::from_str_with_options(text, options).ok()
+    let options = serde_saphyr::options! { strict_booleans: true };
+    serde_saphyr::from_str_with_options(text, options).ok()
 }
 
 /// Returns the shelf of a file by its content.

@@ -1,8 +1,7 @@
 //! Parsing of YAML to [`Node`](super::node::Node)s and writing of YAML.
 //!
-//! The parser builds on the event parser of `serde-saphyr`, not on its `Spanned` values: only events
-//! contain the quoting of scalars and the ends of collections, and only they allow parsing to continue
-//! after a mistake.
+//! The parser builds on the events of `granit-parser`, not on deserialized values: only events contain the
+//! quoting of scalars and the ends of collections, and only they allow parsing to continue after a mistake.
 
 mod limits;
 mod read;

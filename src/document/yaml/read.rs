@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_yaml::granit_parser::{Event, Parser, ScalarStyle, Span, StructureStyle, options};
+use granit_parser::{Event, Parser, ScalarStyle, Span, StructureStyle, options};
 
 use super::limits::{Budget, MAX_DEPTH, Size, check_depth};
 use super::repair::{self, Item};
