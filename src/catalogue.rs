@@ -11,14 +11,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use include_dir::{Dir, File, include_dir};
-
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
 use crate::model::Kind;
 
 pub use file::{cannot_be_read, open_file};
 
-static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/library");
+/// The embedded library: files with their paths in it, sorted by path.
+const EMBEDDED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/library.rs"));
 
 /// Category of a library file: the folder in which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -319,11 +318,9 @@ impl Catalogue {
         if let Some(path) = &entry.path {
             return read_file(path);
         }
-        let name = format!("{}/{}.yaml", entry.shelf.folder(), entry.name);
-        let bytes = embedded(entry.shelf)
-            .find(|file| file.path().as_os_str() == name.as_str())
-            .map_or(&[][..], |file| file.contents());
-        Source::read(format!("library/{name}"), bytes.to_vec())
+        let text = embedded(entry.shelf, &entry.name).unwrap_or_default();
+        let (folder, name) = (entry.shelf.folder(), &entry.name);
+        Ok(Source::new(format!("library/{folder}/{name}.yaml"), text))
     }
 
     /// Returns all files of the given name on the given shelves, in the order of lookup: the first
@@ -353,8 +350,7 @@ impl Catalogue {
             }
         }
         for &shelf in shelves {
-            let embedded = EMBEDDED.get_file(format!("{}/{name}.yaml", shelf.folder()));
-            found.extend(embedded.map(|_| entry(shelf, None)));
+            found.extend(embedded(shelf, name).map(|_| entry(shelf, None)));
         }
         found
     }
@@ -365,8 +361,10 @@ impl Catalogue {
     pub fn entries(&self) -> Vec<LibraryFile> {
         let mut entries = BTreeMap::new();
         for shelf in Shelf::ALL {
-            for file in embedded(shelf) {
-                add(&mut entries, shelf, file.path(), None);
+            for (path, _) in EMBEDDED {
+                if let Some((_, name)) = on_shelf(&[shelf], path) {
+                    add(&mut entries, shelf, Path::new(name), None);
+                }
             }
             for folder in self.folders.iter().rev() {
                 let own = (shelf == Shelf::Rules).then(|| folder.clone());
@@ -394,12 +392,11 @@ fn on_shelf<'n>(shelves: &[Shelf], name: &'n str) -> Option<(Shelf, &'n str)> {
     Some((*shelf, name))
 }
 
-/// Iterates over the embedded files of a shelf.
-fn embedded(shelf: Shelf) -> impl Iterator<Item = &'static File<'static>> {
-    EMBEDDED
-        .get_dir(shelf.folder())
-        .into_iter()
-        .flat_map(Dir::files)
+/// Returns the text of an embedded file.
+fn embedded(shelf: Shelf, name: &str) -> Option<&'static str> {
+    let path = format!("{}/{name}.yaml", shelf.folder());
+    let place = EMBEDDED.binary_search_by_key(&path.as_str(), |(path, _)| path);
+    place.ok().map(|place| EMBEDDED[place].1)
 }
 
 fn add(
