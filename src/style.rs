@@ -32,9 +32,10 @@ impl Colour {
     /// Returns `None` if the text is not a colour.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
-        colorgrad::Color::from_html(text)
-            .ok()
-            .map(|colour| Self(colour.to_rgba8()))
+        let colour = colorgrad::Color::from_html(text)
+            .or_else(|_| colorgrad::Color::from_html(without_names(text)))
+            .ok()?;
+        Some(Self(colour.to_rgba8()))
     }
 
     /// Returns red, green, blue and alpha.
@@ -55,6 +56,21 @@ impl Colour {
     pub fn opacity(self) -> f64 {
         f64::from(self.0[3]) / 255.0
     }
+}
+
+/// The named colours of CSS (W3C, CSS Color Module Level 4, section 6.1), a line each: name and `#rrggbb`.
+const NAMES: &str = include_str!("style/names.txt");
+
+/// Replaces the names of CSS colours by their values, in any place: `oklch(from teal l c 0)`.
+fn without_names(text: &str) -> String {
+    let end = |c: char| !c.is_ascii_alphabetic();
+    let words = text.split_inclusive(end).map(|word| {
+        let name = word.trim_end_matches(end);
+        let mut named = NAMES.lines().filter_map(|line| line.split_once(' '));
+        let value = named.find(|(known, _)| known.eq_ignore_ascii_case(name));
+        value.map_or(name, |(_, value)| value).to_owned() + &word[name.len()..]
+    });
+    words.collect()
 }
 
 /// Writes `#rrggbb`, without the opacity. The alternate form writes `#rrggbbaa` unless the colour is
@@ -288,6 +304,37 @@ impl View {
         Self {
             window: self.window.map(|window| place.origin_of_window(window)),
             ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Colour;
+
+    #[test]
+    fn names_are_those_of_css() {
+        for (text, rgba) in [
+            ("teal", [0, 128, 128, 255]),
+            ("RebeccaPurple", [102, 51, 153, 255]),
+            ("lightslategrey", [119, 136, 153, 255]),
+            ("tan", [210, 180, 140, 255]),
+            ("transparent", [0; 4]),
+            ("3b6", [51, 187, 102, 255]),
+            ("rgb(from teal g b r / 0.2)", [128, 128, 0, 51]),
+            ("rgb(from RGB(from Gray r g 0) b g r)", [0, 128, 128, 255]),
+        ] {
+            assert_eq!(Colour::parse(text).map(Colour::rgba), Some(rgba), "{text}");
+        }
+        for text in [
+            "",
+            "teal teal",
+            "tael",
+            "#teal",
+            "rgb(teal)",
+            "currentcolor",
+        ] {
+            assert_eq!(Colour::parse(text), None, "{text}");
         }
     }
 }
