@@ -104,6 +104,7 @@ pub mod measure;
 pub mod metadata;
 pub mod model;
 pub mod parallel;
+mod random;
 mod readable;
 pub mod render;
 mod resolve;

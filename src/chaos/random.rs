@@ -1,20 +1,9 @@
 //! Random words for walkers side by side.
 
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::Rng;
+use crate::random::{GOLDEN, Pcg, mix};
 
 /// Number of walkers side by side.
 pub(super) const LANES: usize = 32;
-
-/// 2⁶⁴ divided by the golden ratio, odd: the increment of SplitMix64.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014).
-fn mix(z: u64) -> u64 {
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
 
 /// SplitMix64 with a state derived from a seed and the number of a stream.
 struct Seeds(u64);
@@ -71,25 +60,25 @@ impl Lanes {
 
 /// A generator for occasional draws.
 #[derive(Clone, Debug)]
-pub(super) struct Scalar(Pcg64Mcg);
+pub(super) struct Scalar(Pcg);
 
 impl Scalar {
     pub(super) fn new(seed: u64, stream: u64) -> Self {
         // The complement gives a stream different from the one by which walkers choose their maps.
         let mut seeds = Seeds::new(!seed, stream);
         let (low, high) = (seeds.next(), seeds.next());
-        Self(Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)))
+        Self(Pcg::new(high, low))
     }
 
     /// Returns a random word.
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
     pub(super) fn word(&mut self) -> u32 {
-        self.0.next_u32()
+        self.0.bits() as u32
     }
 
     /// Returns a number in [0, 1) with 53 random bits.
-    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
     pub(super) fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 }
 

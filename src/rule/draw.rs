@@ -4,10 +4,8 @@
 //! as listed. Its representation is a 64-bit hash that takes one mixing step a replacement. A draw
 //! therefore does not depend on other draws, on the order of the walk or on the number of steps.
 
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::Rng;
-
 use crate::expression::{Interval, Program};
+use crate::random::{self, GOLDEN, Pcg};
 
 /// Hash of a seed and of an element's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,22 +28,15 @@ impl Path {
     }
 
     /// Returns the random number stream of a name at this path.
-    fn stream(self, name: u64) -> Pcg64Mcg {
+    fn stream(self, name: u64) -> Pcg {
         let high = mix(self.0 ^ name);
-        let low = mix(high.wrapping_add(GOLDEN));
-        Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low))
+        Pcg::new(high, mix(high.wrapping_add(GOLDEN)))
     }
 }
 
-/// 2⁶⁴ divided by the golden ratio, odd: the increment of SplitMix64.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// Applies an increment and the finaliser of SplitMix64 (Steele, Lea & Flood 2014).
+/// Applies a step of SplitMix64.
 fn mix(value: u64) -> u64 {
-    let z = value.wrapping_add(GOLDEN);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+    random::mix(value.wrapping_add(GOLDEN))
 }
 
 /// Returns the FNV-1a hash of a name; it separates the streams of the variables of a path.
@@ -70,12 +61,6 @@ fn normal(interval: Interval) -> f64 {
     } else {
         beyond(low) - beyond(high)
     }
-}
-
-/// Draws a number from [0, 1) with 53 random bits.
-#[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
-fn unit(stream: &mut Pcg64Mcg) -> f64 {
-    (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }
 
 /// Distribution of a variable of a generator's random function.
@@ -188,12 +173,12 @@ impl Variable {
         match &self.distribution {
             Distribution::Uniform(low, high) => {
                 let (low, high) = (low.eval(slots), high.eval(slots));
-                low + (high - low) * unit(&mut stream)
+                low + (high - low) * stream.unit()
             }
             Distribution::Normal(mean, deviation) => {
                 // 1 − u lies in (0, 1]: its logarithm is finite.
-                let radius = (-2.0 * libm::log(1.0 - unit(&mut stream))).sqrt();
-                let angle = std::f64::consts::TAU * unit(&mut stream);
+                let radius = (-2.0 * libm::log(1.0 - stream.unit())).sqrt();
+                let angle = std::f64::consts::TAU * stream.unit();
                 mean.eval(slots) + deviation.eval(slots) * radius * libm::cos(angle)
             }
             Distribution::Choice(values) => {
@@ -209,8 +194,8 @@ impl Variable {
     clippy::cast_precision_loss,
     reason = "a count of list entries, and a floor below it"
 )]
-fn pick_index(stream: &mut Pcg64Mcg, count: usize) -> usize {
-    ((unit(stream) * count as f64) as usize).min(count - 1)
+fn pick_index(stream: &mut Pcg, count: usize) -> usize {
+    ((stream.unit() * count as f64) as usize).min(count - 1)
 }
 
 /// Name of the stream for selection at random; names of variables contain no space.
@@ -220,7 +205,7 @@ const SELECTION: &str = "the selection";
 #[must_use]
 pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
     let total: f64 = weights.clone().sum();
-    let mut left = unit(&mut path.stream(hash_of_name(SELECTION))) * total;
+    let mut left = path.stream(hash_of_name(SELECTION)).unit() * total;
     let mut last = 0;
     for (index, weight) in weights.enumerate() {
         if weight > 0.0 {
@@ -356,7 +341,7 @@ mod tests {
                 for position in 0..10 {
                     for name in ["a", "b", "ab"] {
                         assert!(
-                            seen.insert(path.child(position).stream(hash_of_name(name)).next_u64())
+                            seen.insert(path.child(position).stream(hash_of_name(name)).bits())
                         );
                     }
                 }

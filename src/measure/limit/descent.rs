@@ -7,11 +7,9 @@
 
 use std::num::NonZero;
 
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::Rng;
-
 use crate::geometry::DVec2;
 use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
+use crate::random::Pcg;
 use crate::saturating::whole;
 
 use super::{GRAZED, LimitSet, Placed};
@@ -46,7 +44,7 @@ struct Descent<'s> {
     cells: Vec<Cell>,
     /// Number of boxes that each box represents.
     weight: f64,
-    random: Pcg64Mcg,
+    random: Pcg,
     looked_at: usize,
 }
 
@@ -58,7 +56,7 @@ impl<'s> Descent<'s> {
             set,
             cells: Vec::new(),
             weight: 1.0,
-            random: Pcg64Mcg::new((seed as u128) << 64 | 0xcafe_f00d_d15e_a5e5),
+            random: Pcg::new(seed as u64, 0xcafe_f00d_d15e_a5e5),
             looked_at: 0,
         };
         descent.cells = descent.divided(start, boxes);
@@ -115,10 +113,7 @@ impl<'s> Descent<'s> {
         }
         let run = self.cells.len() as f64 / most as f64;
         self.weight *= run;
-        let places = (0..most).map(|number| {
-            let part = (self.random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-            ((number as f64 + part) * run) as usize
-        });
+        let places = (0..most).map(|number| ((number as f64 + self.random.unit()) * run) as usize);
         let places: Vec<usize> = places.collect();
         // A box that two runs share may be chosen twice.
         let chosen = places.iter().map(|&place| self.cells[place].clone());
