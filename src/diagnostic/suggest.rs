@@ -41,7 +41,6 @@ pub(crate) fn nearest<'a>(
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
     let wanted = folded(name)?;
-    let letters = wanted.chars().count();
     let candidates: Vec<&str> = candidates.into_iter().take(MOST_CANDIDATES).collect();
     let beginning = || {
         let same = |candidate: &&&str| {
@@ -56,8 +55,8 @@ pub(crate) fn nearest<'a>(
         .filter(|candidate| *candidate != name)
         .filter_map(|candidate| {
             let known = folded(candidate)?;
-            let distance = strsim::osa_distance(&wanted, &known);
-            let longest = letters.max(known.chars().count());
+            let distance = distance(&wanted, &known);
+            let longest = wanted.len().max(known.len());
             // Otherwise every name of one letter would be near to every other.
             let near = distance == 0 || (distance <= (longest / 3).max(1) && distance < longest);
             near.then_some((distance, candidate))
@@ -67,14 +66,51 @@ pub(crate) fn nearest<'a>(
         .or_else(beginning)
 }
 
-fn folded(name: &str) -> Option<String> {
+/// Returns the optimal string alignment distance.
+fn distance(a: &[char], b: &[char]) -> usize {
+    // The rows of the distances of beginnings of `a` from all beginnings of `b`: this one and two before.
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    let (mut above, mut second) = (row.clone(), row.clone());
+    for i in 1..=a.len() {
+        (above, second, row) = (row, above, second);
+        row[0] = i;
+        for j in 1..=b.len() {
+            let replaced = above[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            row[j] = replaced.min(above[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                row[j] = row[j].min(second[j - 2] + 1);
+            }
+        }
+    }
+    row[b.len()]
+}
+
+fn folded(name: &str) -> Option<Vec<char>> {
     (!name.is_empty() && name.chars().nth(MAX_CHARS).is_none())
-        .then(|| name.to_lowercase().replace('-', "_"))
+        .then(|| name.to_lowercase().replace('-', "_").chars().collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::did_you_mean;
+    use super::{did_you_mean, distance};
+
+    #[test]
+    fn distances_are_of_optimal_string_alignment() {
+        for (a, b, expected) in [
+            ("", "", 0),
+            ("abc", "", 3),
+            ("", "abc", 3),
+            ("kitten", "sitting", 3),
+            ("ab", "ba", 1),
+            // No part is edited twice: 2 by unrestricted Damerau–Levenshtein.
+            ("ca", "abc", 3),
+            ("a cat", "an abct", 4),
+            ("öffnen", "ofefnn", 3),
+        ] {
+            let [a, b] = [a, b].map(|text: &str| text.chars().collect::<Vec<_>>());
+            assert_eq!(distance(&a, &b), expected, "{a:?} {b:?}");
+        }
+    }
 
     #[test]
     fn the_nearest_name_is_offered() {
