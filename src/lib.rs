@@ -32,8 +32,16 @@
 //!
 //! # Features
 //!
-//! `cli`, on by default, is the command line. Without it the library depends on no terminal, no signals and no
-//! temporary files, and compiles for `wasm32-unknown-unknown`.
+//! | feature | by default | purpose |
+//! |---|---|---|
+//! | `cli` | yes | the command line; enables all other features |
+//! | `jpeg` | with `cli` | JPEG, besides PNG, among the pictures that are measured |
+//! | `simd` | with `cli` | random iteration with AVX2 where the processor has it: the same points, sooner |
+//! | `tables` | with `cli` | tables of points in CSV that are measured |
+//!
+//! With `default-features = false` the library draws, measures and converts, has fewer than 45 dependencies, none
+//! of which concerns terminals, signals or temporary files, and compiles for `wasm32-unknown-unknown`. There, it
+//! runs in one thread, and files exist only in the embedded library.
 //!
 //! # Stages
 //!

@@ -3,8 +3,6 @@
 //! A block of steps is walked before its points are counted: counters are stored to at random, and a
 //! processor that meets such stores between the walkers' own loads and stores has to wait.
 
-use multiversion::multiversion;
-
 use crate::geometry::DAffine2;
 
 use super::ClassBy;
@@ -31,12 +29,12 @@ pub(super) fn walk(course: &Course<'_>, wave: u64, tally: &mut Tally<'_>) -> Res
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 fn walk_single(course: &Course<'_>, wave: u64, tally: &mut Tally<'_>) -> Result<(), Cancelled> {
     walk_in::<f32>(course, wave, tally)
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 fn walk_double(course: &Course<'_>, wave: u64, tally: &mut Tally<'_>) -> Result<(), Cancelled> {
     walk_in::<f64>(course, wave, tally)
 }

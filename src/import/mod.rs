@@ -2,8 +2,10 @@
 
 mod fractint;
 mod picture;
+#[cfg(feature = "tables")]
 mod table;
 
 pub use fractint::{Fractint, Imported, read as read_fractint};
 pub use picture::{Channel, PictureError, Raster};
+#[cfg(feature = "tables")]
 pub use table::{TableError, read_points};

@@ -3,9 +3,10 @@
 use std::io::Cursor;
 
 use png::{ColorType, Decoder, Limits, Transformations};
-use zune_jpeg::JpegDecoder;
-use zune_jpeg::zune_core::colorspace::ColorSpace;
-use zune_jpeg::zune_core::options::DecoderOptions;
+#[cfg(feature = "jpeg")]
+use zune_jpeg::{
+    JpegDecoder, zune_core::colorspace::ColorSpace, zune_core::options::DecoderOptions,
+};
 
 /// Limit of the number of pixels.
 const MOST_PIXELS: u64 = 1 << 30;
@@ -188,6 +189,14 @@ fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
     Ok((width, height, values, channel))
 }
 
+#[cfg(not(feature = "jpeg"))]
+fn jpeg(_: &[u8], _: Option<Channel>) -> Result<Read, PictureError> {
+    Err(PictureError::Jpeg(
+        "the feature `jpeg` of kfrac is not enabled".into(),
+    ))
+}
+
+#[cfg(feature = "jpeg")]
 fn jpeg(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
     let failed = |error: zune_jpeg::errors::DecodeErrors| PictureError::Jpeg(error.to_string());
     let options = DecoderOptions::default()

@@ -1,10 +1,8 @@
 //! JSON values whose objects keep the order of insertion.
 
-use serde::{Serialize, Serializer};
+use std::fmt::{self, Display, Write};
 
 /// A JSON value.
-#[derive(Serialize)]
-#[serde(untagged)]
 pub(super) enum Json {
     Null,
     Bool(bool),
@@ -45,14 +43,79 @@ impl Object {
 
     /// Serializes the object as indented text.
     pub(super) fn to_text(&self) -> String {
-        let text = serde_json::to_string_pretty(self);
-        text.unwrap_or_else(|_| unreachable!("keys are text and nothing fails")) + "\n"
+        let mut text = String::new();
+        self.write(&mut text, "\n");
+        text + "\n"
+    }
+
+    /// Appends the object to `text`, whose lines begin as `line` does.
+    fn write(&self, text: &mut String, line: &str) {
+        write_all(
+            text,
+            line,
+            ['{', '}'],
+            &self.0,
+            |text, line, (key, value)| {
+                *text += &format!("{}: ", Quoted(key));
+                value.write(text, line);
+            },
+        );
     }
 }
 
-impl Serialize for Object {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+impl Json {
+    fn write(&self, text: &mut String, line: &str) {
+        match self {
+            Self::Null => *text += "null",
+            Self::Bool(value) => *text += &value.to_string(),
+            Self::Number(value) => *text += &value.to_string(),
+            Self::Text(value) => *text += &Quoted(value).to_string(),
+            Self::List(items) => {
+                write_all(text, line, ['[', ']'], items, |text, line, item| {
+                    item.write(text, line);
+                });
+            }
+            Self::Object(object) => object.write(text, line),
+        }
+    }
+}
+
+/// Appends items in brackets, each in a line of its own.
+fn write_all<T>(
+    text: &mut String,
+    line: &str,
+    [open, close]: [char; 2],
+    items: &[T],
+    write: impl Fn(&mut String, &str, &T),
+) {
+    let inner = format!("{line}  ");
+    text.push(open);
+    for (place, item) in items.iter().enumerate() {
+        *text += if place > 0 { "," } else { "" };
+        *text += &inner;
+        write(text, &inner, item);
+    }
+    *text += if items.is_empty() { "" } else { line };
+    text.push(close);
+}
+
+/// A JSON string.
+struct Quoted<'a>(&'a str);
+
+impl Display for Quoted<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_char('"')?;
+        for character in self.0.chars() {
+            match character {
+                '"' | '\\' => write!(f, "\\{character}")?,
+                '\n' => f.write_str("\\n")?,
+                control if control.is_ascii_control() => {
+                    write!(f, "\\u{:04x}", u32::from(control))?
+                }
+                other => f.write_char(other)?,
+            }
+        }
+        f.write_char('"')
     }
 }
 
