@@ -111,6 +111,7 @@ pub mod lsystem;
 pub mod measure;
 pub mod metadata;
 pub mod model;
+mod output_file;
 pub mod parallel;
 mod random;
 mod readable;
@@ -122,6 +123,7 @@ pub mod style;
 pub mod zoom;
 
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
+pub use output_file::WriteError;
 
 /// Random rules for the tests of several modules.
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::grow::{Growth, WalkError};
 use crate::measure::{
     Distance, NoCover, Precision, Similarity, Subject, Subset, hausdorff, similarity_dimension,
 };
-use crate::render::{self, Canvas, RenderError, Size};
+use crate::render::{self, Canvas, Size};
 use crate::style::Style;
 
 use super::family::{Assignment, assignment};
@@ -276,11 +276,8 @@ impl Arguments {
             ..render::Options::default()
         };
         let (pixels, bytes) = output::write(path, true, |out, _| {
-            difference::write(canvas, [&first, &second], &options, out).map_err(|error| match error
-            {
-                RenderError::Io(error) => output::failed(error, path),
-                other => anyhow::Error::new(other).into(),
-            })
+            difference::write(canvas, [&first, &second], &options, out)
+                .map_err(|error| output::explain(error, path))
         })?;
         if !self.quiet {
             let [width, height] = canvas.size();

@@ -14,7 +14,7 @@ use crate::catalogue::Catalogue;
 use crate::figure::dimension;
 use crate::measure::{BoxCounting, Generalised, Grid, Lacunarity, exact};
 use crate::parallel::all_cores;
-use crate::render::{self, Labels, RenderError};
+use crate::render::{self, Labels};
 
 pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
@@ -192,10 +192,7 @@ fn draw(measured: &Measured, path: &Path, format: render::Format) -> Result<(), 
     };
     output::write(path, true, |out, _| {
         let written = dimension::write(&measured.counting, &options, out);
-        written.map_err(|error| match error {
-            RenderError::Io(error) => output::failed(error, path),
-            other => anyhow::Error::new(other).into(),
-        })
+        written.map_err(|error| output::explain(error, path))
     })?;
     Ok(())
 }

@@ -143,7 +143,6 @@ impl GrowthArguments {
     /// Returns the failure for which `path` has not been written.
     pub(super) fn explain(&self, error: RenderError, loaded: &Loaded, path: &Path) -> Failure {
         match error {
-            RenderError::Io(error) => output::failed(error, path),
             RenderError::Walk(WalkError::NotFinite(error)) => {
                 loaded.model.diagnostic(&error).into()
             }
@@ -173,7 +172,7 @@ impl GrowthArguments {
                     loaded.name
                 ))
                 .into(),
-            other => anyhow::Error::new(other).into(),
+            other => output::explain(other, path),
         }
     }
 }

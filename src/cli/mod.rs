@@ -1,7 +1,6 @@
 //! Command line: one module per subcommand, and helpers that they share.
 
 mod cat;
-mod chaos;
 mod check;
 mod compare;
 mod completions;
@@ -25,9 +24,7 @@ mod list;
 mod man;
 mod number;
 mod output;
-mod part;
 mod picture;
-mod plot;
 mod progress;
 mod readable;
 mod rule;
@@ -37,10 +34,8 @@ mod show;
 mod steps;
 mod stop;
 mod structure;
-mod svg;
 mod system;
 mod text;
-mod zoom;
 
 use std::io;
 use std::path::PathBuf;

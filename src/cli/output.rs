@@ -1,145 +1,75 @@
 //! Output to files that appear complete or not at all, to pipes, devices and standard output.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context;
 use serde::Serialize;
 
 use crate::grow::Progress;
+use crate::output_file::{BUFFER, OutputFile, WriteError};
+use crate::render::RenderError;
 
-use super::part::Part;
 use super::{Failure, input, progress};
 
 /// Destination of the output of a command.
 pub(super) enum Output {
     /// Standard output, which may be left incomplete.
     Standard(BufWriter<io::StdoutLock<'static>>),
-    /// File that has a temporary name until it is finished.
-    File {
-        part: BufWriter<Part>,
-        path: PathBuf,
-    },
-    /// Pipe or device, written directly.
-    Device {
-        file: BufWriter<File>,
-        path: PathBuf,
-    },
+    File(OutputFile),
 }
 
 /// Message for a failure to write to standard output.
 pub(super) const NO_STANDARD_OUTPUT: &str = "standard output cannot be written";
 
-/// Size of the write buffer in bytes.
-const BUFFER: usize = 1 << 18;
-
 impl Output {
     /// Opens an output: standard output for `-`, a pipe or device, or a file that is created or replaced.
-    pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
+    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") {
-            return Ok(Self::Standard(BufWriter::with_capacity(
-                BUFFER,
-                io::stdout().lock(),
-            )));
+            let out = io::stdout().lock();
+            return Ok(Self::Standard(BufWriter::with_capacity(BUFFER, out)));
         }
-        let failed = || format!("'{}' cannot be written", path.display());
-        let metadata = path.metadata().ok();
-        let names_folder = path.to_string_lossy().ends_with(std::path::is_separator);
-        if metadata.is_none() && names_folder {
-            anyhow::bail!("there is no folder '{}'", path.display());
+        if path.is_file() {
+            input::check_is_not_read(path)?;
         }
-        if metadata.as_ref().is_some_and(std::fs::Metadata::is_dir) {
-            anyhow::bail!("'{}' is a folder", path.display());
-        }
-        if metadata
-            .as_ref()
-            .is_some_and(|metadata| !metadata.is_file())
-        {
-            let device = File::options()
-                .write(true)
-                .open(path)
-                .with_context(failed)?;
-            let file = BufWriter::with_capacity(BUFFER, device);
-            return Ok(Self::Device {
-                file,
-                path: path.to_path_buf(),
-            });
-        }
-        let path = behind_links(path)?;
-        input::check_is_not_read(&path)?;
-        let folder = match path.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
-        };
-        if !folder.exists() {
-            anyhow::bail!("there is no folder '{}'", folder.display());
-        }
-        let part = Part::begin(folder, metadata.map(|metadata| metadata.permissions()))
-            // The name of the temporary file in the error would be confusing.
-            .map_err(|error| io::Error::from(error.kind()))
-            .with_context(failed)?;
-        Ok(Self::File {
-            part: BufWriter::with_capacity(BUFFER, part),
-            path,
-        })
+        Ok(Self::File(OutputFile::create(path)?))
     }
 
     /// Returns whether the output is a regular file. A pipe or device may be the terminal.
     fn is_file(&self) -> bool {
-        matches!(self, Self::File { .. })
+        matches!(self, Self::File(file) if file.is_regular())
     }
 
     /// Finishes the output: a file appears under its name. A file that is dropped without this is removed.
-    pub(super) fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> Result<(), Failure> {
         match self {
-            Self::Standard(mut out) => out.flush().context(NO_STANDARD_OUTPUT)?,
-            Self::Device { mut file, path } => file
-                .flush()
-                .with_context(|| format!("'{}' cannot be written", path.display()))?,
-            Self::File { part, path } => part
-                .into_inner()
-                .map_err(io::IntoInnerError::into_error)
-                .and_then(|part| part.finish(&path))
-                .with_context(|| format!("'{}' cannot be written", path.display()))?,
+            Self::Standard(mut out) => Ok(out.flush().context(NO_STANDARD_OUTPUT)?),
+            Self::File(file) => Ok(file.finish()?),
         }
-        Ok(())
     }
 }
 
-/// Returns the file that a symbolic link resolves to, which need not exist: the link itself is kept.
-fn behind_links(named: &Path) -> anyhow::Result<PathBuf> {
-    const MOST_LINKS: usize = 40;
-    let mut path = named.to_path_buf();
-    for _ in 0..MOST_LINKS {
-        let Ok(target) = path.read_link() else {
-            return Ok(path);
-        };
-        // A relative target is relative to the link's folder.
-        path = path
-            .parent()
-            .map_or_else(|| target.clone(), |folder| folder.join(&target));
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io { path, error } => failed(error, &path),
+            error => anyhow::Error::new(error).into(),
+        }
     }
-    anyhow::bail!(
-        "'{}' is a symbolic link that leads back to itself",
-        named.display()
-    )
 }
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Standard(out) => out.write(bytes),
-            Self::File { part, .. } => part.write(bytes),
-            Self::Device { file, .. } => file.write(bytes),
+            Self::File(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Standard(out) => out.flush(),
-            Self::File { part, .. } => part.flush(),
-            Self::Device { file, .. } => file.flush(),
+            Self::File(file) => file.flush(),
         }
     }
 }
@@ -175,6 +105,14 @@ pub(super) fn failed(error: io::Error, path: &Path) -> Failure {
         format!("'{}' cannot be written", path.display())
     };
     anyhow::Error::new(error).context(message).into()
+}
+
+/// Returns the failure to draw a picture into `path`.
+pub(super) fn explain(error: RenderError, path: &Path) -> Failure {
+    match error {
+        RenderError::Io(error) => failed(error, path),
+        other => anyhow::Error::new(other).into(),
+    }
 }
 
 /// Returns the name of an output in messages.

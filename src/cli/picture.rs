@@ -128,9 +128,13 @@ impl PictureArguments {
         asked.or(own.fill).or(own.stroke)
     }
 
-    /// Returns whether an option is given that applies to lines only.
-    pub(super) fn asks_lines(&self) -> bool {
-        self.stroke_width.is_some() || self.cap.is_some() || self.join.is_some()
+    /// Returns the options that apply to lines only, and whether they are given.
+    pub(super) fn of_lines(&self) -> [(&'static str, bool); 3] {
+        [
+            ("--stroke-width", self.stroke_width.is_some()),
+            ("--cap", self.cap.is_some()),
+            ("--join", self.join.is_some()),
+        ]
     }
 
     /// Returns an error if colours by hits are asked for, which only random iteration has.
@@ -142,21 +146,6 @@ impl PictureArguments {
                 Err(Failure::Usage(message.into()))
             }
             _ => Ok(()),
-        }
-    }
-
-    /// Returns an error if an option is given that applies to lines only.
-    pub(super) fn refuse_lines(&self) -> Result<(), Failure> {
-        let asked = [
-            ("--stroke-width", self.stroke_width.is_some()),
-            ("--cap", self.cap.is_some()),
-            ("--join", self.join.is_some()),
-        ];
-        match asked.into_iter().find(|(_, is_asked)| *is_asked) {
-            Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} applies to lines, and --method chaos draws points"
-            ))),
-            None => Ok(()),
         }
     }
 

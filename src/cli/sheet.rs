@@ -78,104 +78,71 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let start = Instant::now();
     arguments.picture.refuse_hits()?;
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
-    let family =
-        arguments
-            .rule
-            .load_family(catalogue, arguments.growth.quiet, arguments.samples)?;
+    let (growth, rule) = (&arguments.growth, &arguments.rule);
+    let family = rule.load_family(catalogue, growth.quiet, arguments.samples)?;
     if !family.is_empty() {
-        let grown = |(settings, loaded): Member| (settings, loaded.grown(&arguments.growth));
+        let grown = |(settings, loaded): Member| (settings, loaded.grown(growth));
         let family: Vec<_> = family.into_iter().map(grown).collect();
         return arguments.draw_family(family, format, start);
     }
-    let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
-    let loaded = loaded.grown(&arguments.growth);
+    let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     let steps = match &arguments.steps {
         Some(steps) => steps.clone(),
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
     };
-    let default = arguments.rule.file("-sheet", format.name());
-    let path = arguments.output.as_ref().unwrap_or(&default);
-    let stays_light = arguments.stays_light(format);
-    let ((written, drawn), bytes) =
-        output::write(path, arguments.growth.quiet, |out, progress| {
-            let explain = |error| arguments.growth.explain(error, &loaded, path);
-            if stays_light {
-                let last = steps.largest();
-                let fewer = last as usize + 1;
-                let light = light::first_that_is_light(fewer, |fewer| {
-                    let fewer = u32::try_from(fewer).unwrap_or(0);
-                    let steps = Several::up_to(last - fewer);
-                    let graph = arguments.compile(&loaded, steps.largest())?;
-                    let most = Some(light::MOST_ELEMENTS);
-                    let drafted = light::draft(|out| {
-                        let options = arguments.of_steps(&loaded, &steps, format, graph.place());
-                        let cells = arguments.cells(&graph, &steps, most, None);
-                        let written = sheet::write(&cells, arguments.columns, &options, out)?;
-                        Ok((written, written.elements))
-                    });
-                    Ok(drafted.map_err(explain)?.map(|drafted| (drafted, steps)))
-                })?;
-                if let Some(((written, draft), steps)) = light {
-                    out.write_all(&draft.bytes)
-                        .map_err(|error| output::failed(error, path))?;
-                    return Ok((written, steps));
-                }
-            }
-            let graph = arguments.compile(&loaded, steps.largest())?;
-            for &step in steps.as_slice() {
-                arguments.growth.check(step, &graph, &loaded, None)?;
-            }
-            let options = arguments.of_steps(&loaded, &steps, format, graph.place());
-            let cells = arguments.cells(&graph, &steps, None, progress);
-            let written = sheet::write(&cells, arguments.columns, &options, out);
-            Ok((written.map_err(explain)?, steps.clone()))
-        })?;
-    if !arguments.growth.quiet && drawn != steps {
+    let last = steps.largest();
+    let sheet_to = |step: u32| {
+        let fewer = Several::up_to(step);
+        let steps = if step < last { &fewer } else { &steps };
+        let graph = arguments.compile(&loaded, step)?;
+        let which = vec![("steps", steps.to_string())];
+        let shown = format!("Steps {steps}");
+        let options = arguments.options(&loaded, &shown, which, format, graph.place());
+        let cells = steps.as_slice().iter();
+        Ok(Sheet {
+            graphs: vec![graph],
+            cells: cells
+                .map(|&step| (format!("step {step}"), 0, step))
+                .collect(),
+            options,
+        })
+    };
+    let drawn = arguments.draw(&loaded, last, format, sheet_to)?;
+    if drawn.step != last && !growth.quiet {
         light::tell(
-            &format!("steps {drawn} are drawn instead of {steps}"),
+            &format!(
+                "steps {} are drawn instead of {steps}",
+                Several::up_to(drawn.step)
+            ),
             &format!("--steps {steps} draws them"),
         );
     }
-    if !arguments.growth.quiet {
-        let [width, height] = written.size;
-        text::print_message(&format!(
-            "{}: {} of {}, {}, {width} x {height} pixels, {}, {:.2} s",
-            output::called(path),
-            readable::counted(&drawn.as_slice().len().into(), "approximant"),
-            loaded.name,
-            readable::counted(&written.elements.into(), "element"),
-            readable::bytes(bytes),
-            start.elapsed().as_secs_f64(),
-        ));
-    }
+    let count = readable::counted(&drawn.cells.into(), "approximant");
+    arguments.report(&drawn, &format!("{count} of {}", loaded.name), start);
     Ok(())
 }
 
-impl Arguments {
-    /// Returns whether the sheet is limited to a size that browsers show at once: an SVG for which no depth
-    /// of growth is given.
-    fn stays_light(&self, format: render::Format) -> bool {
-        let is_asked = self.steps.is_some() || self.growth.says_most_elements();
-        format == render::Format::Svg && !is_asked
-    }
+/// Sheet that is ready to be drawn.
+struct Sheet {
+    graphs: Vec<Graph>,
+    /// Name, number of the graph, and step of each picture.
+    cells: Vec<(String, usize, u32)>,
+    options: render::Options,
+}
 
-    fn compile(&self, loaded: &Loaded, steps: u32) -> Result<Graph, Failure> {
-        loaded.compile_for(steps, self.style(loaded).color_by)
-    }
-
-    /// Returns the pictures of some steps. `most` replaces the limit on the number of elements of each.
+impl Sheet {
+    /// Returns the pictures. `most` replaces the limit on the number of elements of each.
     fn cells<'a>(
-        &self,
-        graph: &'a Graph,
-        steps: &Several,
+        &'a self,
+        growth: &GrowthArguments,
         most: Option<u64>,
         progress: Option<&'a Progress>,
     ) -> Vec<sheet::Cell<'a>> {
-        let cells = steps.as_slice().iter().map(|&step| {
-            let growth = self.growth.to(step, progress);
+        let cells = self.cells.iter().map(|(name, graph, step)| {
+            let growth = growth.to(*step, progress);
             sheet::Cell {
-                name: format!("step {step}"),
-                graph,
+                name: name.clone(),
+                graph: &self.graphs[*graph],
                 growth: Growth {
                     most_elements: most.unwrap_or(growth.most_elements),
                     ..growth
@@ -184,17 +151,87 @@ impl Arguments {
         });
         cells.collect()
     }
+}
 
-    /// Returns the options of a sheet of steps.
-    fn of_steps(
+/// Sheet that has been drawn.
+struct Drawn {
+    written: sheet::SheetSummary,
+    cells: usize,
+    /// Largest step.
+    step: u32,
+    path: PathBuf,
+    bytes: u64,
+}
+
+impl Arguments {
+    /// Draws the sheet up to step `last`; an SVG for which no depth of growth is given up to the deepest step
+    /// with which browsers show it at once.
+    fn draw(
         &self,
         loaded: &Loaded,
-        steps: &Several,
+        last: u32,
         format: render::Format,
-        place: &Homothety,
-    ) -> render::Options {
-        let which = vec![("steps", steps.to_string())];
-        self.options(loaded, &format!("Steps {steps}"), which, format, place)
+        sheet_to: impl Fn(u32) -> Result<Sheet, Failure>,
+    ) -> Result<Drawn, Failure> {
+        let Self {
+            growth, columns, ..
+        } = self;
+        let default = self.rule.file("-sheet", format.name());
+        let path = self.output.as_ref().unwrap_or(&default);
+        let gives_depth = self.steps.is_some() || growth.says_most_elements();
+        let stays_light = format == render::Format::Svg && !gives_depth;
+        let ((written, cells, step), bytes) =
+            output::write(path, growth.quiet, |out, progress| {
+                let explain = |error| growth.explain(error, loaded, path);
+                if stays_light {
+                    let light = light::first_that_is_light(last as usize + 1, |fewer| {
+                        let step = last - u32::try_from(fewer).unwrap_or(0);
+                        let sheet = sheet_to(step)?;
+                        let drafted = light::draft(|out| {
+                            let cells = sheet.cells(growth, Some(light::MOST_ELEMENTS), None);
+                            let written = sheet::write(&cells, *columns, &sheet.options, out)?;
+                            Ok(((written, cells.len()), written.elements))
+                        });
+                        Ok(drafted.map_err(explain)?.map(|drafted| (drafted, step)))
+                    })?;
+                    if let Some((((written, cells), draft), step)) = light {
+                        out.write_all(&draft.bytes)
+                            .map_err(|error| output::failed(error, path))?;
+                        return Ok((written, cells, step));
+                    }
+                }
+                let sheet = sheet_to(last)?;
+                for (_, graph, step) in &sheet.cells {
+                    growth.check(*step, &sheet.graphs[*graph], loaded, None)?;
+                }
+                let cells = sheet.cells(growth, None, progress);
+                let written = sheet::write(&cells, *columns, &sheet.options, out);
+                Ok((written.map_err(explain)?, cells.len(), last))
+            })?;
+        Ok(Drawn {
+            written,
+            cells,
+            step,
+            path: path.clone(),
+            bytes,
+        })
+    }
+
+    fn report(&self, drawn: &Drawn, content: &str, start: Instant) {
+        if !self.growth.quiet {
+            let [width, height] = drawn.written.size;
+            text::print_message(&format!(
+                "{}: {content}, {}, {width} x {height} pixels, {}, {:.2} s",
+                output::called(&drawn.path),
+                readable::counted(&drawn.written.elements.into(), "element"),
+                readable::bytes(drawn.bytes),
+                start.elapsed().as_secs_f64(),
+            ));
+        }
+    }
+
+    fn compile(&self, loaded: &Loaded, steps: u32) -> Result<Graph, Failure> {
+        loaded.compile_for(steps, self.style(loaded).color_by)
     }
 
     /// Returns the style of the rule, with strokes that suit small pictures unless their width is given.
@@ -219,7 +256,7 @@ impl Arguments {
         let within = |(settings, loaded): Member| (settings, loaded.within(place));
         let family: Vec<_> = family.into_iter().map(within).collect();
         let (swept, loaded) = &family[0];
-        let step = match self.steps.as_ref().map(Several::as_slice) {
+        let last = match self.steps.as_ref().map(Several::as_slice) {
             None => steps::choose(None, loaded)?,
             Some([step]) => *step,
             Some(_) => {
@@ -227,8 +264,6 @@ impl Arguments {
                 return Err(Failure::Usage(message.into()));
             }
         };
-        let default = self.rule.file("-sheet", format.name());
-        let path = self.output.as_ref().unwrap_or(&default);
         let sweep = |(number, first): (usize, &Setting)| {
             let values = family.iter().map(|(all, _)| all[number].value.to_string());
             let values: Vec<_> = values.collect();
@@ -237,88 +272,33 @@ impl Arguments {
         let sets: Vec<_> = swept.iter().enumerate().map(sweep).collect();
         let names: Vec<_> = swept.iter().map(|setting| setting.name.as_str()).collect();
         let names = names.join(" and ");
-        let options = |step: u32| {
+        let sheet_to = |step: u32| {
             let mut which = sets.clone();
             which.push(("steps", step.to_string()));
             let shown = format!("Step {step} for values of {names}");
-            self.options(loaded, &shown, which, format, &place)
-        };
-        let compile = |step: u32| -> Result<Vec<Graph>, Failure> {
             let members = family.iter();
             let graphs = members.map(|(_, member)| self.compile(member, step));
-            graphs.collect()
+            let captions = family.iter().map(|(settings, _)| caption(settings));
+            Ok(Sheet {
+                graphs: graphs.collect::<Result<_, Failure>>()?,
+                cells: captions
+                    .zip(0..)
+                    .map(|(name, graph)| (name, graph, step))
+                    .collect(),
+                options: self.options(loaded, &shown, which, format, &place),
+            })
         };
-        let ((written, drawn), bytes) = output::write(path, self.growth.quiet, |out, progress| {
-            let explain = |error| self.growth.explain(error, loaded, path);
-            if self.stays_light(format) {
-                let light = light::first_that_is_light(step as usize + 1, |fewer| {
-                    let step = step - u32::try_from(fewer).unwrap_or(0);
-                    let graphs = compile(step)?;
-                    let most = Some(light::MOST_ELEMENTS);
-                    let drafted = light::draft(|out| {
-                        let cells = self.members(&family, &graphs, step, most, None);
-                        let written = sheet::write(&cells, self.columns, &options(step), out)?;
-                        Ok((written, written.elements))
-                    });
-                    Ok(drafted.map_err(explain)?.map(|drafted| (drafted, step)))
-                })?;
-                if let Some(((written, draft), step)) = light {
-                    out.write_all(&draft.bytes)
-                        .map_err(|error| output::failed(error, path))?;
-                    return Ok((written, step));
-                }
-            }
-            let graphs = compile(step)?;
-            for ((_, member), graph) in family.iter().zip(&graphs) {
-                self.growth.check(step, graph, member, None)?;
-            }
-            let cells = self.members(&family, &graphs, step, None, progress);
-            let written = sheet::write(&cells, self.columns, &options(step), out);
-            Ok((written.map_err(explain)?, step))
-        })?;
-        if !self.growth.quiet && drawn != step {
+        let drawn = self.draw(loaded, last, format, sheet_to)?;
+        let step = drawn.step;
+        if step != last && !self.growth.quiet {
             light::tell(
-                &format!("step {drawn} is drawn instead of {step}"),
-                &format!("--steps {step} draws it"),
+                &format!("step {step} is drawn instead of {last}"),
+                &format!("--steps {last} draws it"),
             );
         }
-        if !self.growth.quiet {
-            let [width, height] = written.size;
-            text::print_message(&format!(
-                "{}: {} of {} at step {drawn}, {}, {width} x {height} pixels, {}, {:.2} s",
-                output::called(path),
-                readable::counted(&family.len().into(), "value"),
-                names,
-                readable::counted(&written.elements.into(), "element"),
-                readable::bytes(bytes),
-                start.elapsed().as_secs_f64(),
-            ));
-        }
+        let count = readable::counted(&drawn.cells.into(), "value");
+        self.report(&drawn, &format!("{count} of {names} at step {step}"), start);
         Ok(())
-    }
-
-    /// Returns the pictures of the members of a family. `most` replaces the limit on the number of elements
-    /// of each.
-    fn members<'a>(
-        &self,
-        family: &[Member],
-        graphs: &'a [Graph],
-        step: u32,
-        most: Option<u64>,
-        progress: Option<&'a Progress>,
-    ) -> Vec<sheet::Cell<'a>> {
-        let members = family.iter().zip(graphs).map(|((settings, _), graph)| {
-            let growth = self.growth.to(step, progress);
-            sheet::Cell {
-                name: caption(settings),
-                graph,
-                growth: Growth {
-                    most_elements: most.unwrap_or(growth.most_elements),
-                    ..growth
-                },
-            }
-        });
-        members.collect()
     }
 
     fn options(

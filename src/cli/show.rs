@@ -9,7 +9,7 @@ use crate::catalogue::{Catalogue, Shelf};
 use crate::document::KindDocument;
 use crate::figure::rule;
 use crate::model::Model;
-use crate::render::{self, RenderError, Size};
+use crate::render::{self, Size};
 use crate::style::Named;
 
 use super::component::Component;
@@ -93,10 +93,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 unreachable!("a model is of its document's kind")
             }
         };
-        written.map_err(|error| match error {
-            RenderError::Io(error) => output::failed(error, path),
-            other => anyhow::Error::new(other).into(),
-        })
+        written.map_err(|error| output::explain(error, path))
     })?;
     if !arguments.quiet {
         text::print_message(&format!(

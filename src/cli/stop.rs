@@ -4,39 +4,16 @@
 //! threads do. Commands need not check for interruption, so that all of them end alike: those that compute,
 //! those that wait for input, and those whose reader has stopped reading.
 
-use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
 
+use crate::output_file::unfinished;
+
 /// Exit status of an interrupted process.
 const INTERRUPTED: i32 = 130;
 
-static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { files: Vec::new() });
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
-
-/// Files that have not been finished.
-pub(super) struct Unfinished {
-    files: Vec<PathBuf>,
-}
-
-impl Unfinished {
-    /// Registers a file that is removed if the process is interrupted before the file is finished.
-    pub(super) fn begin(&mut self, path: &Path) {
-        self.files.push(path.to_path_buf());
-    }
-
-    /// Unregisters a file that has been finished or removed.
-    pub(super) fn end(&mut self, path: &Path) {
-        self.files.retain(|file| file != path);
-    }
-}
-
-/// Locks the list of unfinished files. While the lock is held, no signal ends the process: files are created,
-/// renamed and removed atomically in this respect.
-pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Locks the progress bar that the terminal shows. It is drawn only while the lock is held, so that it does
 /// not reappear after it has been cleared for good.
@@ -47,7 +24,7 @@ pub(super) fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
 /// Ends the process. Both locks are held to the end: no file is begun and no progress bar drawn any more.
 fn interrupt() -> ! {
     let unfinished = unfinished();
-    for path in &unfinished.files {
+    for path in unfinished.iter() {
         // A failure cannot be reported any more.
         let _ = std::fs::remove_file(path);
     }

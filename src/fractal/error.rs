@@ -2,10 +2,10 @@
 
 use std::convert::Infallible;
 use std::io;
-use std::path::PathBuf;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::grow::WalkError;
+use crate::output_file::WriteError;
 use crate::render::RenderError;
 
 /// An error of [`Fractal`](super::Fractal).
@@ -22,14 +22,8 @@ pub enum Error {
     #[error(transparent)]
     Render(RenderError),
     /// The file cannot be written.
-    #[error("{}: {error}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        #[source]
-        error: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// No dimension is decided or measured.
     #[error("it has no dimension: {0}")]
     NoDimension(String),

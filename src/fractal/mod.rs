@@ -4,7 +4,6 @@
 //! the other methods grow it anew for each result.
 
 mod error;
-mod file;
 mod goal;
 mod options;
 mod results;

@@ -12,10 +12,11 @@ use crate::grow::{Element, Elements, Growth, WalkError, extent};
 use crate::measure::exact::dimensions_of_graph;
 use crate::measure::{BoxCounting, Grid, LimitSet};
 use crate::model::Model;
+use crate::output_file::{OutputFile, WriteError};
 use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
 use crate::style::{ColorBy, Named};
 
-use super::{Error, Fractal, Goal, file, proposed_steps};
+use super::{Error, Fractal, Goal, proposed_steps};
 
 impl Fractal {
     /// Returns the model: a rule, a system of maps, a structure or an L-system.
@@ -109,8 +110,7 @@ impl Fractal {
         let extension = extension.to_ascii_lowercase();
         if let Some(format) = Format::from_name(&extension) {
             let options = self.options(format, self.size)?;
-            let written = file::write(path, |out| self.draw(&options, out));
-            return written.map(|_| ()).map_err(|error| at(path, error));
+            return written(path, |out| self.draw(&options, out).map(|_| ()));
         }
         let format = export::Format::from_name(&extension).ok_or_else(|| {
             let message = format!("'{}' has no format that is known", path.display());
@@ -119,11 +119,12 @@ impl Fractal {
         })?;
         let graph = self.graph()?;
         let growth = self.growth(self.steps_grown()?);
-        let written = file::write(path, |out| {
-            let written = export::write(graph, &growth, format, self.threads, out);
-            written.map_err(|error| Error::from(RenderError::from(error)))
-        });
-        written.map(|_| ()).map_err(|error| at(path, error))
+        written(path, |out| {
+            let walked = export::write(graph, &growth, format, self.threads, out);
+            walked
+                .map(|_| ())
+                .map_err(|error| RenderError::from(error).into())
+        })
     }
 
     /// Returns the elements of the approximant, one after another. Memory is proportional to the number of steps.
@@ -351,13 +352,18 @@ impl Fractal {
     }
 }
 
-/// Adds the path to an error of the file system.
-fn at(path: &Path, error: Error) -> Error {
-    match error {
-        Error::Render(RenderError::Io(error)) => Error::Write {
-            path: path.into(),
-            error,
-        },
+/// Writes a file by `write`. If that fails, an existing file stays as it is.
+fn written(
+    path: &Path,
+    write: impl FnOnce(&mut OutputFile) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let mut out = OutputFile::create(path)?;
+    write(&mut out).map_err(|error| match error {
+        Error::Render(RenderError::Io(error)) => {
+            let path = path.into();
+            WriteError::Io { path, error }.into()
+        }
         error => error,
-    }
+    })?;
+    Ok(out.finish()?)
 }

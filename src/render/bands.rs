@@ -15,9 +15,10 @@ use crate::grow::{Growth, Progress, WalkError};
 use crate::parallel::with_team;
 use crate::style::Width;
 
+use super::layout::Layout;
 use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
 use super::prepass::overhang;
-use super::{Canvas, Drawing, Options, Prepass, RenderError, Scene};
+use super::{Drawing, Options, RenderError, Scene};
 
 /// Pixels of a band, and buffers for the next one.
 type Band = Result<(Pixmap, Spare), RenderError>;
@@ -36,13 +37,16 @@ struct Bands<'a> {
 }
 
 /// Draws and encodes a measured approximant.
-pub(super) fn write_survey(
-    prepass: &Prepass<'_>,
-    growth: &Growth<'_>,
-    canvas: Canvas,
+pub(super) fn write_layout(
+    layout: &Layout<'_>,
     options: &Options,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
+    let Layout {
+        prepass,
+        canvas,
+        growth,
+    } = layout;
     let style = &options.style;
     let stroke = match style.width {
         Width::Pixels(width) => width * overhang(style),
@@ -53,10 +57,9 @@ pub(super) fn write_survey(
     let all = canvas.shown(pad);
     let culling = prepass.culling().clone();
     let culling = culling.within(&all, prepass.graph(), growth, style, prepass.counts_ranks());
-    let scene = Scene::new(prepass, growth, canvas);
     let bands = Bands {
         progress: growth.progress,
-        ..Bands::of(&scene, options, growth.cancel)
+        ..Bands::of(&layout.scene(), options, growth.cancel)
     };
     if let Some(progress) = growth.progress {
         let [width, height] = canvas.size().map(u64::from);
@@ -70,7 +73,7 @@ pub(super) fn write_survey(
     bands.write(out, |rows, spare| {
         let shown = canvas.shown_in(rows.clone(), pad);
         let prepass = prepass.clone().of_what_is_in(culling.moved_to(&shown));
-        let scene = Scene::new(&prepass, &growth, canvas);
+        let scene = Scene::new(&prepass, &growth, *canvas);
         drawn(&scene, rows, spare, options.threads)
     })
 }

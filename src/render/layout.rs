@@ -7,7 +7,7 @@ use crate::style::Width;
 
 use super::culling::{Culling, NEARLY};
 use super::prepass::overhang;
-use super::{Canvas, Format, Options, Prepass, RenderError};
+use super::{Canvas, Empty, Format, Options, Picture, Plotted, Prepass, RenderError, Scene};
 
 /// Size down to which elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,28 @@ struct Surveyor<'a> {
 }
 
 impl<'a> Layout<'a> {
+    /// Returns the approximant on its canvas.
+    pub(super) fn scene(&self) -> Scene<'_> {
+        Scene::new(&self.prepass, &self.growth, self.canvas)
+    }
+
+    /// Returns the numbers of the picture that is drawn.
+    pub(super) fn picture(&self, plotted: Option<Plotted>) -> Picture {
+        let prepass = &self.prepass;
+        Picture {
+            size: self.canvas.size(),
+            steps: self.growth.steps,
+            elements: prepass.elements,
+            has_more: prepass.has_more,
+            fractals: prepass.fractals,
+            is_part: prepass.culling().is_bounded(),
+            empty: prepass.shows_nothing().then(Empty::default),
+            plotted,
+            instanced: None,
+            is_limit: false,
+        }
+    }
+
     /// Repeats the prepass of a graph until the size of a pixel is known.
     pub(super) fn find(
         graph: &'a Graph,

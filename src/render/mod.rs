@@ -77,7 +77,6 @@ use crate::style::{Colour, Named, Style, View, Width};
 use crate::zoom::ZoomError;
 
 use self::cells::Way;
-use self::layout::Layout;
 use self::pdf::Pdf;
 use self::plot::Plot;
 use self::png::Png;
@@ -327,41 +326,20 @@ pub fn write(
     if options.instanced && options.format == Format::Svg {
         return instanced::write(graph, growth, options, out);
     }
-    let Layout {
-        prepass,
-        canvas,
-        growth,
-    } = match Way::find(graph, growth, options)? {
-        Way::Elements(layout) => *layout,
+    let layout = match Way::find(graph, growth, options)? {
+        Way::Elements(layout) => layout,
         Way::Cells(cells) => {
             write_in(&cells, options, growth.cancel, out)?;
             return Ok(cells.picture());
         }
     };
-    let in_bands = options.format == Format::Png && !options.draws_in_one_piece(canvas.size());
-    if in_bands && !options.plot {
-        bands::write_survey(&prepass, &growth, canvas, options, out)?;
-        return Ok(picture(&prepass, canvas, growth.steps, None));
+    let (size, cancel) = (layout.canvas.size(), growth.cancel);
+    if options.format == Format::Png && !options.plot && !options.draws_in_one_piece(size) {
+        bands::write_layout(&layout, options, out)?;
+        return Ok(layout.picture(None));
     }
-    let scene = Scene::new(&prepass, &growth, canvas);
-    let plotted = write_in(&scene, options, growth.cancel, out)?;
-    Ok(picture(&prepass, canvas, growth.steps, plotted))
-}
-
-/// Returns the numbers of a picture that has been written.
-fn picture(prepass: &Prepass<'_>, canvas: Canvas, steps: u32, plotted: Option<Plotted>) -> Picture {
-    Picture {
-        size: canvas.size(),
-        steps,
-        elements: prepass.elements,
-        has_more: prepass.has_more,
-        fractals: prepass.fractals,
-        is_part: prepass.culling().is_bounded(),
-        empty: prepass.shows_nothing().then(Empty::default),
-        plotted,
-        instanced: None,
-        is_limit: false,
-    }
+    let plotted = write_in(&layout.scene(), options, cancel, out)?;
+    Ok(layout.picture(plotted))
 }
 
 /// Writes a drawing as a file.

@@ -7,10 +7,9 @@ use crate::grow::Growth;
 use crate::parallel::with_team;
 
 use super::cells::Way;
-use super::layout::Layout;
 use super::plot::Plot;
 use super::png::Png;
-use super::{Drawing, Options, RenderError, Scene};
+use super::{Drawing, Options, RenderError};
 
 /// Pixels of a picture, in rows from the top, each from the left: red, green, blue and alpha of 8 bits (sRGB).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,19 +60,10 @@ pub fn pixels(
     growth: &Growth<'_>,
     options: &Options,
 ) -> Result<Pixels, RenderError> {
-    let Layout {
-        prepass,
-        canvas,
-        growth,
-    } = match Way::find(graph, growth, options)? {
-        Way::Elements(layout) => *layout,
-        Way::Cells(cells) => return draw(&cells, options, growth.cancel),
-    };
-    draw(
-        &Scene::new(&prepass, &growth, canvas),
-        options,
-        growth.cancel,
-    )
+    match Way::find(graph, growth, options)? {
+        Way::Elements(layout) => draw(&layout.scene(), options, growth.cancel),
+        Way::Cells(cells) => draw(&cells, options, growth.cancel),
+    }
 }
 
 fn draw(

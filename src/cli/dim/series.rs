@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::figure::dimension;
 use crate::measure::exact::{Dimensions, GraphDimensions, dimensions_of_graph};
-use crate::render::{self, Labels, RenderError};
+use crate::render::{self, Labels};
 
 use super::super::rule::Member;
 use super::super::{Failure, output};
@@ -103,10 +103,7 @@ impl Series {
         };
         output::write(path, true, |out, _| {
             let written = dimension::write_series(&self.parameter, &points, &options, out);
-            written.map_err(|error| match error {
-                RenderError::Io(error) => output::failed(error, path),
-                other => anyhow::Error::new(other).into(),
-            })
+            written.map_err(|error| output::explain(error, path))
         })?;
         Ok(())
     }

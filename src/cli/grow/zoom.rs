@@ -2,12 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::readable;
 use crate::render::{Empty, Nearest, ZoomTarget};
 use crate::zoom::{Address, Factor, ZoomSource};
 
-use super::Failure;
-use super::rule::Loaded;
+use super::super::rule::Loaded;
+use super::super::{Failure, readable};
 
 /// Options of zooms.
 #[derive(clap::Args)]
@@ -37,24 +36,19 @@ impl ZoomArguments {
     }
 
     /// Returns the requested zoom, if any.
-    pub(super) fn look(&self, has_view: bool) -> Result<Option<ZoomTarget>, Failure> {
-        let usage = |message: &str| Err(Failure::Usage(message.into()));
-        let look = match (&self.zoom, &self.at) {
-            (None, None) => return Ok(None),
-            (Some(_), None) => {
-                return usage("--zoom needs --at: the centre, such as 0.(1) or 0.5,0");
-            }
-            (factor, Some(at)) => ZoomTarget {
-                factor: factor.clone().unwrap_or_else(Factor::one),
+    pub(super) fn target(&self) -> Result<Option<ZoomTarget>, Failure> {
+        let factor = self.zoom.clone();
+        match &self.at {
+            Some(at) => Ok(Some(ZoomTarget {
+                factor: factor.unwrap_or_else(Factor::one),
                 at: at.clone(),
-            },
-        };
-        if has_view {
-            return usage(
-                "--zoom and --at cannot be combined with --view: each selects what is shown",
-            );
+            })),
+            None if factor.is_none() => Ok(None),
+            None => {
+                let message = "--zoom needs --at: the centre, such as 0.(1) or 0.5,0";
+                Err(Failure::Usage(message.into()))
+            }
         }
-        Ok(Some(look))
     }
 
     /// Returns the options that are given, with their values.

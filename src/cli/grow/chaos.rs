@@ -2,11 +2,11 @@
 
 use std::io::Write;
 use std::num::NonZero;
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use super::readable::counted;
 use crate::chaos::{
     ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, WeightedMaps, play,
 };
@@ -19,11 +19,13 @@ use crate::model::Model;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_density};
 use crate::style::{ColorBy, Colour, Named, Style};
 
-use super::growth::GrowthArguments;
-use super::labels::labels;
-use super::picture::{self, PictureArguments};
-use super::rule::Loaded;
-use super::{Failure, number};
+use super::super::labels::labels;
+use super::super::length::Paper;
+use super::super::picture::{self, PictureArguments};
+use super::super::readable::counted;
+use super::super::rule::Loaded;
+use super::super::{Failure, number};
+use super::Arguments;
 
 /// Options of random iteration, and the choice of the method.
 #[derive(clap::Args)]
@@ -105,75 +107,13 @@ impl ChaosArguments {
         self.method == Method::Chaos
     }
 
-    /// Returns an error if an option of random iteration is given without `--method chaos`.
-    pub(super) fn refuse_alone(&self) -> Result<(), Failure> {
-        let asked = [
+    /// Returns the options that apply to random iteration only, and whether they are given.
+    pub(super) fn of_points(&self) -> [(&'static str, bool); 3] {
+        [
             ("--points", self.points.is_some()),
             ("--tone", self.tone.is_some()),
             ("--start", !self.start.is_empty()),
-        ];
-        match asked.into_iter().find(|(_, is_asked)| *is_asked) {
-            Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} applies to random iteration: add --method chaos"
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// Returns the game that the options request.
-    pub(super) fn game<'a>(
-        &'a self,
-        loaded: &'a Loaded,
-        steps: Option<u32>,
-        picture: &PictureArguments,
-    ) -> Result<ChaosGame<'a>, Failure> {
-        let Model::Ifs(_) = &loaded.model else {
-            return Err(Failure::Usage(format!(
-                "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}; \
-                 without --method it is grown step by step",
-                loaded.name,
-                loaded.model.kind().name()
-            )));
-        };
-        let place = loaded.place()?;
-        let Model::Ifs(source) = loaded.model.within(&place) else {
-            unreachable!("a system stays one");
-        };
-        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
-            let error = anyhow::Error::new(error);
-            error.context(format!(
-                "{} cannot be drawn by random iteration",
-                loaded.name
-            ))
-        })?;
-        let color_by = color_by(picture, &source)?;
-        if steps.is_some() && color_by != ColorBy::FirstMap {
-            let message = "--steps applies to deterministic iteration; with --method chaos, \
-                           --points is the number of points";
-            return Err(Failure::Usage(message.into()));
-        }
-        let walks = NonZero::new(self.walk.unwrap_or(256)).unwrap_or(NonZero::<u32>::MIN);
-        let start = match &self.start[..] {
-            [] => Start::Attractor,
-            points => Start::Points {
-                points: points.iter().map(|&point| place.origin_of(point)).collect(),
-                steps: walks,
-            },
-        };
-        Ok(ChaosGame {
-            arguments: self,
-            loaded,
-            system,
-            start,
-            color_by,
-            is_by_steps: color_by == ColorBy::Hits
-                && picture.asked_color_by().is_none()
-                && !picture.asks_palette()
-                && source.metadata().style.color_by == ColorBy::Step,
-            steps: steps.or(source.metadata().steps).unwrap_or(8),
-            source,
-            place,
-        })
+        ]
     }
 }
 
@@ -194,7 +134,7 @@ fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy,
 
 /// Game that is ready to be played.
 pub(super) struct ChaosGame<'a> {
-    arguments: &'a ChaosArguments,
+    arguments: &'a Arguments,
     loaded: &'a Loaded,
     /// System in the coordinates that `place` maps to those of its file.
     source: Arc<ifs::System>,
@@ -208,30 +148,77 @@ pub(super) struct ChaosGame<'a> {
     steps: u32,
 }
 
-/// Reason for which no file is written.
-pub(super) enum Stopped {
-    /// Failure of random iteration, ready to be reported.
-    Failed(Failure),
-    /// Error of drawing, as for any picture.
-    Render(RenderError),
-}
-
-impl From<RenderError> for Stopped {
-    fn from(error: RenderError) -> Self {
-        Self::Render(error)
-    }
-}
-
 /// Number of points from which the extent of walks is estimated.
 const PILOT: usize = 20_000;
 
 /// Least margin in pixels, which keeps points on the edge of the box inside the picture.
 const EDGE: f64 = 1.0 / 32.0;
 
-impl ChaosGame<'_> {
+impl<'a> ChaosGame<'a> {
+    /// Returns the game that the options request.
+    pub(super) fn new(arguments: &'a Arguments, loaded: &'a Loaded) -> Result<Self, Failure> {
+        let Arguments {
+            chaos,
+            picture,
+            steps,
+            ..
+        } = arguments;
+        let Model::Ifs(source) = &loaded.model else {
+            return Err(Failure::Usage(format!(
+                "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}; \
+                 without --method it is grown step by step",
+                loaded.name,
+                loaded.model.kind().name()
+            )));
+        };
+        let place = loaded.place()?;
+        let source = source
+            .within(&place)
+            .map_or_else(|| source.clone(), Arc::new);
+        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
+            let error = anyhow::Error::new(error);
+            error.context(format!(
+                "{} cannot be drawn by random iteration",
+                loaded.name
+            ))
+        })?;
+        let color_by = color_by(picture, &source)?;
+        if steps.is_some() && color_by != ColorBy::FirstMap {
+            let message = "--steps applies to deterministic iteration; with --method chaos, \
+                           --points is the number of points";
+            return Err(Failure::Usage(message.into()));
+        }
+        let walks = NonZero::new(chaos.walk.unwrap_or(256)).unwrap_or(NonZero::<u32>::MIN);
+        let start = match &chaos.start[..] {
+            [] => Start::Attractor,
+            points => Start::Points {
+                points: points.iter().map(|&point| place.origin_of(point)).collect(),
+                steps: walks,
+            },
+        };
+        Ok(Self {
+            arguments,
+            loaded,
+            system,
+            start,
+            color_by,
+            is_by_steps: color_by == ColorBy::Hits
+                && picture.asked_color_by().is_none()
+                && !picture.asks_palette()
+                && source.metadata().style.color_by == ColorBy::Step,
+            steps: steps.or(source.metadata().steps).unwrap_or(8),
+            source,
+            place,
+        })
+    }
+
     /// Returns the canvas that shows the attractor and the ways to it, or the window.
-    fn canvas(&self, picture: &PictureArguments, size: Size) -> Result<Canvas, RenderError> {
-        let view = picture.view(self.source.metadata()).within(&self.place);
+    fn canvas(&self, size: Size) -> Result<Canvas, RenderError> {
+        let view = self
+            .arguments
+            .picture
+            .view(self.source.metadata())
+            .within(&self.place);
         if let Some(window) = view.window {
             return Ok(Canvas::of_window(window, &view, size)?);
         }
@@ -245,17 +232,29 @@ impl ChaosGame<'_> {
         Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
     }
 
+    /// Returns the failure for which `path` has not been written.
+    fn explain(&self, error: RenderError, path: &Path) -> Failure {
+        (self.arguments.growth).explain(error, self.loaded, path)
+    }
+
     /// Plays the game, draws it and returns a summary.
     pub(super) fn draw(
         &self,
-        size: Size,
-        growth: &GrowthArguments,
-        picture: &PictureArguments,
         progress: Option<&Progress>,
         out: &mut impl Write,
-    ) -> Result<String, Stopped> {
-        let canvas = self.canvas(picture, size)?;
-        let points = self.arguments.points.unwrap_or(10_000_000);
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let Arguments {
+            chaos,
+            growth,
+            picture,
+            size: Paper { size, .. },
+            ..
+        } = self.arguments;
+        let canvas = self
+            .canvas(*size)
+            .map_err(|error| self.explain(error, path))?;
+        let points = chaos.points.unwrap_or(10_000_000);
         let window = HistogramWindow {
             to_pixels: canvas.to_pixels(),
             size: canvas.size(),
@@ -270,18 +269,17 @@ impl ChaosGame<'_> {
             progress,
         };
         let histogram = play(&self.system, &window, &game).map_err(|error| {
-            Stopped::Failed(match error {
-                error @ GameError::TooManyBins { .. } => anyhow::anyhow!(
+            match error {
+                error @ GameError::TooManyBins { .. } => anyhow!(
                     "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
                      in bands"
-                )
-                .into(),
-                other => anyhow::Error::new(other).into(),
-            })
+                ),
+                other => anyhow::Error::new(other),
+            }
         })?;
         let style = picture.style(self.source.metadata());
         let density = Density {
-            tone: self.arguments.tone.unwrap_or_default(),
+            tone: chaos.tone.unwrap_or_default(),
             shades: self.shades(&style, picture.ink(self.source.metadata())),
             background: style.background,
         };
@@ -292,7 +290,8 @@ impl ChaosGame<'_> {
         options.push(("size", size.to_string()));
         options.extend(picture.options());
         let labels = labels(self.loaded, &described, "grow", options);
-        write_density(&histogram, &density, &labels, out)?;
+        write_density(&histogram, &density, &labels, out)
+            .map_err(|error| self.explain(error, path))?;
         let inside = match histogram.inside() {
             inside if inside == points => String::new(),
             inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
@@ -308,18 +307,19 @@ impl ChaosGame<'_> {
     pub(super) fn list(
         &self,
         format: export::Format,
-        growth: &GrowthArguments,
         progress: Option<&Progress>,
         out: &mut impl Write,
-    ) -> Result<String, Stopped> {
-        let points = self.arguments.points.unwrap_or(100_000);
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let growth = &self.arguments.growth;
+        let points = self.arguments.chaos.points.unwrap_or(100_000);
         if points > growth.most_elements() {
             let error = anyhow!(
                 "{} are more rows than --max-elements {} allows",
                 counted(&points.into(), "point"),
                 growth.most_elements()
             );
-            return Err(Stopped::Failed(error.into()));
+            return Err(error.into());
         }
         if let Some(progress) = progress {
             progress.expect(points);
@@ -330,7 +330,8 @@ impl ChaosGame<'_> {
             place: self.place.point(point.place),
             ..point
         });
-        export::write_points(all, format, None, progress, out).map_err(RenderError::from)?;
+        export::write_points(all, format, None, progress, out)
+            .map_err(|error| self.explain(error.into(), path))?;
         let described = counted(&points.into(), "point");
         Ok(format!("{}, {described}", self.loaded.name))
     }
@@ -372,11 +373,11 @@ impl ChaosGame<'_> {
     fn options(&self, points: u64) -> Vec<(&'static str, String)> {
         let mut options = vec![("method", Method::Chaos.name().into())];
         options.push(("points", points.to_string()));
-        if let Some(tone) = self.arguments.tone {
+        if let Some(tone) = self.arguments.chaos.tone {
             options.push(("tone", tone.name().into()));
         }
         if let Start::Points { steps, .. } = &self.start {
-            let starts = self.arguments.start.iter();
+            let starts = self.arguments.chaos.start.iter();
             options.extend(starts.map(|start| ("start", format!("{},{}", start.x, start.y))));
             options.push(("walk", steps.to_string()));
         }

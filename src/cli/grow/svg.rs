@@ -1,11 +1,10 @@
 //! `--svg`: plain and instanced SVG files.
 
-use super::readable;
 use crate::render::Instanced;
 use crate::style::Named;
 
-use super::picture::named;
-use super::text;
+use super::super::picture::named;
+use super::super::{readable, text};
 
 /// Option of SVG files.
 #[derive(clap::Args)]

@@ -2,12 +2,10 @@
 
 use std::num::NonZero;
 
-use super::readable;
-use crate::render::{Format, Pens, Plotted};
+use crate::render::{Pens, Plotted};
 
-use super::Failure;
-use super::picture::PictureArguments;
-use super::text;
+use super::super::picture::PictureArguments;
+use super::super::{readable, text};
 
 /// Options of plots.
 #[derive(clap::Args)]
@@ -34,17 +32,9 @@ impl PlotArguments {
         self.plot
     }
 
-    /// Returns an error if options of plots are given without one: for a table (`format` is `None`), or for a
-    /// format that is not always a plot.
-    pub(super) fn refuse(&self, format: Option<Format>) -> Result<(), Failure> {
-        let message = if self.plot && format.is_none() {
-            "--plot applies to pictures, not to tables"
-        } else if self.pens.is_some() && !self.plot && format != Some(Format::Dxf) {
-            "--pens applies to plots: add --plot, or write a .dxf"
-        } else {
-            return Ok(());
-        };
-        Err(Failure::Usage(message.into()))
+    /// Returns whether a number of pens is given.
+    pub(super) fn has_pens(&self) -> bool {
+        self.pens.is_some()
     }
 
     /// Returns the pens of a plot: one for each colour if colours are requested.

@@ -1,0 +1,336 @@
+//! Pictures of elements: goal, options, notes and summary.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::fractal::Goal;
+use crate::geometry::Homothety;
+use crate::graph::{Graph, Object};
+use crate::grow::Progress;
+use crate::render::{self, Canvas, Format, Picture, RenderError, Size, Unit};
+use crate::style::{ColorBy, Named, Style};
+use crate::zoom::check_model;
+
+use super::super::labels::labels;
+use super::super::length::Paper;
+use super::super::rule::Loaded;
+use super::super::{Failure, growth, length, light, output, readable, text};
+use super::plan::Shown;
+use super::{Arguments, plot, svg, zoom};
+
+/// Seconds that one core of 2026 takes to draw a pixel in a band, within a factor of about 3.
+const SECONDS_A_PIXEL: f64 = 1.3e-8;
+
+/// Picture of elements to be drawn.
+pub(super) struct Drawing<'a> {
+    arguments: &'a Arguments,
+    loaded: Loaded,
+    format: Format,
+    shown: Shown,
+    goal: Goal,
+}
+
+impl<'a> Drawing<'a> {
+    /// Returns the picture of a rule; an error if there is nothing to zoom into, or it cannot be compiled.
+    pub(super) fn new(
+        arguments: &'a Arguments,
+        loaded: Loaded,
+        format: Format,
+        shown: Shown,
+    ) -> Result<Self, Failure> {
+        let loaded = loaded.grown(&arguments.growth);
+        let (steps, detail) = (arguments.steps, arguments.detail);
+        let (loaded, goal) = match shown {
+            Shown::Zoom(_) => {
+                check_model(&loaded.model).map_err(anyhow::Error::from)?;
+                // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates
+                // of the file.
+                let loaded = loaded.within(Homothety::IDENTITY);
+                (loaded, Goal::zoomed(steps, detail))
+            }
+            Shown::Nested => {
+                let goal = Goal::whole(steps, &loaded)?;
+                (loaded, goal)
+            }
+            Shown::Window => {
+                let goal = Goal::asked(steps, detail, &loaded)?;
+                (loaded, goal)
+            }
+        };
+        Ok(Self {
+            arguments,
+            loaded,
+            format,
+            shown,
+            goal,
+        })
+    }
+
+    /// Writes the picture; returns a summary and the number of bytes. If it `is_light`, it is the nearest one
+    /// that browsers show at once.
+    pub(super) fn write(&self, is_light: bool, path: &Path) -> Result<(String, u64), Failure> {
+        let Self {
+            arguments,
+            loaded,
+            goal,
+            ..
+        } = self;
+        let quiet = arguments.growth.quiet;
+        let graph = loaded.compile_for(goal.steps(), self.style().color_by)?;
+        let options = self.options(*goal, graph.place());
+        if let Goal::Steps(steps, None) = *goal
+            && !is_light
+            && options.view.window.is_none()
+            && matches!(self.shown, Shown::Window)
+        {
+            (arguments.growth).check(steps, &graph, loaded, Some(&options))?;
+        }
+        if !quiet {
+            self.note_beforehand(&graph, &options);
+        }
+        let ((picture, drawn), bytes) = output::write(path, quiet, |out, progress| {
+            let explain = |error| arguments.growth.explain(error, loaded, path);
+            if is_light {
+                return self.draw_light(graph, progress, out, path);
+            }
+            let picture = self.draw(*goal, graph, None, progress, out);
+            Ok((picture.map_err(explain)?, *goal))
+        })?;
+        if !quiet {
+            if let Some(instanced) = &picture.instanced {
+                svg::warn(instanced);
+            }
+            if let Some(plotted) = &picture.plotted {
+                arguments.plot.note_pens(plotted);
+            }
+            if let Some(empty) = &picture.empty {
+                text::print_message(&zoom::nothing(&loaded.name, empty));
+            }
+            if drawn != *goal {
+                goal.note_lighter(drawn);
+            }
+        }
+        let reached = drawn.reached(&loaded.name, picture.steps);
+        let summary = summary(&picture, arguments.size.unit);
+        Ok((format!("{reached}, {summary}"), bytes))
+    }
+
+    /// Draws to a goal. `most` replaces the limit on the number of elements.
+    fn draw(
+        &self,
+        goal: Goal,
+        graph: Graph,
+        most: Option<u64>,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+    ) -> Result<Picture, RenderError> {
+        let options = self.options(goal, graph.place());
+        goal.reach(
+            graph,
+            |steps| self.loaded.graph(steps),
+            |graph, steps| {
+                let growth = &self.arguments.growth;
+                let mut growth = growth.drawn_as(&options, steps, progress);
+                growth.most_elements = most.unwrap_or(growth.most_elements);
+                match &self.shown {
+                    Shown::Zoom(target) => {
+                        let source = self.loaded.source();
+                        render::write_zoomed(&source, graph, &growth, &options, target, &mut out)
+                    }
+                    _ => render::write(graph, &growth, &options, &mut out),
+                }
+            },
+        )
+    }
+
+    /// Draws the light picture that comes nearest to the goal, and returns the goal that was reached.
+    fn draw_light(
+        &self,
+        graph: Graph,
+        progress: Option<&Progress>,
+        out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<(Picture, Goal), Failure> {
+        let explain = |error| self.arguments.growth.explain(error, &self.loaded, path);
+        let options = self.options(self.goal, graph.place());
+        let is_zoomed = matches!(self.shown, Shown::Zoom(_));
+        let is_part = is_zoomed || options.view.window.is_some();
+        let color_by = options.style.color_by;
+        let by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);
+        let nearest = light::nearest(self.goal, &graph, is_part, by_steps, |goal| {
+            let graph = self.loaded.compile_for(goal.steps(), color_by)?;
+            let drafted = light::draft(|out| {
+                let most = Some(light::MOST_ELEMENTS);
+                let picture = self.draw(goal, graph, most, None, out)?;
+                Ok((picture, picture.elements))
+            });
+            drafted.map_err(explain)
+        })?;
+        if let Some((drawn, (picture, draft))) = nearest {
+            out.write_all(&draft.bytes)
+                .map_err(|error| output::failed(error, path))?;
+            return Ok((picture, drawn));
+        }
+        let least = match is_zoomed {
+            true => self.goal,
+            false => Goal::Steps(0, None),
+        };
+        let graph = self.loaded.compile_for(least.steps(), color_by)?;
+        let picture = self.draw(least, graph, None, progress, out);
+        Ok((picture.map_err(explain)?, least))
+    }
+
+    /// Returns the style of the picture. A zoom counts no elements: a rule that colours by index or fractal
+    /// is drawn in one colour, unless the command line asks for that `color_by`.
+    fn style(&self) -> Style {
+        let style = self.full_style();
+        match self.lacks_numbers(&style) {
+            true => style.in_one_colour(),
+            false => style,
+        }
+    }
+
+    fn full_style(&self) -> Style {
+        let Arguments { picture, size, .. } = self.arguments;
+        picture.style_in(self.loaded.model.metadata(), size.unit)
+    }
+
+    /// Returns whether the file colours by index or fractal, which requires counting elements, and a zoom is
+    /// drawn for which the command line does not ask for a `color_by`.
+    fn lacks_numbers(&self, style: &Style) -> bool {
+        matches!(style.color_by, ColorBy::Index | ColorBy::Fractal)
+            && matches!(self.shown, Shown::Zoom(_))
+            && self.arguments.picture.asked_color_by().is_none()
+    }
+
+    /// Prints notes about colours that are left out, the estimated time and size of a picture in bands, and
+    /// options without effect.
+    fn note_beforehand(&self, graph: &Graph, options: &render::Options) {
+        if self.lacks_numbers(&self.full_style()) {
+            text::print_message(
+                "note: drawn in one colour, because elements far from the window are not counted",
+            );
+        }
+        if self.format == Format::Png && !options.plot {
+            self.note_bands(graph, options);
+        }
+        let is_filled = |object: &Object| graph.base_elements()[object.base_element].is_closed();
+        let mut drawn = graph.objects().iter().filter(|object| object.visible);
+        let has_lines = options.plot
+            || self.format == Format::Dxf
+            || options.style.outlines_polygons()
+            || drawn.any(|object| !is_filled(object));
+        let mut asked = self.arguments.picture.of_lines().into_iter();
+        if asked.any(|(_, is_asked)| is_asked) && !has_lines {
+            text::print_message(&format!(
+                "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join apply to lines \
+                 only; --stroke and --fill together outline the shapes",
+                self.loaded.name
+            ));
+        }
+    }
+
+    fn note_bands(&self, graph: &Graph, options: &render::Options) {
+        let most = match options.size {
+            Size::Long(side) => u64::from(side).pow(2),
+            Size::Exactly(width, height) => u64::from(width) * u64::from(height),
+        };
+        if most <= options.in_one_piece {
+            return;
+        }
+        let view = &options.view;
+        let canvas = match view.window {
+            Some(window) => Canvas::of_window(window, view, options.size).ok(),
+            None => growth::rough_bounds(graph, self.goal.steps())
+                .and_then(|bounds| Canvas::fit(&bounds, options.size, view.margin).ok()),
+        };
+        let Some([width, height]) = canvas.map(|canvas| canvas.size()) else {
+            return;
+        };
+        if u64::from(width) * u64::from(height) > options.in_one_piece {
+            let bytes = growth::png_bytes(graph, self.goal, options)
+                .map_or_else(String::new, |bytes| {
+                    format!(", to about {}", readable::rough_bytes(bytes))
+                });
+            let pixels = f64::from(width) * f64::from(height);
+            text::print_message(&format!(
+                "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
+                readable::duration(pixels * SECONDS_A_PIXEL)
+            ));
+        }
+    }
+
+    /// Returns the options of the picture, with the labels that describe it in its file. `place` maps the
+    /// coordinates of the graph to those of the rule.
+    fn options(&self, goal: Goal, place: &Homothety) -> render::Options {
+        let Arguments {
+            growth,
+            plot,
+            svg,
+            size,
+            zoom,
+            picture,
+            ..
+        } = self.arguments;
+        let mut options = goal.options();
+        options.extend(growth.options());
+        if self.format != Format::Svg {
+            options.push(("format", self.format.name().into()));
+        }
+        options.extend(plot.options());
+        options.extend(svg.options());
+        options.push(("size", size.to_string()));
+        options.extend(zoom.options());
+        options.extend(picture.options());
+        let Paper { size, unit } = *size;
+        let view = picture.view_in(self.loaded.model.metadata(), unit);
+        render::Options {
+            format: self.format,
+            style: self.style(),
+            view: view.within(place),
+            size,
+            unit,
+            plot: plot.is_asked(),
+            pens: plot.pens(picture),
+            instanced: matches!(self.shown, Shown::Nested),
+            threads: growth.threads(),
+            detail: goal.detail_in(unit),
+            labels: labels(&self.loaded, &goal.described(), "grow", options),
+            ..render::Options::default()
+        }
+    }
+}
+
+/// Describes the contents and the size of a picture.
+fn summary(picture: &Picture, unit: Unit) -> String {
+    let mut summary = match &picture.instanced {
+        Some(instanced) => svg::described(instanced),
+        None if picture.is_limit => {
+            let marks = readable::counted(&picture.elements.into(), "mark");
+            format!("its limit by {marks}")
+        }
+        None => readable::counted(&picture.elements.into(), "element"),
+    };
+    if picture.has_more {
+        summary.insert_str(0, "more than ");
+    }
+    if picture.is_part {
+        summary.push_str(" visited");
+    }
+    if picture.instanced.is_none() {
+        summary.push_str(&fractals(picture.fractals));
+    }
+    summary.push_str(&format!(", {}", length::described(picture.size, unit)));
+    if let Some(plotted) = &picture.plotted {
+        summary.push_str(&format!(", {}", plot::described(plotted)));
+    }
+    summary
+}
+
+/// Describes the number of fractals that elements belong to, if there are several.
+pub(super) fn fractals(count: u64) -> String {
+    match count {
+        0 | 1 => String::new(),
+        _ => format!(" in {}", readable::counted(&count.into(), "fractal")),
+    }
+}

@@ -1,0 +1,197 @@
+//! Plan of `kfrac grow`: the file that is written, decided once from the arguments. Options that exclude each
+//! other are refused here.
+
+use std::path::Path;
+
+use crate::export;
+use crate::render::{self, Unit, ZoomTarget};
+use crate::style::Named;
+
+use super::super::{Failure, format};
+use super::Arguments;
+
+/// File that is written.
+pub(super) enum Plan {
+    /// Table of the elements of a step.
+    Table(export::Format),
+    /// Picture of elements.
+    Picture {
+        format: render::Format,
+        shown: Shown,
+        /// Whether the size is limited to one that browsers show at once: an SVG for which no depth is given.
+        is_light: bool,
+    },
+    /// Points of random iteration: a PNG of their numbers, or a table of them.
+    Chaos(Option<export::Format>),
+}
+
+/// Part of a set that a picture of elements shows.
+pub(super) enum Shown {
+    /// Elements in the window, or all of them.
+    Window,
+    /// All elements of a step, as nested instances.
+    Nested,
+    /// Neighbourhood of a point.
+    Zoom(ZoomTarget),
+}
+
+/// Output format of `grow`: a picture or a table.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Picture(render::Format),
+    Table(export::Format),
+}
+
+impl Named for Format {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("svg", Self::Picture(render::Format::Svg)),
+        ("png", Self::Picture(render::Format::Png)),
+        ("pdf", Self::Picture(render::Format::Pdf)),
+        ("dxf", Self::Picture(render::Format::Dxf)),
+        ("csv", Self::Table(export::Format::Csv)),
+        ("json", Self::Table(export::Format::JsonLines)),
+        ("jsonl", Self::Table(export::Format::JsonLines)),
+        ("ndjson", Self::Table(export::Format::JsonLines)),
+    ];
+}
+
+impl Plan {
+    /// Returns the plan of the arguments; an error if they exclude each other.
+    pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        let Arguments {
+            chaos,
+            plot,
+            svg,
+            zoom,
+            picture,
+            ..
+        } = arguments;
+        let (is_chaos, has_detail) = (chaos.is_asked(), arguments.detail.is_some());
+        if is_chaos {
+            let message = "--detail applies to elements, and --method chaos draws points";
+            refuse(has_detail, message)?;
+            let lines = [
+                ("--plot", plot.is_asked()),
+                ("--svg instanced", svg.is_instanced()),
+            ];
+            let lines = picture.of_lines().into_iter().chain(lines);
+            for (option, is_asked) in lines {
+                let message = format!("{option} applies to lines, and --method chaos draws points");
+                refuse(is_asked, message)?;
+            }
+        } else {
+            for (option, is_asked) in chaos.of_points() {
+                let message = format!("{option} applies to random iteration: add --method chaos");
+                refuse(is_asked, message)?;
+            }
+            picture.refuse_hits()?;
+        }
+        let path = arguments
+            .output
+            .as_deref()
+            .filter(|path| *path != Path::new("-"));
+        let format = match arguments.format {
+            None if is_chaos && path.is_none() => Format::Picture(render::Format::Png),
+            asked => format::choose(asked, path)?,
+        };
+        let drawn = match format {
+            Format::Picture(format) => Some(format),
+            Format::Table(_) => None,
+        };
+        let is_table = drawn.is_none();
+        if is_chaos
+            && let Some(format) = drawn
+            && format != render::Format::Png
+        {
+            let a = if format == render::Format::Svg {
+                "an"
+            } else {
+                "a"
+            };
+            return Err(Failure::Usage(format!(
+                "--method chaos draws points, too many for {a} {}: write a .png, or a .csv of the points",
+                format.name().to_uppercase()
+            )));
+        }
+        refuse(
+            has_detail && is_table,
+            "--detail is a size in pixels, and only pictures have pixels",
+        )?;
+        refuse(
+            plot.is_asked() && is_table,
+            "--plot applies to pictures, not to tables",
+        )?;
+        refuse(
+            plot.has_pens() && !plot.is_asked() && drawn != Some(render::Format::Dxf),
+            "--pens applies to plots: add --plot, or write a .dxf",
+        )?;
+        refuse(
+            arguments.size.unit != Unit::Pixel && drawn.is_some_and(|format| !format.has_lengths()),
+            "a PNG is sized in pixels, not in millimetres: --size 2000 is 2000 pixels; SVG, PDF and DXF \
+             support both",
+        )?;
+        if is_chaos {
+            return Ok(Self::Chaos(match format {
+                Format::Table(format) => Some(format),
+                Format::Picture(_) => None,
+            }));
+        }
+        let is_nested = svg.is_instanced();
+        refuse(
+            is_nested && drawn != Some(render::Format::Svg),
+            "--svg instanced applies to SVG only: write a .svg",
+        )?;
+        refuse(
+            is_nested && plot.is_asked(),
+            "--plot draws every single line, and --svg instanced draws none by itself: give only one of them",
+        )?;
+        refuse(
+            is_nested && has_detail,
+            "--detail leaves out small elements, and --svg instanced draws all elements of a step without a \
+             larger file: give --steps instead",
+        )?;
+        refuse(
+            is_nested && zoom.is_asked(),
+            "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them",
+        )?;
+        let target = zoom.target()?;
+        refuse(
+            target.is_some() && picture.has_view(),
+            "--zoom and --at cannot be combined with --view: each selects what is shown",
+        )?;
+        refuse(
+            target.is_some() && is_table,
+            "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
+        )?;
+        let gives_depth =
+            arguments.steps.is_some() || has_detail || arguments.growth.says_most_elements();
+        Ok(match format {
+            Format::Table(format) => Self::Table(format),
+            Format::Picture(format) => Self::Picture {
+                format,
+                is_light: format == render::Format::Svg && !gives_depth && !is_nested,
+                shown: match target {
+                    Some(target) => Shown::Zoom(target),
+                    None if is_nested => Shown::Nested,
+                    None => Shown::Window,
+                },
+            },
+        })
+    }
+
+    /// Returns the extension of the file.
+    pub(super) fn extension(&self) -> &'static str {
+        match self {
+            Self::Table(format) | Self::Chaos(Some(format)) => Format::Table(*format).name(),
+            Self::Picture { format, .. } => format.name(),
+            Self::Chaos(None) => render::Format::Png.name(),
+        }
+    }
+}
+
+fn refuse(is_wrong: bool, message: impl Into<String>) -> Result<(), Failure> {
+    match is_wrong {
+        true => Err(Failure::Usage(message.into())),
+        false => Ok(()),
+    }
+}
