@@ -18,7 +18,7 @@ pub struct Description {
 /// Parameter with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name in expressions and for `--set`.
+    /// Name in expressions and settings.
     pub name: String,
     /// Value.
     pub value: f64,

@@ -87,9 +87,9 @@ fn failure(error: ConvertError, loaded: &Loaded, to: Kind) -> Failure {
     let name = &loaded.name;
     match error {
         ConvertError::Compile(error) => loaded.model.diagnostic(&error).into(),
-        ConvertError::Refused(Refusal::SameKind(_)) => {
-            Failure::Usage(format!("{name} is not converted: {error}"))
-        }
+        ConvertError::Refused(Refusal::SameKind(_)) => Failure::Usage(format!(
+            "{name} is not converted: {error}: `kfrac cat --inline` shows all of it"
+        )),
         _ => anyhow::anyhow!("{name} does not become {}: {error}", with_article(to)).into(),
     }
 }

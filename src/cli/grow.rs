@@ -132,7 +132,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             format,
             shown,
             is_light,
-        } => Drawing::new(arguments, loaded, format, shown)?.write(is_light, path)?,
+        } => Drawing::new(arguments, loaded, format, shown, path)?.write(is_light)?,
         Plan::Chaos(table) => {
             let game = chaos::ChaosGame::new(arguments, &loaded)?;
             output::write(path, arguments.growth.quiet, |out, progress| match table {

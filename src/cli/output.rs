@@ -3,12 +3,12 @@
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use serde::Serialize;
 
 use crate::grow::Progress;
 use crate::output_file::{BUFFER, OutputFile, WriteError};
-use crate::render::RenderError;
+use crate::render::{Remedy, RenderError};
 
 use super::{Failure, input, progress};
 
@@ -107,12 +107,22 @@ pub(super) fn failed(error: io::Error, path: &Path) -> Failure {
     anyhow::Error::new(error).context(message).into()
 }
 
-/// Returns the failure to draw a picture into `path`.
+/// Returns the failure to draw a picture into `path`, with the option that remedies it.
 pub(super) fn explain(error: RenderError, path: &Path) -> Failure {
-    match error {
-        RenderError::Io(error) => failed(error, path),
-        other => anyhow::Error::new(other).into(),
-    }
+    let option = match error.remedy() {
+        Some(Remedy::OtherColours) => "--color-by none",
+        Some(Remedy::NoFill) => "--fill transparent",
+        Some(Remedy::RoundEnds) => "--cap round --join round",
+        Some(Remedy::PixelWidth) => "--stroke-width 1.5",
+        Some(Remedy::Window) => "--view X,Y,W,H",
+        None => {
+            return match error {
+                RenderError::Io(error) => failed(error, path),
+                other => anyhow::Error::new(other).into(),
+            };
+        }
+    };
+    anyhow!("{error} ({option})").into()
 }
 
 /// Returns the name of an output in messages.

@@ -7,7 +7,7 @@ use crate::model::Kind;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// The fractal is of that kind already.
-    #[error("it is of the kind '{}' already: `kfrac cat --inline` shows all of it", .0.name())]
+    #[error("it is of the kind '{}' already", .0.name())]
     SameKind(Kind),
     /// Kept elements have other shapes than lines.
     #[error(

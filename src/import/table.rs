@@ -14,9 +14,7 @@ const MOST_POINTS: usize = 1 << 27;
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
     /// No columns are named, and the table does not have two.
-    #[error(
-        "the table has {columns} columns, and points have two: say which ones, as in --columns x,y"
-    )]
+    #[error("the table has {columns} columns, and points have two: name two of them")]
     Columns {
         /// The number of columns.
         columns: usize,

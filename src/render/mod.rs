@@ -279,6 +279,46 @@ pub enum RenderError {
     Io(#[from] io::Error),
 }
 
+/// Change of [`Options`] or of the growth with which a picture can be drawn after all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Colours by a property that does not distinguish elements by number, or a single colour.
+    OtherColours,
+    /// No fill.
+    NoFill,
+    /// Round caps and round joins.
+    RoundEnds,
+    /// Stroke width in pixels.
+    PixelWidth,
+    /// Window of a step, in place of a zoom.
+    Window,
+}
+
+impl RenderError {
+    /// Returns the change of options with which the picture can be drawn, where there is one.
+    #[must_use]
+    pub fn remedy(&self) -> Option<Remedy> {
+        Some(match self {
+            Self::NotInstanced(NotInstanced::Colours { .. }) | Self::NoZoom(NoZoom::Numbers) => {
+                Remedy::OtherColours
+            }
+            Self::NotInstanced(NotInstanced::Areas) => Remedy::NoFill,
+            Self::NotInstanced(NotInstanced::Corners) => Remedy::RoundEnds,
+            Self::NotInstanced(NotInstanced::Flattened) | Self::Zoom(ZoomError::WideStroke) => {
+                Remedy::PixelWidth
+            }
+            Self::Zoom(
+                ZoomError::NoLimit(_)
+                | ZoomError::CountsIndex
+                | ZoomError::StartsAnew
+                | ZoomError::NoReach,
+            ) => Remedy::Window,
+            _ => return None,
+        })
+    }
+}
+
 impl From<WalkError<io::Error>> for RenderError {
     fn from(error: WalkError<io::Error>) -> Self {
         match error {

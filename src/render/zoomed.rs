@@ -27,7 +27,7 @@ pub enum NoZoom {
     /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
     #[error(
         "elements and fractals far from the window are not counted, so that colours cannot tell their \
-         numbers; --color-by none draws them in one colour"
+         numbers; a single colour draws them"
     )]
     Numbers,
 }

@@ -121,26 +121,23 @@ pub struct Zoom {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ZoomError {
     /// There is no limit set, and therefore no point to zoom into.
-    #[error(
-        "there is nothing to zoom into without end: {0}; --view X,Y,W,H draws a part of a step"
-    )]
+    #[error("there is nothing to zoom into without end: {0}; a window draws a part of a step")]
     NoLimit(NoLimit),
     /// The subtree of an element depends on the elements before it.
     #[error(
         "what becomes of an element depends on the number of all those before it, and those far from \
-         the window are not grown; --view X,Y,W,H draws a part of a step"
+         the window are not grown; a window draws a part of a step"
     )]
     CountsIndex,
     /// The L-system does not rewrite edges: each number of steps has its own initiator.
     #[error(
         "there is nothing to zoom into without end: it does not rewrite edges, so that every step of it \
-         starts anew; --view X,Y,W,H draws a part of a step"
+         starts anew; a window draws a part of a step"
     )]
     StartsAnew,
     /// The graph gives no bound on the extent of subtrees.
     #[error(
-        "it is not known how far what becomes of its elements reaches; --view X,Y,W,H draws a part of a \
-         step"
+        "it is not known how far what becomes of its elements reaches; a window draws a part of a step"
     )]
     NoReach,
     /// An address leads to a position that does not exist.

@@ -4,13 +4,13 @@ use std::io::{self, Cursor, Read};
 use std::num::NonZero;
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 
 use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
 use crate::graph::Graph;
 use crate::grow::Growth;
-use crate::import::{Channel, Raster, read_points};
+use crate::import::{Channel, Raster, TableError, read_points};
 use crate::measure::exact::{Spectrum, dimensions_of_graph};
 use crate::measure::{
     Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, LimitSetError, Masses,
@@ -79,7 +79,11 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
         }
         Kind::Table => {
             let points = read_points(&mut whole, arguments.columns.as_ref());
-            of_points(arguments, &name, points.with_context(|| name.clone())?)
+            let points = points.map_err(|error| match error {
+                TableError::Columns { .. } => anyhow!("{name}: {error}, as in --columns x,y"),
+                error => anyhow::Error::new(error).context(name.clone()),
+            })?;
+            of_points(arguments, &name, points)
         }
         Kind::Rule => {
             let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;

@@ -28,6 +28,7 @@ pub(super) struct Drawing<'a> {
     format: Format,
     shown: Shown,
     goal: Goal,
+    path: &'a Path,
 }
 
 impl<'a> Drawing<'a> {
@@ -37,12 +38,13 @@ impl<'a> Drawing<'a> {
         loaded: Loaded,
         format: Format,
         shown: Shown,
+        path: &'a Path,
     ) -> Result<Self, Failure> {
         let loaded = loaded.grown(&arguments.growth);
         let (steps, detail) = (arguments.steps, arguments.detail);
         let (loaded, goal) = match shown {
             Shown::Zoom(_) => {
-                check_model(&loaded.model).map_err(anyhow::Error::from)?;
+                check_model(&loaded.model).map_err(|error| output::explain(error.into(), path))?;
                 // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates
                 // of the file.
                 let loaded = loaded.within(Homothety::IDENTITY);
@@ -63,16 +65,18 @@ impl<'a> Drawing<'a> {
             format,
             shown,
             goal,
+            path,
         })
     }
 
     /// Writes the picture; returns a summary and the number of bytes. If it `is_light`, it is the nearest one
     /// that browsers show at once.
-    pub(super) fn write(&self, is_light: bool, path: &Path) -> Result<(String, u64), Failure> {
+    pub(super) fn write(&self, is_light: bool) -> Result<(String, u64), Failure> {
         let Self {
             arguments,
             loaded,
             goal,
+            path,
             ..
         } = self;
         let quiet = arguments.growth.quiet;
@@ -91,7 +95,7 @@ impl<'a> Drawing<'a> {
         let ((picture, drawn), bytes) = output::write(path, quiet, |out, progress| {
             let explain = |error| arguments.growth.explain(error, loaded, path);
             if is_light {
-                return self.draw_light(graph, progress, out, path);
+                return self.draw_light(graph, progress, out);
             }
             let picture = self.draw(*goal, graph, None, progress, out);
             Ok((picture.map_err(explain)?, *goal))
@@ -149,9 +153,8 @@ impl<'a> Drawing<'a> {
         graph: Graph,
         progress: Option<&Progress>,
         out: &mut dyn Write,
-        path: &Path,
     ) -> Result<(Picture, Goal), Failure> {
-        let explain = |error| self.arguments.growth.explain(error, &self.loaded, path);
+        let explain = |error| (self.arguments.growth).explain(error, &self.loaded, self.path);
         let options = self.options(self.goal, graph.place());
         let is_zoomed = matches!(self.shown, Shown::Zoom(_));
         let is_part = is_zoomed || options.view.window.is_some();
@@ -168,7 +171,7 @@ impl<'a> Drawing<'a> {
         })?;
         if let Some((drawn, (picture, draft))) = nearest {
             out.write_all(&draft.bytes)
-                .map_err(|error| output::failed(error, path))?;
+                .map_err(|error| output::failed(error, self.path))?;
             return Ok((picture, drawn));
         }
         let least = match is_zoomed {

@@ -40,7 +40,7 @@ pub(super) const LIKING: [Member; 5] = [
     key(
         "steps",
         Form::Whole(0, Some(MOST_STEPS)),
-        "How often elements are replaced, if `--steps` does not say.",
+        "The number of steps, unless another is asked for.",
     ),
     key(
         "dimension",

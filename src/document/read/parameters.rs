@@ -38,7 +38,7 @@ pub(in crate::document) const PARAMS: Member = key(
         0,
     ),
     "Parameters by name: a value, or a value with its limits and meaning. Formulas use them, and \
-     `--set NAME=VALUE` changes them. A complex one is [real part, imaginary part].",
+     other values can be set from outside. A complex one is [real part, imaginary part].",
 );
 
 pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<ParameterDocument> {

@@ -21,7 +21,8 @@ pub enum NotInstanced {
     Resets,
     /// Colours depend on more than the object and the step.
     #[error(
-        "--color-by {by} tells elements of one symbol apart; step, age, generator, direction, tint and none work"
+        "colours by {by} distinguish elements of one symbol; those by step, age, generator, direction and tint do \
+         not, nor does a single colour"
     )]
     Colours {
         /// Name of the property on which colours depend.
@@ -29,18 +30,16 @@ pub enum NotInstanced {
     },
     /// The inside of a closed path of elements is filled.
     #[error(
-        "the area inside a path that is grown is no union of copies; --fill transparent leaves it out"
+        "the area inside a path that is grown is no union of copies; a transparent fill leaves it out"
     )]
     Areas,
     /// Caps or joins between single elements would be visible.
     #[error(
-        "elements are stroked one by one, so that they join only with --cap round and --join round"
+        "elements are stroked one by one, so that they join only with round caps and round joins"
     )]
     Corners,
     /// Widths are relative, and maps are not similarities.
-    #[error(
-        "its maps would flatten strokes of a relative width; --stroke-width 1.5, in pixels, works"
-    )]
+    #[error("its maps would flatten strokes of a relative width; a width in pixels works")]
     Flattened,
     /// Rounding would be visible.
     #[error("the window is too small: browsers count in single precision")]
