@@ -57,12 +57,10 @@ fn window(side: u32) -> HistogramWindow {
 
 fn bench(bencher: Bencher, system: &WeightedMaps, side: u32, classes: ClassBy, threads: usize) {
     let window = window(side);
-    let game = Game {
-        points: POINTS,
-        classes,
-        threads: NonZero::new(threads).unwrap(),
-        ..Game::default()
-    };
+    let game = Game::default()
+        .points(POINTS)
+        .classes(classes)
+        .threads(NonZero::new(threads).unwrap());
     bencher
         .counter(ItemsCount::new(POINTS))
         .bench(|| play(system, &window, &game).unwrap());

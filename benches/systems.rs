@@ -39,16 +39,14 @@ fn graph(text: String) -> Graph {
 }
 
 fn draw(graph: &Graph) {
-    let options = Options {
-        format: Format::Png,
-        size: Size::Long(1024),
-        detail: Some(Detail {
+    let options = Options::default()
+        .format(Format::Png)
+        .size(Size::Long(1024))
+        .detail(Some(Detail {
             pixels: 1.0,
             decides_steps: true,
-        }),
-        threads: NonZero::new(2).unwrap(),
-        ..Options::default()
-    };
+        }))
+        .threads(NonZero::new(2).unwrap());
     render::write(graph, &Growth::steps(1_000_000), &options, &mut io::sink()).unwrap();
 }
 

@@ -86,6 +86,9 @@
 //!
 #![doc = include_str!("glossary.md")]
 
+#[macro_use]
+mod setters;
+
 pub mod build;
 pub mod catalogue;
 pub mod chaos;

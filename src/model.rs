@@ -17,6 +17,7 @@ use crate::rule::Rule;
 
 /// Kind of a model and of its file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Kind {
     /// Production rule.
     #[default]
@@ -47,6 +48,7 @@ impl Kind {
 
 /// Validated model: immutable, without unparsed text.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Model {
     /// Production rule.
     Rule(Arc<Rule>),

@@ -121,6 +121,7 @@ pub enum Join {
 
 /// Attribute of an element that determines its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ColorBy {
     /// No attribute: all elements have one colour.
     #[default]

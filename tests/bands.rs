@@ -17,13 +17,11 @@ fn png(name: &str, steps: u32, band: Option<u64>, change: &dyn Fn(&mut Options))
     let document = common::document(name);
     let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
     let graph = Graph::compile(&rule, steps).unwrap();
-    let mut options = Options {
-        style: rule.style().clone(),
-        format: Format::Png,
-        size: Size::Long(90),
-        threads: NonZero::<usize>::MIN,
-        ..Options::default()
-    };
+    let mut options = Options::default()
+        .style(rule.style().clone())
+        .format(Format::Png)
+        .size(Size::Long(90))
+        .threads(NonZero::<usize>::MIN);
     if let Some(band) = band {
         (options.in_one_piece, options.band) = (0, band);
     }
@@ -139,14 +137,12 @@ fn sheets_do_not_know_of_bands() {
         .collect();
     for width in [1.5, 6.0] {
         let [whole, drawn] = [u64::MAX, 9_000].map(|band| {
-            let mut options = Options {
-                format: Format::Png,
-                size: Size::Long(70),
-                in_one_piece: 0,
-                band,
-                threads: NonZero::<usize>::MIN,
-                ..Options::of(rule.metadata())
-            };
+            let mut options = Options::of(rule.metadata())
+                .format(Format::Png)
+                .size(Size::Long(70))
+                .in_one_piece(0)
+                .band(band)
+                .threads(NonZero::<usize>::MIN);
             options.style.width = Width::Pixels(width);
             let mut bytes = Vec::new();
             sheet::write(&cells, Some(2), &options, &mut bytes).unwrap();
@@ -160,23 +156,18 @@ fn sheets_do_not_know_of_bands() {
 fn progress_counts_pixels() {
     let koch = common::resolved(&common::document("koch"), &[]);
     let graph = Graph::compile(&koch, 12).unwrap();
-    let options = Options {
-        format: Format::Png,
-        in_one_piece: 0,
-        band: 12_000,
-        size: Size::Long(600),
-        threads: NonZero::<usize>::MIN,
-        detail: Some(Detail {
+    let options = Options::default()
+        .format(Format::Png)
+        .in_one_piece(0)
+        .band(12_000)
+        .size(Size::Long(600))
+        .threads(NonZero::<usize>::MIN)
+        .detail(Some(Detail {
             pixels: 1.0,
             decides_steps: false,
-        }),
-        ..Options::default()
-    };
+        }));
     let progress = Progress::default();
-    let growth = Growth {
-        progress: Some(&progress),
-        ..Growth::steps(12)
-    };
+    let growth = Growth::steps(12).progress(Some(&progress));
     let mut bytes = Vec::new();
     let picture = render::write(&graph, &growth, &options, &mut bytes).unwrap();
     // Two passes over the pixels, and the prepass.

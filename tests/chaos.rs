@@ -107,10 +107,7 @@ fn ternary(digits: u32) -> HistogramWindow {
 }
 
 fn game(points: u64) -> Game<'static> {
-    Game {
-        points,
-        ..Game::default()
-    }
+    Game::default().points(points)
 }
 
 /// Returns the moments of a histogram, in the units of the plane. Errors of half a pixel in points cancel in
@@ -213,12 +210,10 @@ fn threads_do_not_tell() {
         (recurrent, Start::Attractor, ClassBy::Map { ago: 0 }),
     ] {
         let on = |threads| {
-            let game = Game {
-                start: start.clone(),
-                classes,
-                threads: NonZero::new(threads).unwrap(),
-                ..game(2_500_001)
-            };
+            let game = game(2_500_001)
+                .start(start.clone())
+                .classes(classes)
+                .threads(NonZero::new(threads).unwrap());
             play(&system, &window, &game).unwrap()
         };
         let one = on(1);
@@ -232,11 +227,7 @@ fn threads_do_not_tell() {
 fn counts_are_pinned() {
     let window = fern_window(64);
     let hash = |classes, seed| {
-        let game = Game {
-            classes,
-            seed,
-            ..game(200_000)
-        };
+        let game = game(200_000).classes(classes).seed(seed);
         let histogram = play(&fern(), &window, &game).unwrap();
         let counts = (0..histogram.classes()).flat_map(|class| histogram.counts(class).to_vec());
         counts.fold(0xcbf2_9ce4_8422_2325u64, |hash, count| {
@@ -339,10 +330,7 @@ fn weights_are_honoured_and_classes_are_tiles() {
     let digits = (0..3).map(|place| digit(place, weights[place as usize]));
     let system = system(&ifs(digits.collect()));
     for ago in 0..2 {
-        let game = Game {
-            classes: ClassBy::Map { ago },
-            ..game(400_000)
-        };
+        let game = game(400_000).classes(ClassBy::Map { ago });
         let columns = columns(&play(&system, &ternary(2), &game).unwrap());
         for (class, columns) in columns.iter().enumerate() {
             for (cell, &count) in columns.iter().enumerate() {
@@ -391,10 +379,7 @@ fn condensation_sets_are_drawn_at_every_level() {
     let point = Shape::Point(DVec2::new(0.5, 0.5));
     let maps = vec![digit(0, 1.0), digit(2, 1.0)];
     let system = system(&condensed(maps, vec![(point, 2.0)]));
-    let game = Game {
-        classes: ClassBy::Map { ago: 0 },
-        ..game(400_000)
-    };
+    let game = game(400_000).classes(ClassBy::Map { ago: 0 });
     let columns = columns(&play(&system, &ternary(3), &game).unwrap());
     // Half of the points, then an eighth in the middle of either third, and so on.
     let about = |count: u32, expected: f64| (f64::from(count) - expected).abs() < 1_500.0;
@@ -415,10 +400,7 @@ fn walks_from_given_starts_are_drawn_whole() {
             steps: NonZero::new(steps).unwrap(),
         };
         let window = window(DVec2::Y, 27.0, [54, 27]);
-        let game = Game {
-            start,
-            ..game(100_000)
-        };
+        let game = game(100_000).start(start);
         columns(&play(&system, &window, &game).unwrap()).remove(0)
     };
     let hit = |columns: Vec<u32>| -> Vec<usize> {
@@ -452,11 +434,9 @@ fn what_lies_outside_is_counted_but_not_drawn() {
 fn progress_is_told_and_games_can_be_cancelled() {
     let progress = Progress::default();
     let cancel = AtomicBool::new(false);
-    let mut game = Game {
-        progress: Some(&progress),
-        cancel: Some(&cancel),
-        ..game(1_234_567)
-    };
+    let mut game = game(1_234_567)
+        .progress(Some(&progress))
+        .cancel(Some(&cancel));
     let window = fern_window(32);
     play(&fern(), &window, &game).unwrap();
     assert_eq!(progress.walked(), 1_234_567);
@@ -492,7 +472,7 @@ fn what_cannot_be_played_is_refused() {
         points: vec![DVec2::ZERO, DVec2::NAN],
         steps: NonZero::<u32>::MIN,
     };
-    let game = Game { start, ..game(1) };
+    let game = game(1).start(start);
     assert_eq!(
         refused(fern_window(64), game),
         GameError::Start { start: 1 }
@@ -512,10 +492,7 @@ fn pixels(density: &Density, classes: ClassBy) -> Vec<[u8; 4]> {
     // Two maps, each onto a point.
     let point = |x: f64, weight: f64| maps(&[[0.0, 0.0, 0.0, 0.0, x, 0.5, weight]]).remove(0);
     let system = system(&ifs(vec![point(0.5, 1.0), point(1.5, 3.0)]));
-    let game = Game {
-        classes,
-        ..game(100_000)
-    };
+    let game = game(100_000).classes(classes);
     let histogram = play(&system, &window(DVec2::Y, 1.0, [3, 1]), &game).unwrap();
     let mut bytes = Vec::new();
     write_density(&histogram, density, &Labels::default(), &mut bytes).unwrap();
@@ -531,11 +508,7 @@ fn pixels(density: &Density, classes: ClassBy) -> Vec<[u8; 4]> {
 #[test]
 fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
     let paper = Some(Colour::grey(255));
-    let linear = Density {
-        tone: Tone::Linear,
-        background: paper,
-        ..Density::default()
-    };
+    let linear = Density::default().tone(Tone::Linear).background(paper);
     let [first, second, none] = pixels(&linear, ClassBy::One)[..] else {
         panic!("three pixels");
     };
@@ -543,11 +516,7 @@ fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
     // A third of the ink.
     assert!(first[0].abs_diff(170) <= 3 && first[3] == 255, "{first:?}");
 
-    let plain = Density {
-        tone: Tone::Plain,
-        background: None,
-        ..linear.clone()
-    };
+    let plain = linear.clone().tone(Tone::Plain).background(None);
     let drawn = pixels(&plain, ClassBy::One);
     assert_eq!(drawn, [[0, 0, 0, 255], [0, 0, 0, 255], [0; 4]]);
 
@@ -555,17 +524,11 @@ fn histograms_are_drawn_in_ink_in_palettes_and_by_class() {
         Colour::of_rgba([255, 0, 0, 255]),
         Colour::of_rgba([0, 0, 255, 255]),
     ];
-    let classes = Density {
-        shades: Shades::Classes(inks.into()),
-        ..plain
-    };
+    let classes = plain.shades(Shades::Classes(inks.into()));
     let drawn = pixels(&classes, ClassBy::Map { ago: 0 });
     assert_eq!(drawn, [[255, 0, 0, 255], [0, 0, 255, 255], [0; 4]]);
 
-    let palette = Density {
-        shades: Shades::Palette(Palette::default()),
-        ..linear
-    };
+    let palette = linear.shades(Shades::Palette(Palette::default()));
     let drawn = pixels(&palette, ClassBy::One);
     assert_eq!(drawn[1], Palette::default().at(1.0).rgba());
     assert_eq!(drawn[2], [255; 4]);

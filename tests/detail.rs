@@ -52,10 +52,7 @@ impl Cut {
     }
 
     fn walked(mut self, graph: &Graph, steps: u32, seed: u64) -> Self {
-        let growth = Growth {
-            seed,
-            ..Growth::steps(steps)
-        };
+        let growth = Growth::steps(steps).seed(seed);
         walk(graph, &growth, &mut self).unwrap();
         self
     }
@@ -130,7 +127,7 @@ proptest! {
     #[test]
     fn what_is_not_small_is_not_cut(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
-        let plain = common::grown(&graph, &Growth { seed, ..Growth::steps(steps) });
+        let plain = common::grown(&graph, &Growth::steps(steps).seed(seed));
         let cut = Cut::to(1e-9).walked(&graph, steps, seed);
         prop_assert_eq!(plain.len(), cut.fractals.len());
         for (plain, (fractal, elements, _)) in plain.iter().zip(&cut.fractals) {
@@ -186,15 +183,13 @@ fn drawn(rule: &Arc<Rule>, steps: u32, options: &Options) -> (Picture, Vec<u8>) 
 
 /// Returns the options of a picture of a window.
 fn window(rule: &Rule, window: [f64; 4], side: u32) -> Options {
-    Options {
-        format: Format::Png,
-        view: View {
+    Options::of(rule.metadata())
+        .format(Format::Png)
+        .view(View {
             window: Some(window),
             margin: 0.0,
-        },
-        size: Size::Exactly(side, side),
-        ..Options::of(rule.metadata())
-    }
+        })
+        .size(Size::Exactly(side, side))
 }
 
 #[test]
@@ -263,10 +258,7 @@ fn elements_are_replaced_until_they_are_smaller() {
                 .all(|e| e.frame.length() < 0.03 || !e.fertile || e.born == 4)
         );
         // Growing as many steps gives an identical picture, colours by step and age included.
-        let mut again = Options {
-            detail: detail(3.0, false),
-            ..options.clone()
-        };
+        let mut again = options.clone().detail(detail(3.0, false));
         for by in [ColorBy::Step, ColorBy::Age] {
             options.style.color_by = by;
             again.style.color_by = by;
@@ -282,18 +274,18 @@ fn elements_are_replaced_until_they_are_smaller() {
 #[test]
 fn the_detail_is_that_of_the_picture_as_it_comes_out() {
     // Two pixels from end to end, one pixel of margin and half of the stroke on either side.
-    let options = |pixels| Options {
-        size: Size::Exactly(732, 732),
-        detail: detail(pixels, true),
-        style: kfrac::style::Style {
-            width: kfrac::style::Width::Pixels(1.0),
-            ..Default::default()
-        },
-        view: View {
-            window: None,
-            margin: 1.0,
-        },
-        ..Options::default()
+    let options = |pixels| {
+        Options::default()
+            .size(Size::Exactly(732, 732))
+            .detail(detail(pixels, true))
+            .style(kfrac::style::Style {
+                width: kfrac::style::Width::Pixels(1.0),
+                ..Default::default()
+            })
+            .view(View {
+                window: None,
+                margin: 1.0,
+            })
     };
     let koch = library("koch");
     let graph = compiled(&koch, 0);
@@ -312,10 +304,7 @@ fn the_detail_is_that_of_the_picture_as_it_comes_out() {
 fn what_has_no_end_is_refused() {
     let refused = |rule: Arc<Rule>, limit| {
         let graph = compiled(&rule, limit);
-        let options = Options {
-            detail: detail(1.0, true),
-            ..Options::of(rule.metadata())
-        };
+        let options = Options::of(rule.metadata()).detail(detail(1.0, true));
         let growth = Growth::steps(limit);
         match render::write(&graph, &growth, &options, &mut Vec::new()) {
             Err(RenderError::NoDetail(why)) => why,
@@ -491,11 +480,9 @@ fn a_detail_of_even_elements_is_a_number_of_steps() {
         "gosper",
     ] {
         let rule = library(name);
-        let mut options = Options {
-            size: Size::Long(100),
-            detail: detail(4.0, true),
-            ..Options::of(rule.metadata())
-        };
+        let mut options = Options::of(rule.metadata())
+            .size(Size::Long(100))
+            .detail(detail(4.0, true));
         let (picture, bytes) = drawn(&rule, 1000, &options);
         options.detail = None;
         assert!(picture.steps > 1, "{name}");

@@ -18,10 +18,7 @@ fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize
     const DEEPEST: u32 = 16;
     let rule = resolved(&document(name), &[]);
     let graph = Graph::compile(&rule, DEEPEST).unwrap();
-    let options = Options {
-        size: Size::Long(side),
-        ..Options::of(rule.metadata())
-    };
+    let options = Options::of(rule.metadata()).size(Size::Long(side));
     let estimator = Estimator::new(&graph, &options);
     let Some(mut forecast) = graph.forecast().filter(|_| graph.is_plain()) else {
         return 0;
@@ -81,11 +78,9 @@ fn sizes_of_png_are_estimated() {
     ] {
         let rule = resolved(&document(name), &[]);
         let graph = Graph::compile(&rule, step).unwrap();
-        let options = Options {
-            size: Size::Long(4000),
-            format: Format::Png,
-            ..Options::of(rule.metadata())
-        };
+        let options = Options::of(rule.metadata())
+            .size(Size::Long(4000))
+            .format(Format::Png);
         let mut forecast = graph.forecast().unwrap();
         assert!((0..step).all(|_| forecast.advance()));
         let growth = Growth::steps(step);

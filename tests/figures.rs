@@ -25,15 +25,10 @@ fn names(shelf: Shelf) -> impl Iterator<Item = String> {
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
     let model = document.resolve(&[]).unwrap().0;
     let title = model.metadata().description.title.clone();
-    let options = Options {
-        format,
-        size,
-        labels: Labels {
-            title: title.unwrap_or_default(),
-            ..Labels::default()
-        },
-        ..Options::default()
-    };
+    let options = Options::default().format(format).size(size).labels(Labels {
+        title: title.unwrap_or_default(),
+        ..Labels::default()
+    });
     let mut bytes = Vec::new();
     let size = match &model {
         Model::Rule(rule) => {
@@ -41,7 +36,7 @@ fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, 
         }
         Model::Ifs(system) => rule::write_system(system, &options, &mut bytes),
         Model::Instancing(structure) => rule::write_structure(structure, &options, &mut bytes),
-        Model::LSystem(_) => panic!("there are no figures of L-systems"),
+        _ => panic!("there is no figure of this kind"),
     };
     (bytes, size.unwrap())
 }

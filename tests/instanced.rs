@@ -35,12 +35,10 @@ fn compiled(document: &Document, steps: u32) -> (Metadata, Graph) {
 }
 
 fn options(heading: &Metadata) -> Options {
-    Options {
-        size: Size::Long(160),
-        threads: NonZero::<usize>::MIN,
-        instanced: true,
-        ..Options::of(heading)
-    }
+    Options::of(heading)
+        .size(Size::Long(160))
+        .threads(NonZero::<usize>::MIN)
+        .instanced(true)
 }
 
 fn write(graph: &Graph, steps: u32, options: &Options) -> Result<(Picture, String), RenderError> {

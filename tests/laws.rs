@@ -67,11 +67,7 @@ impl Visitor for Collected {
 fn collect(graph: &Graph, steps: u32, seed: u64) -> Collected {
     let mut collected = Collected::default();
     let progress = Progress::default();
-    let growth = Growth {
-        seed,
-        progress: Some(&progress),
-        ..Growth::steps(steps)
-    };
+    let growth = Growth::steps(steps).seed(seed).progress(Some(&progress));
     let walked = walk(graph, &growth, &mut collected).unwrap();
     assert_eq!(progress.walked(), walked.elements);
     assert_eq!(walked.elements, collected.elements().count() as u64);
@@ -255,8 +251,8 @@ proptest! {
             let rule = read(&text);
             let graph = Graph::compile(&rule, steps).unwrap();
             let mut bytes = Vec::new();
-            let growth = Growth { seed, ..Growth::steps(steps) };
-            let options = Options { size: Size::Long(300), threads, ..Options::of(rule.metadata()) };
+            let growth = Growth::steps(steps).seed(seed);
+            let options = Options::of(rule.metadata()).size(Size::Long(300)).threads(threads);
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)
         };
@@ -374,13 +370,7 @@ fn blocks_of_the_library_are_the_elements_one_by_one() {
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let steps = rule.steps().unwrap_or(6);
         let graph = Graph::compile(&rule, steps).unwrap();
-        blocks_agree(
-            &graph,
-            &Growth {
-                seed: 3,
-                ..Growth::steps(steps)
-            },
-        );
+        blocks_agree(&graph, &Growth::steps(steps).seed(3));
     }
 }
 
@@ -390,6 +380,6 @@ proptest! {
     #[test]
     fn blocks_are_the_elements_one_by_one(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {
         let graph = Graph::compile(&read(&text), steps).unwrap();
-        blocks_agree(&graph, &Growth { seed, ..Growth::steps(steps) });
+        blocks_agree(&graph, &Growth::steps(steps).seed(seed));
     }
 }

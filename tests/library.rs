@@ -82,11 +82,7 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
         description: rule.description().about.clone().unwrap(),
         provenance: document(name).to_yaml(),
     };
-    let options = Options {
-        size,
-        labels,
-        ..Options::of(rule.metadata())
-    };
+    let options = Options::of(rule.metadata()).size(size).labels(labels);
     let mut bytes = Vec::new();
     render::write(graph, &Growth::steps(steps), &options, &mut bytes)
         .unwrap_or_else(|error| panic!("{name} at {steps}: {error}"));
@@ -171,12 +167,12 @@ fn every_component_can_be_used() {
     for entry in Catalogue::embedded().entries() {
         let name = &entry.name;
         let text = match entry.shelf {
-            Shelf::Rules | Shelf::Ifs | Shelf::Instancing | Shelf::LSystems => continue,
             Shelf::Initiators => format!("initiator: {name}\ngenerator: koch\n"),
             Shelf::Generators => format!("initiator: segment\ngenerator: {name}\n"),
             Shelf::BaseElements => {
                 format!("initiator: segment\ngenerator: koch\nbase_element: {name}\n")
             }
+            _ => continue,
         };
         let rule = resolved(&document_of(&text), &[]);
         let graph = compiled(&rule, 3);

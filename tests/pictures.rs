@@ -31,11 +31,9 @@ fn picture(text: &str, steps: u32, style: &str) -> String {
     let rule = common::resolved(&common::document_of(&text), &[]);
     let graph = Graph::compile(&rule, steps).unwrap();
     let mut bytes = Vec::new();
-    let options = Options {
-        size: Size::Long(100),
-        style: rule.style().clone(),
-        ..Options::default()
-    };
+    let options = Options::default()
+        .size(Size::Long(100))
+        .style(rule.style().clone());
     render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()
 }

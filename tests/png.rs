@@ -123,10 +123,10 @@ fn difference(png: &Read, svgs: &[Vec<[u8; 3]>], background: u8) -> (f64, u8) {
 
 /// Asserts that a picture's two formats agree.
 fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
-    let options = |format| Options {
-        format,
-        size: Size::Long(size),
-        ..Options::of(rule.metadata())
+    let options = |format| {
+        Options::of(rule.metadata())
+            .format(format)
+            .size(Size::Long(size))
     };
     let svg = drawn(rule, steps, &options(Format::Svg));
     let png = read_png(&drawn(rule, steps, &options(Format::Png)));
@@ -249,11 +249,9 @@ fn pixels_take_no_more_bits_than_they_need() {
         ),
     ] {
         let rule = resolved(&document_of(&text), &[]);
-        let options = Options {
-            format: Format::Png,
-            size: Size::Long(300),
-            ..Options::of(rule.metadata())
-        };
+        let options = Options::of(rule.metadata())
+            .format(Format::Png)
+            .size(Size::Long(300));
         let read = read_png(&drawn(&rule, 3, &options));
         assert_eq!((read.colour, read.depth), expected, "{text}");
     }
@@ -262,15 +260,13 @@ fn pixels_take_no_more_bits_than_they_need() {
 #[test]
 fn a_png_says_what_it_is() {
     let rule = resolved(&document("koch"), &[]);
-    let options = Options {
-        format: Format::Png,
-        labels: Labels {
+    let options = Options::of(rule.metadata())
+        .format(Format::Png)
+        .labels(Labels {
             title: "Koch curve".into(),
             description: "Step 2 of koch.".into(),
             provenance: "# kfrac grow 'Schöne Regel.yaml'\ninitiator: segment\n".into(),
-        },
-        ..Options::of(rule.metadata())
-    };
+        });
     let texts = read_png(&drawn(&rule, 2, &options)).texts;
     let expected = [
         ("Title", options.labels.title),
@@ -287,12 +283,10 @@ fn a_png_says_what_it_is() {
 #[test]
 fn pieces_that_are_too_large_are_refused_with_the_memory_they_would_take() {
     let rule = resolved(&document("koch"), &[]);
-    let options = Options {
-        format: Format::Png,
-        size: Size::Exactly(200_000, 100_000),
-        in_one_piece: u64::MAX,
-        ..Options::of(rule.metadata())
-    };
+    let options = Options::of(rule.metadata())
+        .format(Format::Png)
+        .size(Size::Exactly(200_000, 100_000))
+        .in_one_piece(u64::MAX);
     let mut bytes = Vec::new();
     let error =
         render::write(&compiled(&rule, 1), &Growth::steps(1), &options, &mut bytes).unwrap_err();
@@ -322,10 +316,10 @@ fn thin_strokes_are_their_supersampled_picture() {
     ] {
         let text = format!("{rule}style: {{width: {width}, background: white}}\n");
         let rule = resolved(&document_of(&text), &[]);
-        let options = |format| Options {
-            format,
-            size: Size::Long(200),
-            ..Options::of(rule.metadata())
+        let options = |format| {
+            Options::of(rule.metadata())
+                .format(format)
+                .size(Size::Long(200))
         };
         let svg = drawn(&rule, steps, &options(Format::Svg));
         let png = read_png(&drawn(&rule, steps, &options(Format::Png)));
@@ -343,11 +337,9 @@ fn thin_strokes_are_their_supersampled_picture() {
 fn nothing_fades() {
     let ink = |name: &str, steps: u32| {
         let rule = resolved(&document(name), &[]);
-        let options = Options {
-            format: Format::Png,
-            size: Size::Long(64),
-            ..Options::of(rule.metadata())
-        };
+        let options = Options::of(rule.metadata())
+            .format(Format::Png)
+            .size(Size::Long(64));
         let read = read_png(&drawn(&rule, steps, &options));
         read.rgba
             .iter()

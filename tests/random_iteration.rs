@@ -98,10 +98,7 @@ fn deterministic(system: &ifs::System, view: View) -> Pixels {
         pixels: 1.0,
         decides_steps: true,
     });
-    let growth = Growth {
-        most_elements: 50_000_000,
-        ..Growth::steps(10_000)
-    };
+    let growth = Growth::steps(10_000).most_elements(50_000_000);
     let mut bytes = Vec::new();
     render::write(&graph, &growth, &options, &mut bytes).unwrap();
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
@@ -124,10 +121,7 @@ fn random(system: &ifs::System, view: View) -> Pixels {
         to_pixels: canvas.to_pixels(),
         size: canvas.size(),
     };
-    let game = Game {
-        points: 1_000_000,
-        ..Game::default()
-    };
+    let game = Game::default().points(1_000_000);
     let histogram = play(&WeightedMaps::of(system.ifs()).unwrap(), &window, &game).unwrap();
     assert_eq!(histogram.inside(), 1_000_000);
     pixels(histogram.counts(0).iter().map(|&count| count > 0))

@@ -249,12 +249,12 @@ fn read(shelf: Shelf, value: &Value, library: &Path) -> Diagnostics {
     let catalogue = Catalogue::with_folders(vec![library.into()]);
     let text = value.to_string();
     let rule = match shelf {
-        Shelf::Rules | Shelf::Ifs | Shelf::Instancing | Shelf::LSystems => text.clone(),
         Shelf::Initiators => "initiator: changed\ngenerator: koch\n".into(),
         Shelf::Generators => "initiator: segment\ngenerator: changed\n".into(),
         Shelf::BaseElements => {
             "initiator: segment\ngenerator: koch\nbase_element: changed\n".into()
         }
+        _ => text.clone(),
     };
     if !Shelf::grown().contains(&shelf) {
         let folder = library.join(shelf.folder());

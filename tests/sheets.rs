@@ -25,10 +25,7 @@ fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::SheetSummar
             growth: Growth::steps(step),
         })
         .collect();
-    let options = Options {
-        size: Size::Long(200),
-        ..Options::of(rule.metadata())
-    };
+    let options = Options::of(rule.metadata()).size(Size::Long(200));
     let mut bytes = Vec::new();
     let written = sheet::write(&cells, columns, &options, &mut bytes).unwrap();
     (written, String::from_utf8(bytes).unwrap())

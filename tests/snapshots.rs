@@ -17,11 +17,9 @@ fn picture(name: &str, steps: u32) -> String {
         description: rule.description().about.clone().unwrap(),
         provenance: document.to_yaml(),
     };
-    let options = Options {
-        size: Size::Long(256),
-        labels,
-        ..Options::of(rule.metadata())
-    };
+    let options = Options::of(rule.metadata())
+        .size(Size::Long(256))
+        .labels(labels);
     let graph = compiled(&rule, steps);
     let mut bytes = Vec::new();
     render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();

@@ -295,13 +295,10 @@ fn products_may_contract_where_maps_do_not() {
     // x = 1 + 2 y and y = 1 + 0.3 x where both are largest.
     assert!((bounds.min() - DVec2::ZERO).length() < 1e-12);
     assert!((bounds.max() - DVec2::new(7.5, 3.25)).length() < 1e-12);
-    let options = Options {
-        detail: Some(Detail {
-            pixels: 1.0,
-            decides_steps: true,
-        }),
-        ..Options::default()
-    };
+    let options = Options::default().detail(Some(Detail {
+        pixels: 1.0,
+        decides_steps: true,
+    }));
     let picture = render::write(&graph, &Growth::steps(1000), &options, &mut Vec::new()).unwrap();
     assert!(picture.steps > 5 && picture.steps < 1000);
 }

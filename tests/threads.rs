@@ -237,10 +237,7 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
 #[test]
 fn spans_of_the_library_are_the_whole_walk() {
     for (_, _, graph, steps) in library(6_000) {
-        let growth = Growth {
-            seed: 3,
-            ..Growth::steps(steps)
-        };
+        let growth = Growth::steps(steps).seed(3);
         spans_agree(&graph, &growth, &[None, Some(100), Some(4096)]);
         counts_agree(&graph, &growth);
     }
@@ -283,12 +280,11 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
         }
         for (format, options) in pictures {
             let write = |threads| {
-                let options = Options {
-                    format,
-                    threads,
-                    size: Size::Long(100),
-                    ..options.clone()
-                };
+                let options = options
+                    .clone()
+                    .format(format)
+                    .threads(threads)
+                    .size(Size::Long(100));
                 let mut bytes = Vec::new();
                 render::write(&graph, &growth, &options, &mut bytes).unwrap();
                 bytes
@@ -308,15 +304,9 @@ fn limits_and_failures_are_met_on_any_number_of_threads() {
         .into_rule()
         .unwrap();
     let graph = Graph::compile(&rule, 8).unwrap();
-    let growth = Growth {
-        most_elements: 40_000,
-        ..Growth::steps(8)
-    };
+    let growth = Growth::steps(8).most_elements(40_000);
     let cancel = std::sync::atomic::AtomicBool::new(true);
-    let cancelled = Growth {
-        cancel: Some(&cancel),
-        ..Growth::steps(8)
-    };
+    let cancelled = Growth::steps(8).cancel(Some(&cancel));
     for number in THREADS {
         let met = count(&graph, &growth, threads(number));
         assert_eq!(met, Err(WalkError::TooManyElements { limit: 40_000 }));
@@ -381,11 +371,7 @@ fn pictures_of_many_elements_do_not_depend_on_the_number_of_threads() {
         options.style.color_by = ColorBy::None;
         for format in [render::Format::Svg, render::Format::Png] {
             let write = |number| {
-                let options = Options {
-                    format,
-                    threads: threads(number),
-                    ..options.clone()
-                };
+                let options = options.clone().format(format).threads(threads(number));
                 let mut bytes = Vec::new();
                 render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();
                 bytes
@@ -408,7 +394,7 @@ proptest! {
     fn spans_are_the_whole_walk(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {
         let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, steps).unwrap();
-        let growth = Growth { seed, ..Growth::steps(steps) };
+        let growth = Growth::steps(steps).seed(seed);
         spans_agree(&graph, &growth, &[None, Some(1), Some(7), Some(60)]);
         counts_agree(&graph, &growth);
     }
@@ -418,9 +404,9 @@ proptest! {
     fn files_do_not_depend_on_the_number_of_threads(text in rules::rule(Features::ALL), seed in 0..3u64) {
         let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 6).unwrap();
-        let growth = Growth { seed, most_elements: 30_000, ..Growth::steps(6) };
+        let growth = Growth::steps(6).seed(seed).most_elements(30_000);
         let write = |number| {
-            let options = Options { size: Size::Long(300), threads: threads(number), ..Options::of(rule.metadata()) };
+            let options = Options::of(rule.metadata()).size(Size::Long(300)).threads(threads(number));
             let mut bytes = Vec::new();
             let drawn = render::write(&graph, &growth, &options, &mut bytes);
             (drawn.map_err(|error| error.to_string()), bytes)

@@ -14,10 +14,7 @@ use kfrac::style::ColorBy;
 
 fn picture(model: &Model, steps: u32, change: impl FnOnce(&mut Options)) -> Vec<u8> {
     let graph = model.compile(steps).unwrap();
-    let mut options = Options {
-        size: Size::Long(64),
-        ..Options::of(model.metadata())
-    };
+    let mut options = Options::of(model.metadata()).size(Size::Long(64));
     change(&mut options);
     let mut bytes = Vec::new();
     render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();

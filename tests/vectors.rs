@@ -39,14 +39,12 @@ fn written(text: &str) -> Arc<Rule> {
 /// Draws a rule in one colour; returns the picture and its bytes.
 fn draw(rule: &Arc<Rule>, steps: u32, change: impl FnOnce(&mut Options)) -> (Picture, Vec<u8>) {
     let graph = Graph::compile(rule, steps).unwrap();
-    let mut options = Options {
-        style: Style {
+    let mut options = Options::default()
+        .style(Style {
             width: Width::Pixels(1.5),
             ..Style::default()
-        },
-        threads: NonZero::<usize>::MIN,
-        ..Options::default()
-    };
+        })
+        .threads(NonZero::<usize>::MIN);
     change(&mut options);
     let mut bytes = Vec::new();
     let picture = render::write(&graph, &Growth::steps(steps), &options, &mut bytes).unwrap();

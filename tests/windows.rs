@@ -24,19 +24,17 @@ fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
         let rule = resolved(&document(name), &[]);
         let graph = compiled(&rule, steps);
         let of = |place, side| {
-            let mut options = Options {
-                format: Format::Png,
-                view: View {
+            let mut options = Options::of(rule.metadata())
+                .format(Format::Png)
+                .view(View {
                     window: Some(place),
                     margin: 0.0,
-                },
-                size: Size::Exactly(side, side),
-                detail: pixels.map(|pixels| Detail {
+                })
+                .size(Size::Exactly(side, side))
+                .detail(pixels.map(|pixels| Detail {
                     pixels,
                     decides_steps: true,
-                }),
-                ..Options::of(rule.metadata())
-            };
+                }));
             options.style.color_by = ColorBy::Index;
             let mut bytes = Vec::new();
             let growth = Growth::steps(steps);

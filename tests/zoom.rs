@@ -147,15 +147,10 @@ impl Visitor for Seen {
 /// Returns the elements in the window, in pixels from its middle.
 fn zoomed(of: &(Document, Model), graph: &Graph, window: &ZoomWindow, seed: u64) -> Seen {
     let source = source(of);
-    let growth = ZoomOptions {
-        seed,
-        ..ZoomOptions::default()
-    };
+    let growth = ZoomOptions::default().seed(seed);
     let found = zoom(&source, graph, &growth, window).unwrap();
-    let growth = kfrac::grow::Growth {
-        seed,
-        ..kfrac::grow::Growth::steps(graph.depth().unwrap_or(found.deepest + 200))
-    };
+    let growth =
+        kfrac::grow::Growth::steps(graph.depth().unwrap_or(found.deepest + 200)).seed(seed);
     Seen::of(&found.graph, &growth, DAffine2::IDENTITY, SHORTEST)
 }
 
@@ -374,10 +369,7 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
             for factor in ["3e1", "1e4", "1e7"] {
                 let scale = SCALE * factor.parse::<f64>().unwrap();
                 let seen = zoomed(&rule, &graph, &window(factor, at), seed);
-                let growth = kfrac::grow::Growth {
-                    seed,
-                    ..kfrac::grow::Growth::steps(1_000)
-                };
+                let growth = kfrac::grow::Growth::steps(1_000).seed(seed);
                 let place =
                     DAffine2::from_scale(DVec2::splat(scale)) * DAffine2::from_translation(-p);
                 let plain = Seen::of(&graph, &growth, place, SHORTEST);

@@ -104,10 +104,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let bounds = graph.bounds(steps);
     let level = forecast(&graph, steps);
     let allowed = graph.check_size(steps, MOST_ELEMENTS).is_ok();
-    let growth = Growth {
-        most_elements: MOST_ELEMENTS,
-        ..Growth::steps(steps)
-    };
+    let growth = Growth::steps(steps).most_elements(MOST_ELEMENTS);
     let mut table = Vec::new();
     let walked = export::write(&graph, &growth, export::Format::Csv, NonZero::<usize>::MIN, &mut table);
     if let Ok(walked) = walked {
@@ -154,16 +151,11 @@ fn text<E: Debug>(bytes: Result<Vec<u8>, E>) -> Result<String, String> {
 
 fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, String> {
     let description = rule.description();
-    let mut options = Options {
-        size: Size::Long(300),
-        labels: Labels {
+    let mut options = Options::of(rule.metadata()).size(Size::Long(300)).labels(Labels {
             title: description.title.clone().unwrap_or_default(),
             description: description.about.clone().unwrap_or_default(),
             provenance: String::new(),
-        },
-        threads: NonZero::<usize>::MIN,
-        ..Options::of(rule.metadata())
-    };
+        }).threads(NonZero::<usize>::MIN);
     let mut svg = Vec::new();
     render::write(graph, growth, &options, &mut svg).map_err(|error| error.to_string())?;
     check_xml(&svg);

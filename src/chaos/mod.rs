@@ -68,6 +68,7 @@ impl Start {
 
 /// Classification of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ClassBy {
     /// No distinction: one class.
     #[default]
@@ -84,6 +85,7 @@ pub enum ClassBy {
 
 /// Parameters of a chaos game.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Game<'a> {
     /// Number of points; by default ten million.
     pub points: u64,
@@ -101,6 +103,16 @@ pub struct Game<'a> {
     pub progress: Option<&'a Progress>,
 }
 
+setters!(Game<'a> {
+    points: u64,
+    seed: u64,
+    start: Start,
+    classes: ClassBy,
+    threads: NonZero<usize>,
+    cancel: Option<&'a AtomicBool>,
+    progress: Option<&'a Progress>,
+});
+
 impl Default for Game<'_> {
     fn default() -> Self {
         Self {
@@ -117,6 +129,7 @@ impl Default for Game<'_> {
 
 /// Reason why a game has no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GameError {
     /// The histogram is larger than the limit of memory.
     #[error(

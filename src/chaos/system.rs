@@ -41,6 +41,7 @@ pub(super) struct Start {
 
 /// Reason why a system cannot be walked. Indices in values count from 0, in messages from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SystemError {
     /// The walk can lead from one map to another, but never back.
     #[error(

@@ -44,6 +44,7 @@ pub enum Keeps {
 
 /// An error in a conversion.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConvertError {
     /// The other kind cannot express the model.
     #[error(transparent)]

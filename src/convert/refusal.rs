@@ -5,6 +5,7 @@ use crate::model::Kind;
 
 /// Reason why a kind cannot express a fractal. Maps and elements are numbered from 1 in messages.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The fractal is of that kind already.
     #[error("it is of the kind '{}' already", .0.name())]

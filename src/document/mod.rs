@@ -135,6 +135,7 @@ impl Point {
 
 /// The content of a file as written, by kind.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum KindDocument {
     /// A production rule.
     Rule(RuleDocument),

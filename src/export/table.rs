@@ -13,6 +13,7 @@ use crate::style::Named;
 
 /// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Comma-separated values with a header.
     Csv,

@@ -26,6 +26,7 @@ const SLOPES: [f64; 2] = [432.0, 600.0];
 
 /// Options of a plot.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Options {
     /// Format of the file.
     pub format: Format,
@@ -34,6 +35,12 @@ pub struct Options {
     /// Metadata of the file. The title stands above the plot.
     pub labels: Labels,
 }
+
+setters!(Options {
+    format: Format,
+    unit: Option<&'static str>,
+    labels: Labels,
+});
 
 /// Plots a measured dimension on white; returns width and height in pixels.
 ///

@@ -39,6 +39,7 @@ pub use system::write_system;
 
 /// Options of a figure.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Options {
     /// Format of the file; SVG by default.
     pub format: Format,
@@ -49,6 +50,13 @@ pub struct Options {
     /// Metadata of the file. The title stands above the figure.
     pub labels: Labels,
 }
+
+setters!(Options {
+    format: Format,
+    size: Option<Size>,
+    background: Option<Colour>,
+    labels: Labels,
+});
 
 impl Default for Options {
     fn default() -> Self {

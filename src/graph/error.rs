@@ -7,6 +7,7 @@ use crate::rule::{ElementContext, Rule};
 
 /// Error: a model cannot be compiled or grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompileError {
     /// A generator has a point that is not finite.
     #[error(

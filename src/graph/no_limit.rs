@@ -4,6 +4,7 @@ use super::Graph;
 
 /// Reason why a graph does not determine a limit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoLimit {
     /// The set depends on the seed of random draws.
     #[error("numbers are drawn in it at random, so it has no one limit set")]

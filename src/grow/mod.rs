@@ -217,6 +217,7 @@ pub trait Visitor {
 
 /// Error of a walk.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WalkError<E> {
     /// The number of elements exceeds the limit.
     #[error("there are more than {limit} elements")]

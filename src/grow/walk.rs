@@ -15,6 +15,7 @@ use super::{Element, Enter, FractalInfo, Progress, Subtree, Visitor, WalkError};
 
 /// Number of steps, seed and limits of growth.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Growth<'a> {
     /// The number of steps; the graph must be compiled for at least as many.
     pub steps: u32,
@@ -27,6 +28,13 @@ pub struct Growth<'a> {
     /// Counter of the walk's progress.
     pub progress: Option<&'a Progress>,
 }
+
+setters!(Growth<'a> {
+    seed: u64,
+    most_elements: u64,
+    cancel: Option<&'a AtomicBool>,
+    progress: Option<&'a Progress>,
+});
 
 impl Growth<'_> {
     /// Growth by a number of steps with seed 0 and the default limit of 50 million elements.
@@ -44,6 +52,7 @@ impl Growth<'_> {
 
 /// Numbers of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Walked {
     /// The number of elements.
     pub elements: u64,

@@ -27,6 +27,7 @@ impl std::fmt::Display for WeightOwner {
 
 /// An error in the definition of a system. Indices count from 0 in fields, from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IfsError {
     /// There are no maps.
     #[error("a system needs at least one map")]

@@ -6,6 +6,7 @@ use crate::geometry::{DAffine2, DVec2};
 
 /// An error that leaves no curve through the points. Indices count from 0 in fields, from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InterpolationError {
     /// There are fewer than three points: a single piece would be the whole curve.
     #[error("a curve needs at least three points, not {points}")]

@@ -13,6 +13,7 @@ const MOST_PIXELS: u64 = 1 << 30;
 
 /// An error in reading a picture.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PictureError {
     /// The file is neither PNG nor JPEG.
     #[error("the picture is neither PNG nor JPEG")]

@@ -12,6 +12,7 @@ const MOST_POINTS: usize = 1 << 27;
 
 /// An error in a table of points. Rows are numbered from 1, the header included.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// No columns are named, and the table does not have two.
     #[error("the table has {columns} columns, and points have two: name two of them")]

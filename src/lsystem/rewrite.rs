@@ -19,6 +19,7 @@ const MOST_FORECAST: usize = 100_000_000;
 
 /// An error that prevents a word from being rewritten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RewriteError {
     /// A word exceeds a limit.
     #[error("the word of step {step} has more than {} {what}{}", grouped(&(*most).into()), deepest(*step))]

@@ -18,6 +18,7 @@ pub(super) use moments::Moments;
 
 /// Reason why a graph has no limit set that can be walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LimitSetError {
     /// Maps are drawn by chance, or depend on an index that has to be counted.
     #[error("its maps are not fixed: they depend on draws or on indices")]

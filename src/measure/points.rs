@@ -7,6 +7,7 @@ use super::cover::Grid;
 
 /// Reason why points cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoExtent {
     /// The set of points is empty.
     #[error("there are no points")]

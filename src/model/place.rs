@@ -33,6 +33,7 @@ const EXTENTS: [f64; 2] = [1e-300, 1e300];
 
 /// Error: a model is beyond the range or the precision of doubles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum OutOfRange {
     /// The model is too large or too small.
     #[error(

@@ -63,6 +63,7 @@ pub struct Canvas {
 
 /// Reason why a picture cannot show its contents.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoRoom {
     /// Margins and strokes fill the picture.
     #[error("the margins and strokes ({taken} pixels) leave no room in a picture of {size} pixels")]

@@ -12,6 +12,7 @@ use super::{Labels, RenderError};
 
 /// Mapping of a number of hits to a tone from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Tone {
     /// Logarithmic: log(1 + hits) / log(1 + the largest number of hits of a pixel).
     #[default]
@@ -48,6 +49,7 @@ impl Tone {
 
 /// Colours of a picture of a histogram.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Shades {
     /// One ink, with the tone as its opacity.
     Ink(Colour),
@@ -60,6 +62,7 @@ pub enum Shades {
 
 /// Appearance of a histogram.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Density {
     /// Mapping of hits to tones; logarithmic by default.
     pub tone: Tone,
@@ -68,6 +71,12 @@ pub struct Density {
     /// Colour of the background; `None` for transparency.
     pub background: Option<Colour>,
 }
+
+setters!(Density {
+    tone: Tone,
+    shades: Shades,
+    background: Option<Colour>,
+});
 
 impl Default for Density {
     fn default() -> Self {

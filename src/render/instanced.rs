@@ -27,6 +27,7 @@ use drawing::Drawing;
 
 /// Size of a picture of nested instances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Instanced {
     /// Number of symbols.
     pub symbols: u64,

@@ -24,6 +24,7 @@ pub struct Detail {
 
 /// Reason why a picture cannot be drawn to a detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoDetail {
     /// Indices are counted by the walk.
     #[error("what replaces an element depends on the number of all those before it")]

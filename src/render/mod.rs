@@ -87,6 +87,7 @@ const WIDTHS_AN_OCTAVE: f64 = 8.0;
 
 /// A format of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
     Svg,
@@ -133,6 +134,7 @@ pub struct Labels {
 
 /// Options of a picture.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Options {
     /// Format; SVG by default.
     pub format: Format,
@@ -168,6 +170,22 @@ pub struct Options {
     /// Number of threads; by default that of the machine's cores. The bytes do not depend on it.
     pub threads: NonZero<usize>,
 }
+
+setters!(Options {
+    format: Format,
+    style: Style,
+    view: View,
+    size: Size,
+    unit: Unit,
+    plot: bool,
+    pens: Pens,
+    instanced: bool,
+    in_one_piece: u64,
+    band: u64,
+    detail: Option<Detail>,
+    labels: Labels,
+    threads: NonZero<usize>,
+});
 
 impl Default for Options {
     fn default() -> Self {
@@ -208,6 +226,7 @@ impl Options {
 
 /// A picture that has been written.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
@@ -236,6 +255,7 @@ pub struct Picture {
 
 /// A window that shows nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Empty {
     /// Nearest visible point, if it is known: of a [`ZoomTarget`].
     pub nearest: Option<Nearest>,
@@ -243,6 +263,7 @@ pub struct Empty {
 
 /// Point nearest to the middle of a zoomed picture that shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearest {
     /// Distance in the rule's units, to a thousandth.
     pub distance: f64,
@@ -252,6 +273,7 @@ pub struct Nearest {
 
 /// Error of drawing.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The walk ended early.
     #[error(transparent)]

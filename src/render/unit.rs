@@ -4,6 +4,7 @@ use std::fmt;
 
 /// Unit of a picture's size, and of all other lengths given in pixels: strokes, margins, details.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Unit {
     /// CSS pixel: 1/96 inch in formats with physical lengths.
     #[default]

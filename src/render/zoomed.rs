@@ -23,6 +23,7 @@ pub struct ZoomTarget {
 
 /// Reason why a picture cannot be zoomed, in addition to those for all pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoZoom {
     /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
     #[error(

@@ -23,6 +23,7 @@ pub enum Address {
 
 /// Error: a text is not an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AddressError {
     /// The text has another form.
     #[error(

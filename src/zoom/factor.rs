@@ -18,6 +18,7 @@ pub struct Factor {
 
 /// Error: a text is not a magnification factor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FactorError {
     /// The text is not a positive number.
     #[error("a zoom is a number above 0, such as 250, 1e1000 or 3^5000")]

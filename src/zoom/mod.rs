@@ -98,6 +98,7 @@ pub struct ZoomWindow {
 
 /// Conditions of growth.
 #[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct ZoomOptions<'a> {
     /// Seed of random draws.
     pub seed: u64,
@@ -106,6 +107,12 @@ pub struct ZoomOptions<'a> {
     /// Flag that cancels the computation soon after it is set.
     pub cancel: Option<&'a AtomicBool>,
 }
+
+setters!(ZoomOptions<'a> {
+    seed: u64,
+    steps: Option<u32>,
+    cancel: Option<&'a AtomicBool>,
+});
 
 /// Part of a graph in a window: a graph of its own, in pixels from the centre of the window, with the y
 /// axis upwards.
@@ -119,6 +126,7 @@ pub struct Zoom {
 
 /// Error: a window cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ZoomError {
     /// There is no limit set, and therefore no point to zoom into.
     #[error("there is nothing to zoom into without end: {0}; a window draws a part of a step")]

@@ -235,10 +235,8 @@ fn a_walk_that_finds_nothing_can_be_cancelled() {
                 v: {parts: [{seeds: true, elements: [[0, 0], [1/2, 0]]}]}\n\
                 select: [{when: step == 40 and i > 0, use: v}, {use: a}]\n";
     let graph = graph_of(text, 41);
-    let growth = Growth {
-        cancel: Some(&AtomicBool::new(true)),
-        ..Growth::steps(41)
-    };
+    let cancel = AtomicBool::new(true);
+    let growth = Growth::steps(41).cancel(Some(&cancel));
     assert_eq!(extent(&graph, &growth), Err(WalkError::Cancelled));
 }
 

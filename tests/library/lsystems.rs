@@ -78,14 +78,12 @@ fn every_system_is_drawn_within_its_picture() {
         assert!(elements.len() >= 12, "{name}: there is little to see");
         assert!(elements.len() < 50_000, "{name}: a library is to be quick");
         for size in [1024, 24] {
-            let options = Options {
-                size: Size::Long(size),
-                labels: Labels {
+            let options = Options::of(system.metadata())
+                .size(Size::Long(size))
+                .labels(Labels {
                     provenance: document(&name).to_yaml(),
                     ..Labels::default()
-                },
-                ..Options::of(system.metadata())
-            };
+                });
             let draw = || {
                 let mut bytes = Vec::new();
                 render::write(&graph, &Growth::steps(steps), &options, &mut bytes)

@@ -38,14 +38,12 @@ fn svg_of(name: &str, structure: &Arc<Instancing>, steps: u32, size: u32) -> Str
     let graph = Model::Instancing(Arc::clone(structure))
         .compile(steps)
         .unwrap();
-    let options = Options {
-        size: Size::Long(size),
-        labels: Labels {
+    let options = Options::of(structure.metadata())
+        .size(Size::Long(size))
+        .labels(Labels {
             provenance: document(name).to_yaml(),
             ..Labels::default()
-        },
-        ..Options::of(structure.metadata())
-    };
+        });
     let mut bytes = Vec::new();
     render::write(&graph, &Growth::steps(steps), &options, &mut bytes)
         .unwrap_or_else(|error| panic!("{name}: {error}"));

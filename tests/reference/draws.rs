@@ -22,13 +22,7 @@ fn the_random_tree_has_the_counts_of_the_reference_whatever_is_drawn() {
         let count = 3 * 2u64.pow(n) - 2;
         assert_eq!(forecast.elements(), Count::from(count));
         for seed in 0..4 {
-            let fractals = grown(
-                &graph,
-                &Growth {
-                    seed,
-                    ..Growth::steps(n)
-                },
-            );
+            let fractals = grown(&graph, &Growth::steps(n).seed(seed));
             let fertile = elements(&fractals)
                 .filter(|element| element.fertile)
                 .count() as u64;
@@ -88,13 +82,7 @@ fn vegetation_has_the_counts_of_the_reference() {
             "{n}"
         );
         for seed in 0..2 {
-            let fractals = grown(
-                &graph,
-                &Growth {
-                    seed,
-                    ..Growth::steps(n)
-                },
-            );
+            let fractals = grown(&graph, &Growth::steps(n).seed(seed));
             let fertile = elements(&fractals)
                 .filter(|element| element.fertile)
                 .count() as u64;

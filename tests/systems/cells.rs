@@ -17,16 +17,14 @@ fn graph(system: &System) -> Graph {
 }
 
 fn options(size: u32, threads: usize) -> Options {
-    Options {
-        format: Format::Png,
-        size: Size::Long(size),
-        detail: Some(Detail {
+    Options::default()
+        .format(Format::Png)
+        .size(Size::Long(size))
+        .detail(Some(Detail {
             pixels: 1.0,
             decides_steps: true,
-        }),
-        threads: NonZero::new(threads).unwrap(),
-        ..Options::default()
-    }
+        }))
+        .threads(NonZero::new(threads).unwrap())
 }
 
 fn drawn(graph: &Graph, options: &Options) -> (Vec<u8>, render::Picture) {
@@ -275,10 +273,8 @@ fn threads_do_not_show_in_cells() {
         for style in ["", style] {
             let system = system(&(random_system(seed) + style));
             let graph = graph(&system);
-            let options = |threads: usize| Options {
-                style: system.metadata().style.clone(),
-                ..options(300, threads)
-            };
+            let options =
+                |threads: usize| options(300, threads).style(system.metadata().style.clone());
             let (expected, _) = drawn(&graph, &options(1));
             for threads in [2, 3, 8] {
                 let (bytes, _) = drawn(&graph, &options(threads));

@@ -16,7 +16,7 @@ pub(crate) fn read(format: Format, bytes: &[u8]) -> Vec<Read> {
         Format::Svg => svg(bytes),
         Format::Pdf => pdf(bytes),
         Format::Dxf => dxf(bytes),
-        Format::Png => unreachable!("pixels are no strokes"),
+        _ => panic!("{format:?} has no strokes that are read here"),
     }
 }
 

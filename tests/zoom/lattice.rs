@@ -74,10 +74,7 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
         // At a zoom of 2^96, elements of step 200 are 32 pixels long.
         let window = window("2^96", &at);
         let source = source(&rule);
-        let growth = ZoomGrowth {
-            steps: Some(STEPS),
-            ..ZoomGrowth::default()
-        };
+        let growth = ZoomGrowth::default().steps(Some(STEPS));
         let found = zoom(&source, &graph, &growth, &window).unwrap();
         let seen = Seen::of(&found.graph, &Growth::steps(STEPS), DAffine2::IDENTITY, 0.0);
         let pixel = SCALE * (2.0_f64).powi(-4);

@@ -24,16 +24,14 @@ fn options(rule: &Rule) -> Options {
         background: Some(Colour::grey(255)),
         ..rule.1.metadata().style.clone()
     };
-    Options {
-        format: Format::Png,
-        size: Size::Exactly(200, 200),
-        style,
-        detail: Some(Detail {
+    Options::default()
+        .format(Format::Png)
+        .size(Size::Exactly(200, 200))
+        .style(style)
+        .detail(Some(Detail {
             pixels: 1.0,
             decides_steps: true,
-        }),
-        ..Options::default()
-    }
+        }))
 }
 
 /// Returns the pixel values of a picture with one channel.
@@ -144,13 +142,10 @@ fn large_infertile_elements_are_clipped() {
 
 /// Returns the options for a square window.
 fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
-    Options {
-        view: View {
-            window: Some([x - side / 2.0, y - side / 2.0, side, side]),
-            margin: 0.0,
-        },
-        ..options.clone()
-    }
+    options.clone().view(View {
+        window: Some([x - side / 2.0, y - side / 2.0, side, side]),
+        margin: 0.0,
+    })
 }
 
 /// A closed chain encloses in a zoom the area that it encloses in a window of the whole.
@@ -159,13 +154,10 @@ fn areas_are_those_of_the_whole() {
     let rule = library("koch-snowflake");
     let graph = rule.1.compile(64).unwrap();
     let p = point(&graph, &[0, 1, 2]);
-    let base = Options {
-        style: Style {
-            fill: Some(Colour::BLACK),
-            ..options(&rule).style
-        },
-        ..options(&rule)
-    };
+    let base = options(&rule).style(Style {
+        fill: Some(Colour::BLACK),
+        ..options(&rule).style
+    });
     let view = |window| within(&base, window);
     for (factor, at) in [
         ("5", p),
@@ -215,10 +207,7 @@ fn seeds_are_drawn_as_in_the_whole() {
         (&islands, islands_by_step, "2e1", [0.5127, 0.7321]),
     ] {
         let graph = rule.1.compile(64).unwrap();
-        let base = Options {
-            style,
-            ..options(rule)
-        };
+        let base = options(rule).style(style);
         let side = 2.0 / factor.parse::<f64>().unwrap();
         let mut plain = Vec::new();
         let window = within(&base, [at[0], at[1], side]);

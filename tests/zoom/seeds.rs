@@ -113,15 +113,9 @@ fn point(graph: &Graph, way: &[u32]) -> DVec2 {
 /// directions and joints, and the births of their fractals.
 fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, factor: &str) {
     let graph = rule.1.compile(64).unwrap();
-    let growth = ZoomOptions {
-        seed,
-        ..ZoomOptions::default()
-    };
+    let growth = ZoomOptions::default().seed(seed);
     let found = zoom(&source(rule), &graph, &growth, &window(factor, at)).unwrap();
-    let growth = kfrac::grow::Growth {
-        seed,
-        ..kfrac::grow::Growth::steps(graph.depth().unwrap_or(200))
-    };
+    let growth = kfrac::grow::Growth::steps(graph.depth().unwrap_or(200)).seed(seed);
     // Large infertile elements may be clipped.
     let own = graph.objects().len();
     let is_whole = |(element, _): &(Element, u32)| {
@@ -211,10 +205,7 @@ fn shallow_zooms_are_windows_of_the_whole() {
 fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
     let graph = rule.1.compile(64).unwrap();
     for seed in 0..3 {
-        let growth = kfrac::grow::Growth {
-            seed,
-            ..kfrac::grow::Growth::steps(steps)
-        };
+        let growth = kfrac::grow::Growth::steps(steps).seed(seed);
         let grown = Ordered::of(&graph, &growth, DAffine2::IDENTITY, 0.0).all;
         let mut later: Vec<_> = grown.iter().filter(|(_, born)| *born >= 2).collect();
         assert!(later.len() > 40, "{}", later.len());
@@ -250,16 +241,10 @@ fn deep_zooms_of_random_rules_agree() {
     for at in ["0.(0.1)", "0.(0.3)", "0.(0.5.1.2.1.5)", "1.(0.3.0.6)"] {
         for seed in [0, 7] {
             let [near, far] = ["1e40", "5e40"].map(|factor| {
-                let growth = ZoomOptions {
-                    seed,
-                    ..ZoomOptions::default()
-                };
+                let growth = ZoomOptions::default().seed(seed);
                 zoom(&source(&islands), &graph, &growth, &window(factor, at)).unwrap()
             });
-            let growth = kfrac::grow::Growth {
-                seed,
-                ..kfrac::grow::Growth::steps(512)
-            };
+            let growth = kfrac::grow::Growth::steps(512).seed(seed);
             let larger = DAffine2::from_scale(DVec2::splat(5.0));
             let near = Ordered::of(&near.graph, &growth, larger, SHORTEST).all;
             let far = Ordered::of(&far.graph, &growth, DAffine2::IDENTITY, SHORTEST).all;
@@ -378,10 +363,7 @@ fn sides_of_step_70_stand_where_whole_numbers_say() {
         let ways: Vec<String> = repeated.iter().map(ToString::to_string).collect();
         let at = format!("0.({})", ways.join("."));
         let window = window("3^67", &at);
-        let growth = ZoomOptions {
-            steps: Some(STEPS),
-            ..ZoomOptions::default()
-        };
+        let growth = ZoomOptions::default().steps(Some(STEPS));
         let found = zoom(&source(&rule), &graph, &growth, &window).unwrap();
         let growth = kfrac::grow::Growth::steps(STEPS);
         let shown = Ordered::of(&found.graph, &growth, DAffine2::IDENTITY, 0.0).all;

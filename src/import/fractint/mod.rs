@@ -22,6 +22,7 @@ use entries::Entry;
 
 /// Kind of the entries in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fractint {
     /// L-systems, in files with the extension `.l`.
     LSystems,

@@ -10,6 +10,7 @@ use super::squares::Squares;
 
 /// Reason why a set is not covered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoCover {
     /// The limit set does not exist, or is not known.
     #[error(transparent)]

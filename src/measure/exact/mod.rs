@@ -74,6 +74,7 @@ impl fmt::Display for Overlap {
 
 /// The equation that gives a similarity dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Equation {
     /// Σ ratio^D = 1 (Moran 1946).
     Moran,

@@ -6,6 +6,7 @@ use crate::style::{Cap, ColorBy, Join, Named, Style, Width};
 
 /// Reason why a picture cannot be made of nested instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NotInstanced {
     /// Random numbers are drawn for each element.
     #[error("its elements are drawn at random, each in its own way")]

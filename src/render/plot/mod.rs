@@ -37,6 +37,7 @@ pub use pens::Pens;
 
 /// Extent of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Plotted {
     /// Number of strokes, each after a lift of the pen.
     pub strokes: u64,

@@ -6,6 +6,7 @@ use crate::style::Colour;
 
 /// Number of pens of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Pens {
     /// One pen for each colour if there are at most [`Pens::FEW`], otherwise one for all.
     #[default]
