@@ -9,8 +9,9 @@ use std::sync::Arc;
 use common::{compiled, document, document_of, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::grow::Growth;
-use kfrac::render::{self, Format, Labels, Options, Size};
+use kfrac::render::{self, Format, Labels, Options, PngEncoding, Size};
 use kfrac::rule::Rule;
+use png::{BitDepth, ColorType};
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg;
 
@@ -68,8 +69,8 @@ fn read_svg(svg: &[u8], background: Color, times: usize) -> (Vec<[u8; 3]>, [u32;
 
 /// A decoded PNG: header, texts, and red, green, blue and opacity of every pixel.
 struct Read {
-    colour: png::ColorType,
-    depth: png::BitDepth,
+    colour: ColorType,
+    depth: BitDepth,
     texts: Vec<(String, String)>,
     size: [u32; 2],
     rgba: Vec<[u8; 4]>,
@@ -85,10 +86,8 @@ fn read_png(bytes: &[u8]) -> Read {
     let info = reader.next_frame(&mut pixels).unwrap();
     reader.finish().unwrap();
     let rgba = match info.color_type {
-        png::ColorType::Rgba => pixels.chunks(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
-        png::ColorType::GrayscaleAlpha => {
-            pixels.chunks(2).map(|p| [p[0], p[0], p[0], p[1]]).collect()
-        }
+        ColorType::Rgba => pixels.chunks(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
+        ColorType::GrayscaleAlpha => pixels.chunks(2).map(|p| [p[0], p[0], p[0], p[1]]).collect(),
         other => panic!("{other:?}"),
     };
     let texts = &reader.info().utf8_text;
@@ -223,7 +222,6 @@ fn long_paths_are_drawn_as_one() {
 /// The pixels of a picture are stored as grey, with a palette, or in full.
 #[test]
 fn pixels_take_no_more_bits_than_they_need() {
-    use png::{BitDepth, ColorType};
     let squares = "initiator: square\ngenerator: carpet\nbase_element: square\n";
     let chain = "initiator: triangle\ngenerator: koch\n";
     for (text, expected) in [
@@ -254,6 +252,39 @@ fn pixels_take_no_more_bits_than_they_need() {
             .size(Size::Long(300));
         let read = read_png(&drawn(&rule, 3, &options));
         assert_eq!((read.colour, read.depth), expected, "{text}");
+    }
+}
+
+#[test]
+fn a_png_is_fast_or_grey_where_asked() {
+    for (background, colour) in [
+        ("snow", ColorType::Grayscale),
+        ("none", ColorType::GrayscaleAlpha),
+    ] {
+        let text = format!(
+            "initiator: square\ngenerator: [[0, 0], [1/3, 1/4], [1, 0]]\nstyle: {{color_by: index, \
+             palette: spectral, background: {background}}}\n"
+        );
+        let rule = resolved(&document_of(&text), &[]);
+        let options = Options::of(rule.metadata())
+            .format(Format::Png)
+            .size(Size::Long(300));
+        let encoded = |encoding| {
+            let one = drawn(&rule, 4, &options.clone().png(encoding));
+            let bands = options.clone().png(encoding).in_one_piece(0).band(9000);
+            assert!(one == drawn(&rule, 4, &bands));
+            read_png(&one)
+        };
+        let plain = encoded(PngEncoding::default());
+        let fast = encoded(PngEncoding::default().fast(true));
+        assert_eq!((fast.colour, &fast.rgba), (plain.colour, &plain.rgba));
+        let grey = encoded(PngEncoding::default().grey(true));
+        assert_eq!((grey.colour, grey.depth), (colour, BitDepth::Eight));
+        for (grey, full) in grey.rgba.iter().zip(&plain.rgba) {
+            let [red, green, blue] = [full[0], full[1], full[2]].map(f64::from);
+            let luma = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+            assert!((f64::from(grey[0]) - luma).abs() < 0.51 && grey[3] == full[3]);
+        }
     }
 }
 

@@ -21,7 +21,7 @@ use crate::document::{Document, Setting};
 use crate::graph::Graph;
 use crate::model::Model;
 use crate::parallel::all_cores;
-use crate::render::Size;
+use crate::render::{PngEncoding, Size};
 use crate::style::{Style, View};
 
 pub use error::Error;
@@ -52,6 +52,7 @@ pub struct Fractal {
     size: Size,
     style: Option<Style>,
     view: Option<View>,
+    png_encoding: PngEncoding,
     cancel: Option<Arc<AtomicBool>>,
     /// The graph of the model in the file's coordinates, once it has been compiled.
     graph: OnceLock<Graph>,
@@ -72,6 +73,7 @@ impl From<Model> for Fractal {
             size: Size::Long(1024),
             style: None,
             view: None,
+            png_encoding: PngEncoding::default(),
             cancel: None,
             graph: OnceLock::new(),
         }

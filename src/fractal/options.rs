@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Document, MetadataDocument, Setting};
-use crate::render::Size;
+use crate::render::{PngEncoding, Size};
 use crate::style::{Style, View};
 
 use super::{Error, Fractal};
@@ -118,6 +118,24 @@ impl Fractal {
     #[must_use]
     pub fn view(mut self, view: View) -> Self {
         self.view = Some(view);
+        self
+    }
+
+    /// Sets the encoding of PNGs: faster, or as grey levels.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// use kfrac::render::PngEncoding;
+    ///
+    /// let encoding = PngEncoding::default().fast(true).grey(true);
+    /// let frame = kfrac::Fractal::named("dragon")?.steps(10).png_encoding(encoding).png(400)?;
+    /// assert_eq!(frame[24..26], [8, 0]); // 8 bits a pixel, greyscale
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn png_encoding(mut self, encoding: PngEncoding) -> Self {
+        self.png_encoding = encoding;
         self
     }
 

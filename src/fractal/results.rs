@@ -313,6 +313,7 @@ impl Fractal {
             style: self.style.clone().unwrap_or_else(|| heading.style.clone()),
             view: self.view.unwrap_or(heading.view),
             threads: self.threads,
+            png: self.png_encoding,
             detail: self.goal()?.detail(),
             labels: Labels {
                 title: description.title.clone().unwrap_or_default(),

@@ -149,8 +149,8 @@ impl<'a> Bands<'a> {
         }
         let colours = colours.sorted();
         let mut out = Told { out, error: None };
-        let labels = &self.options.labels;
-        let encoded = encode_pieces(self.size, &colours, labels, &mut out, |encode| {
+        let Options { labels, png, .. } = self.options;
+        let encoded = encode_pieces(self.size, &colours, labels, *png, &mut out, |encode| {
             self.each().try_for_each(|rows| give(rows, encode))
         });
         match out.error {

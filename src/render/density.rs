@@ -7,7 +7,7 @@ use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 use crate::chaos::Histogram;
 use crate::style::{Colour, Named, Palette};
 
-use super::png::{TooManyPixels, write_pixels};
+use super::png::{PngEncoding, TooManyPixels, write_pixels};
 use super::{Labels, RenderError};
 
 /// Mapping of a number of hits to a tone from 0 to 1.
@@ -116,7 +116,7 @@ pub fn write_density(
     }
     // The encoder does not pass on why writing to `out` fails, so it writes to memory.
     let mut bytes = Vec::new();
-    write_pixels(&pixmap, labels, &mut bytes)?;
+    write_pixels(&pixmap, labels, PngEncoding::default(), &mut bytes)?;
     Ok(out.write_all(&bytes)?)
 }
 

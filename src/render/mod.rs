@@ -55,7 +55,7 @@ pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
-pub use png::TooManyPixels;
+pub use png::{PngEncoding, TooManyPixels};
 pub use prepass::Prepass;
 pub use unit::Unit;
 pub use zoomed::{NoZoom, ZoomTarget, write_zoomed};
@@ -163,6 +163,8 @@ pub struct Options {
     /// depend on it, unless a path of many thousand vertices is drawn that is dashed, stroked more than 4
     /// pixels wide, or filled with a colour that is not opaque.
     pub band: u64,
+    /// Encoding of a PNG.
+    pub png: PngEncoding,
     /// Size below which elements are not replaced; none by default.
     pub detail: Option<Detail>,
     /// Metadata of the file.
@@ -182,6 +184,7 @@ setters!(Options {
     instanced: bool,
     in_one_piece: u64,
     band: u64,
+    png: PngEncoding,
     detail: Option<Detail>,
     labels: Labels,
     threads: NonZero<usize>,
@@ -200,6 +203,7 @@ impl Default for Options {
             instanced: false,
             in_one_piece: 1 << 24,
             band: 1 << 21,
+            png: PngEncoding::default(),
             detail: None,
             labels: Labels::default(),
             threads: all_cores(),
@@ -487,7 +491,7 @@ fn write_paths(
         PathFormat::Png => {
             let mut png = Png::begin(page.size, page.background, team)?;
             drawing.draw(&mut png, team)?;
-            Ok(png.write(page.labels, out)?)
+            Ok(png.write(options, out)?)
         }
         PathFormat::Pdf => {
             let mut pdf = Pdf::begin(out, &page, team)?;

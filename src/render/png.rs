@@ -17,6 +17,7 @@ mod stroker;
 mod tests;
 
 pub(super) use coverage::{RoundPen, Sprite, SpriteSheet, bounding_within, flattened_within};
+pub use encode::PngEncoding;
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use split::ROWS as BAND_ROWS;
 
@@ -36,7 +37,7 @@ use self::part::{Layers, Part};
 use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
-use super::Labels;
+use super::Options;
 use super::covered::CoveredPixels;
 use super::surface::{
     FINE, Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
@@ -182,11 +183,11 @@ impl<'t, 'w> Png<'t, 'w> {
     }
 
     /// Encodes the picture.
-    pub(super) fn write(mut self, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
+    pub(super) fn write(mut self, options: &Options, out: &mut impl Write) -> io::Result<()> {
         self.settle();
         // The encoder would not return the error of `out`, hence the copy in memory.
         let mut bytes = Vec::new();
-        encode::encode(&self.part.pixmap, labels, &mut bytes)?;
+        encode::encode(&self.part.pixmap, &options.labels, options.png, &mut bytes)?;
         out.write_all(&bytes)
     }
 

@@ -14,16 +14,35 @@ const TONES: usize = 128;
 /// Mean length of runs of one colour below which a picture is busy, in pixels.
 const SHORT: u64 = 4;
 
-/// Writes pixels as PNG with no more bits per pixel than they need: indexed for at most 256 colours,
+/// Encoding of the pixels of a PNG. By default, no more bits a pixel than the colours need, in small files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PngEncoding {
+    /// Whether pixels are compressed in a fraction of the time, to larger files.
+    pub fast: bool,
+    /// Whether pixels are grey levels of 8 bits, by luma (ITU-R BT.709), with an alpha channel of 8 bits unless all
+    /// are opaque.
+    pub grey: bool,
+}
+
+setters!(PngEncoding {
+    fast: bool,
+    grey: bool
+});
+
+/// Writes pixels as PNG, by default with no more bits per pixel than they need: indexed for at most 256 colours,
 /// greyscale if there are only greys, without an alpha channel if all pixels are opaque.
 pub(in crate::render) fn encode(
     pixmap: &Pixmap,
     labels: &Labels,
+    encoding: PngEncoding,
     out: &mut impl Write,
 ) -> io::Result<()> {
     let colours = Colours::of(pixmap);
     let size = [pixmap.width(), pixmap.height()];
-    encode_pieces(size, &colours, labels, out, |encode| encode(pixmap))
+    encode_pieces(size, &colours, labels, encoding, out, |encode| {
+        encode(pixmap)
+    })
 }
 
 /// Writes pixels that come in pieces of some rows each, from the top. `colours` are the colours of all
@@ -32,21 +51,30 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
     [width, height]: [u32; 2],
     colours: &Colours,
     labels: &Labels,
+    encoding: PngEncoding,
     out: &mut impl Write,
     give: impl FnOnce(&mut dyn FnMut(&Pixmap) -> io::Result<()>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut encoder = Encoder::new(out, width, height);
-    let layout = colours.layout();
-    if colours.few.colours.len() > TONES || colours.are_busy() {
+    let layout = match encoding.grey {
+        true => Layout::grey(colours.opaque),
+        false => colours.layout(),
+    };
+    // Line art has long runs of one colour. Filters break them up, including the default of a compression
+    // level.
+    let mut filter = Filter::NoFilter;
+    if encoding.fast {
+        encoder.set_compression(Compression::Fast);
+        // That compression shortens runs of zeros only.
+        filter = Filter::Up;
+    } else if colours.few.colours.len() > TONES || colours.are_busy() {
         // Takes a half to a sixth of the time of the default for a tenth more bytes: these pictures take
         // longest.
         encoder.set_deflate_compression(DeflateCompression::Level(2));
     } else {
         encoder.set_compression(Compression::Balanced);
     }
-    // Line art has long runs of one colour. Filters break them up, including the default of a compression
-    // level.
-    encoder.set_filter(Filter::NoFilter);
+    encoder.set_filter(filter);
     encoder.set_color(layout.colour);
     encoder.set_depth(layout.depth);
     if layout.colour == ColorType::Indexed {
@@ -81,10 +109,10 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
             row.clear();
             match layout.colour {
                 ColorType::Indexed => indices(pixels, &colours.few, layout.depth, &mut row),
-                ColorType::Grayscale => row.extend(pixels.iter().map(|pixel| pixel.red())),
+                ColorType::Grayscale => row.extend(pixels.iter().map(|&pixel| luma(rgba(pixel)))),
                 ColorType::GrayscaleAlpha => row.extend(pixels.iter().flat_map(|&pixel| {
-                    let [grey, _, _, opacity] = rgba(pixel);
-                    [grey, opacity]
+                    let colour = rgba(pixel);
+                    [luma(colour), colour[3]]
                 })),
                 ColorType::Rgb => row.extend(
                     pixels
@@ -107,6 +135,12 @@ type Rgba = [u8; 4];
 fn rgba(pixel: PremultipliedColorU8) -> Rgba {
     let colour = pixel.demultiply();
     [colour.red(), colour.green(), colour.blue(), colour.alpha()]
+}
+
+/// Returns the luma of a colour; that of a grey is its level.
+fn luma([red, green, blue, _]: Rgba) -> u8 {
+    let luma = 2126 * u32::from(red) + 7152 * u32::from(green) + 722 * u32::from(blue);
+    u8::try_from((luma + 5000) / 10_000).unwrap_or(u8::MAX)
 }
 
 /// Colours of a picture.
@@ -179,6 +213,20 @@ struct Layout {
     opaque: bool,
 }
 
+impl Layout {
+    /// Returns the layout of grey levels.
+    fn grey(opaque: bool) -> Self {
+        Self {
+            colour: match opaque {
+                true => ColorType::Grayscale,
+                false => ColorType::GrayscaleAlpha,
+            },
+            depth: BitDepth::Eight,
+            opaque,
+        }
+    }
+}
+
 impl Colours {
     /// Returns the colours of a picture without pixels.
     pub(in crate::render) fn none() -> Self {
@@ -244,19 +292,19 @@ impl Colours {
 
     fn layout(&self) -> Layout {
         let count = self.few.colours.len();
+        if self.grey && self.opaque && count > 16 || self.grey && count > Few::MOST {
+            return Layout::grey(self.opaque);
+        }
         let depth = match count {
             0..=2 => BitDepth::One,
             3..=4 => BitDepth::Two,
             5..=16 => BitDepth::Four,
             _ => BitDepth::Eight,
         };
-        let colour = match (self.grey, self.opaque) {
-            _ if count <= 16 => ColorType::Indexed,
-            (true, true) => ColorType::Grayscale,
+        let colour = match self.opaque {
             _ if count <= Few::MOST => ColorType::Indexed,
-            (true, false) => ColorType::GrayscaleAlpha,
-            (false, true) => ColorType::Rgb,
-            (false, false) => ColorType::Rgba,
+            true => ColorType::Rgb,
+            false => ColorType::Rgba,
         };
         Layout {
             colour,
