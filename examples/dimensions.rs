@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut offs, mut errors, mut scores) = (Vec::new(), Vec::new(), Vec::new());
     println!("| name | dimension | measured | s.e. | off | off / s.e. | decades | |");
     println!("|---|---|---|---|---|---|---|---|");
-    let grown = [Shelf::Rules, Shelf::Ifs, Shelf::LSystems, Shelf::Instancing];
+    let grown = [Shelf::RULES, Shelf::IFS, Shelf::LSYSTEMS, Shelf::INSTANCING];
     let entries = catalogue.entries();
     let wanted = |name: &String| only.is_empty() || only.contains(name);
     let entries = entries

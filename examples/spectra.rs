@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let orders = ORDERS.map(|order| format!(" D_{order} |"));
     println!("| name | exact |{}", orders.concat());
     println!("|---|---|{}", "---|".repeat(ORDERS.len()));
-    let grown = [Shelf::Rules, Shelf::Ifs, Shelf::LSystems, Shelf::Instancing];
+    let grown = [Shelf::RULES, Shelf::IFS, Shelf::LSYSTEMS, Shelf::INSTANCING];
     let entries = catalogue.entries();
     for entry in entries.iter().filter(|entry| grown.contains(&entry.shelf)) {
         let source = catalogue.rule(&entry.name).map_err(Diagnostics::from)?;

@@ -23,14 +23,8 @@ const EMBEDDED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/library.rs
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Shelf {
-    /// Production rules.
-    Rules,
-    /// Iterated function systems.
-    Ifs,
-    /// Instancing structures.
-    Instancing,
-    /// L-systems.
-    LSystems,
+    /// Complete fractals of a kind.
+    Fractals(Kind),
     /// Initiators.
     Initiators,
     /// Generators.
@@ -40,45 +34,34 @@ pub enum Shelf {
 }
 
 impl Shelf {
-    /// Returns the shelf of the files of a kind.
-    #[must_use]
-    pub fn of(kind: Kind) -> Self {
-        match kind {
-            Kind::Rule => Self::Rules,
-            Kind::Ifs => Self::Ifs,
-            Kind::Instancing => Self::Instancing,
-            Kind::LSystem => Self::LSystems,
-        }
-    }
+    /// Production rules.
+    pub const RULES: Self = Self::Fractals(Kind::Rule);
+    /// Iterated function systems.
+    pub const IFS: Self = Self::Fractals(Kind::Ifs);
+    /// Instancing structures.
+    pub const INSTANCING: Self = Self::Fractals(Kind::Instancing);
+    /// L-systems.
+    pub const LSYSTEMS: Self = Self::Fractals(Kind::LSystem);
 
     /// Returns the shelves of complete fractals, in the order of lookup.
     #[must_use]
     pub fn grown() -> [Self; Kind::ALL.len()] {
-        Kind::ALL.map(Self::of)
+        Kind::ALL.map(Self::Fractals)
     }
 
     /// The shelves of components, in the order of lookup.
     pub const COMPONENTS: [Self; 3] = [Self::Initiators, Self::Generators, Self::BaseElements];
 
-    /// All shelves, in the order in which they are listed.
-    pub const ALL: [Self; 7] = [
-        Self::Rules,
-        Self::Ifs,
-        Self::Instancing,
-        Self::LSystems,
-        Self::Initiators,
-        Self::Generators,
-        Self::BaseElements,
-    ];
+    /// Returns all shelves, in the order in which they are listed.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::grown().into_iter().chain(Self::COMPONENTS)
+    }
 
     /// Returns the name of the folder.
     #[must_use]
     pub fn folder(self) -> &'static str {
         match self {
-            Self::Rules => "rules",
-            Self::Ifs => "ifs",
-            Self::Instancing => "instancing",
-            Self::LSystems => "lsystems",
+            Self::Fractals(kind) => kind.folder(),
             Self::Initiators => "initiators",
             Self::Generators => "generators",
             Self::BaseElements => "base_elements",
@@ -90,10 +73,7 @@ impl Shelf {
     #[must_use]
     pub fn kind(self) -> &'static str {
         match self {
-            Self::Rules => "rule",
-            Self::Ifs => "ifs",
-            Self::Instancing => "instancing",
-            Self::LSystems => "lsystem",
+            Self::Fractals(kind) => kind.name(),
             Self::Initiators => "initiator",
             Self::Generators => "generator",
             Self::BaseElements => "base_element",
@@ -104,9 +84,7 @@ impl Shelf {
     #[must_use]
     pub fn noun(self) -> &'static str {
         match self {
-            Self::Ifs => "system",
-            Self::Instancing => "structure",
-            Self::LSystems => "L-system",
+            Self::Fractals(kind) => kind.noun(),
             Self::BaseElements => "base element",
             other => other.kind(),
         }
@@ -339,7 +317,7 @@ impl Catalogue {
         };
         let mut found = Vec::new();
         for folder in &self.folders {
-            let own = shelves.contains(&Shelf::Rules).then_some(Shelf::Rules);
+            let own = shelves.contains(&Shelf::RULES).then_some(Shelf::RULES);
             let own = own.map(|shelf| (shelf, folder.clone()));
             let shelved = shelves
                 .iter()
@@ -361,14 +339,14 @@ impl Catalogue {
     #[must_use]
     pub fn entries(&self) -> Vec<LibraryFile> {
         let mut entries = BTreeMap::new();
-        for shelf in Shelf::ALL {
+        for shelf in Shelf::all() {
             for (path, _) in EMBEDDED {
                 if let Some((_, name)) = on_shelf(&[shelf], path) {
                     add(&mut entries, shelf, Path::new(name), None);
                 }
             }
             for folder in self.folders.iter().rev() {
-                let own = (shelf == Shelf::Rules).then(|| folder.clone());
+                let own = (shelf == Shelf::RULES).then(|| folder.clone());
                 for folder in own.into_iter().chain([folder.join(shelf.folder())]) {
                     let files = fs::read_dir(folder).into_iter().flatten().flatten();
                     let files = files.map(|file| file.path()).filter(|path| path.is_file());

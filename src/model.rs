@@ -1,6 +1,10 @@
 //! Validated models of the four kinds of linear fractals, and their compilation to graphs.
 
+mod ifs;
+mod instancing;
+mod lsystem;
 mod place;
+mod rule;
 
 pub use place::OutOfRange;
 
@@ -8,79 +12,152 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::geometry::Homothety;
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
 use crate::instancing::Instancing;
 use crate::lsystem::LSystem;
 use crate::metadata::Metadata;
 use crate::rule::Rule;
+use place::Extent;
 
-/// Kind of a model and of its file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[non_exhaustive]
-pub enum Kind {
-    /// Production rule.
-    #[default]
-    Rule,
-    /// Iterated function system.
-    Ifs,
-    /// Structure of objects that instance each other.
-    Instancing,
-    /// L-system.
-    LSystem,
-}
+/// Declares the kinds of fractals: the name of a kind in files, the folder of its files in libraries, and its noun.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident($model:ty): $name:literal, $folder:literal, $noun:literal;)*) => {
+        /// Kind of a model and of its file.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Kind { $($(#[$doc])* $kind,)* }
 
-impl Kind {
-    /// All kinds, in the order in which they are listed and in which names are looked up.
-    pub const ALL: [Self; 4] = [Self::Rule, Self::Ifs, Self::Instancing, Self::LSystem];
+        impl Kind {
+            /// All kinds, in the order in which they are listed and in which names are looked up.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$kind),*];
 
-    /// Returns the value of `kind:` in files of the kind.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rule => "rule",
-            Self::Ifs => "ifs",
-            Self::Instancing => "instancing",
-            Self::LSystem => "lsystem",
+            /// Returns the value of `kind:` in files of the kind.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$kind => $name,)* }
+            }
+
+            /// Returns the name of the folder of such files in a library.
+            #[must_use]
+            pub const fn folder(self) -> &'static str {
+                match self { $(Self::$kind => $folder,)* }
+            }
+
+            /// Returns the noun for such a fractal, for use in messages.
+            #[must_use]
+            pub const fn noun(self) -> &'static str {
+                match self { $(Self::$kind => $noun,)* }
+            }
         }
-    }
+
+        /// Validated model: immutable, without unparsed text.
+        #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum Model { $($(#[$doc])* $kind(Arc<$model>),)* }
+
+        impl Model {
+            /// Returns the kind of the model.
+            #[must_use]
+            pub fn kind(&self) -> Kind {
+                match self { $(Self::$kind(_) => Kind::$kind,)* }
+            }
+
+            /// Returns the model behind its kind.
+            pub(crate) fn as_kind(&self) -> &dyn OfKind {
+                match self { $(Self::$kind(model) => model,)* }
+            }
+        }
+
+        $(impl From<$model> for Model {
+            fn from(model: $model) -> Self {
+                Self::$kind(model.into())
+            }
+        })*
+    };
 }
 
-/// Validated model: immutable, without unparsed text.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Model {
+kinds! {
     /// Production rule.
-    Rule(Arc<Rule>),
+    Rule(Rule): "rule", "rules", "rule";
     /// Iterated function system.
-    Ifs(Arc<System>),
+    Ifs(System): "ifs", "ifs", "system";
     /// Structure of objects that instance each other.
-    Instancing(Arc<Instancing>),
+    Instancing(Instancing): "instancing", "instancing", "structure";
     /// L-system.
-    LSystem(Arc<LSystem>),
+    LSystem(LSystem): "lsystem", "lsystems", "L-system";
+}
+
+/// Properties of a model that depend on its kind. Each kind implements them in a file of this module.
+pub(crate) trait OfKind {
+    /// Returns the metadata of the file.
+    fn metadata(&self) -> &Metadata;
+
+    /// Compiles the model as [`Model::compile_for`] does.
+    fn compile(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Graph, CompileError>;
+
+    /// Converts an error of compiling or of a walk to a diagnostic of the model's file.
+    fn diagnostic(&self, error: &CompileError) -> Diagnostic {
+        Diagnostic::error(error.to_string())
+    }
+
+    /// Returns an estimate of position and size; `None` for a model that need not be normalised.
+    fn extent(&self) -> Option<Extent> {
+        None
+    }
+
+    /// Returns the model in the coordinates that a homothety maps to its own; `None` without
+    /// [maps of the plane](Self::has_plane_maps), or if a shape has no extent in these coordinates.
+    fn within(&self, _place: &Homothety) -> Option<Model> {
+        None
+    }
+
+    /// Returns whether the maps of the model are maps of the whole plane. Models without them are moved by their
+    /// initiators.
+    fn has_plane_maps(&self) -> bool {
+        false
+    }
+
+    /// Returns a graph in units in which the approximant of `steps` steps is within the range of doubles, or `None` if
+    /// it is beyond that range.
+    fn normalised(&self, graph: Graph, _steps: u32) -> Option<Graph> {
+        Some(graph)
+    }
+
+    /// Returns the model whose graph has the limit set, if it is another one: see [`Model::of_limit`].
+    fn of_limit(&self) -> Option<Model> {
+        None
+    }
+
+    /// Returns whether every step has an initiator of its own: a detail cannot decide the number of steps then.
+    fn starts_anew(&self) -> bool {
+        false
+    }
+
+    /// Returns the deepest step, up to a number of steps and of elements, of a model that is compiled for one step
+    /// only.
+    fn deepest(&self, _most_steps: u32, _most_elements: u64) -> Option<u32> {
+        None
+    }
+
+    /// Returns the number of steps after which nothing is replaced, if the model states it.
+    fn ends(&self) -> Option<u32> {
+        None
+    }
+
+    /// Returns whether the model has a limit set that it is drawn to where nothing else is asked for. `has_limit`
+    /// returns whether the graph has a limit set with a bounding box.
+    fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {
+        false
+    }
 }
 
 impl Model {
-    /// Returns the kind of the model.
-    #[must_use]
-    pub fn kind(&self) -> Kind {
-        match self {
-            Self::Rule(_) => Kind::Rule,
-            Self::Ifs(_) => Kind::Ifs,
-            Self::Instancing(_) => Kind::Instancing,
-            Self::LSystem(_) => Kind::LSystem,
-        }
-    }
-
     /// Returns the metadata of the file.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
-        match self {
-            Self::Rule(rule) => &rule.heading,
-            Self::Ifs(system) => &system.heading,
-            Self::Instancing(structure) => &structure.heading,
-            Self::LSystem(system) => &system.heading,
-        }
+        self.as_kind().metadata()
     }
 
     /// Returns the production rule, or `None` for a model of another kind.
@@ -88,7 +165,7 @@ impl Model {
     pub fn rule(&self) -> Option<&Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) | Self::Instancing(_) | Self::LSystem(_) => None,
+            _ => None,
         }
     }
 
@@ -97,7 +174,7 @@ impl Model {
     pub fn into_rule(self) -> Option<Arc<Rule>> {
         match self {
             Self::Rule(rule) => Some(rule),
-            Self::Ifs(_) | Self::Instancing(_) | Self::LSystem(_) => None,
+            _ => None,
         }
     }
 
@@ -127,12 +204,7 @@ impl Model {
         seed: u64,
         most_elements: u64,
     ) -> Result<Graph, CompileError> {
-        match self {
-            Self::LSystem(system) => Graph::of_lsystem(system, steps, seed, most_elements),
-            Self::Rule(rule) => Graph::compile(rule, steps),
-            Self::Ifs(system) => Ok(Graph::of_system(system)),
-            Self::Instancing(structure) => Ok(Graph::of_structure(structure)),
-        }
+        self.as_kind().compile(steps, seed, most_elements)
     }
 
     /// Returns the model whose graph has the limit set: the model itself, except for an L-system that
@@ -140,24 +212,15 @@ impl Model {
     /// the latter it returns the system [without them](LSystem::without_appearance).
     #[must_use]
     pub fn of_limit(&self) -> Cow<'_, Self> {
-        if let Self::LSystem(system) = self
-            && !Graph::rewrites_edges(system)
-        {
-            let plain = system.without_appearance();
-            if plain != **system && Graph::rewrites_edges(&plain) {
-                return Cow::Owned(Self::LSystem(plain.into()));
-            }
+        match self.as_kind().of_limit() {
+            Some(model) => Cow::Owned(model),
+            None => Cow::Borrowed(self),
         }
-        Cow::Borrowed(self)
     }
 
     /// Converts an error of [`Model::compile`] or of a walk to a diagnostic of the model's file.
     #[must_use]
     pub fn diagnostic(&self, error: &CompileError) -> Diagnostic {
-        match self {
-            Self::Rule(rule) => error.diagnostic(rule),
-            Self::LSystem(system) => system.diagnostic(error),
-            Self::Ifs(_) | Self::Instancing(_) => Diagnostic::error(error.to_string()),
-        }
+        self.as_kind().diagnostic(error)
     }
 }

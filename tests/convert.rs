@@ -26,7 +26,7 @@ fn model(document: &Document) -> Model {
 fn library() -> Vec<(String, Model)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
-    let is_meant = |shelf| Shelf::grown().contains(&shelf) && shelf != Shelf::LSystems;
+    let is_meant = |shelf| Shelf::grown().contains(&shelf) && shelf != Shelf::LSYSTEMS;
     let grown = entries.filter(|entry| is_meant(entry.shelf));
     grown
         .map(|entry| {
@@ -365,7 +365,7 @@ generator:
 fn l_systems_become_what_they_draw() {
     let model_of = |name: &str| {
         let catalogue = Catalogue::embedded();
-        let source = catalogue.component(Shelf::LSystems, name).unwrap();
+        let source = catalogue.component(Shelf::LSYSTEMS, name).unwrap();
         model(&Document::read(&source, &catalogue).unwrap())
     };
     for name in [
@@ -404,7 +404,7 @@ fn l_systems_become_what_they_draw() {
 fn chains_of_equal_lines_become_plain_strings() {
     let strings = |name: &str| {
         let catalogue = Catalogue::embedded();
-        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let source = catalogue.component(Shelf::RULES, name).unwrap();
         let own = model(&Document::read(&source, &catalogue).unwrap());
         let written = convert(&own, Kind::LSystem, Keeps::Limit)
             .unwrap()
@@ -458,7 +458,7 @@ fn other_rules_become_strings_with_ways() {
 fn what_shrinks_by_way_of_others_is_not_doubted() {
     let catalogue = Catalogue::embedded();
     let source = catalogue
-        .component(Shelf::Instancing, "ternary-tree")
+        .component(Shelf::INSTANCING, "ternary-tree")
         .unwrap();
     let tree = model(&Document::read(&source, &catalogue).unwrap());
     let rule = convert(&tree, Kind::Rule, Keeps::Limit).unwrap();
@@ -490,7 +490,7 @@ fn what_is_refused_is_called_by_its_name() {
 fn polygons_without_an_area_become_the_lines_that_they_trace() {
     let catalogue = Catalogue::embedded();
     let source = catalogue
-        .component(Shelf::LSystems, "cordate-leaf")
+        .component(Shelf::LSYSTEMS, "cordate-leaf")
         .unwrap();
     let leaf = Document::read(&source, &catalogue).unwrap();
     let leaf = convert(&model(&leaf), Kind::Instancing, Keeps::Limit).unwrap();

@@ -50,7 +50,7 @@ fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize
 #[test]
 fn sizes_of_the_library_are_estimated() {
     let entries = Catalogue::embedded().entries();
-    let rules = entries.iter().filter(|entry| entry.shelf == Shelf::Rules);
+    let rules = entries.iter().filter(|entry| entry.shelf == Shelf::RULES);
     let held = rules.map(|rule| {
         let sides = [64, 1024, 4000];
         let held = sides.map(|side| hold(&rule.name, 1_000..=6_000, side));

@@ -30,14 +30,7 @@ fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, 
         ..Labels::default()
     });
     let mut bytes = Vec::new();
-    let size = match &model {
-        Model::Rule(rule) => {
-            rule::write(rule, document.rule().unwrap(), None, &options, &mut bytes)
-        }
-        Model::Ifs(system) => rule::write_system(system, &options, &mut bytes),
-        Model::Instancing(structure) => rule::write_structure(structure, &options, &mut bytes),
-        _ => panic!("there is no figure of this kind"),
-    };
+    let size = rule::write(&model, document, None, &options, &mut bytes);
     (bytes, size.unwrap())
 }
 
@@ -91,7 +84,7 @@ fn fertile_sides(rule: &Rule) -> usize {
 
 #[test]
 fn every_rule_of_the_library_can_be_read() {
-    for name in names(Shelf::Rules) {
+    for name in names(Shelf::RULES) {
         let document = document(&name);
         let (size, paths) = svg::read(&svg_of(&document));
         let labels = labels(&paths);
@@ -129,7 +122,7 @@ fn assert_can_be_read(name: &str, size: [i64; 2], paths: &[Path]) {
 
 #[test]
 fn every_structure_of_the_library_can_be_read() {
-    for name in names(Shelf::Instancing) {
+    for name in names(Shelf::INSTANCING) {
         let document = document(&name);
         let (size, paths) = svg::read(&svg_of(&document));
         assert_can_be_read(&name, size, &paths);

@@ -72,7 +72,7 @@ fn write_somehow(graph: &Graph, steps: u32, options: &mut Options) -> Option<(Pi
 #[test]
 fn the_picture_is_that_of_plain_svg() {
     let catalogue = Catalogue::embedded();
-    let shelves = [Shelf::Rules, Shelf::Ifs, Shelf::Instancing, Shelf::LSystems];
+    let shelves = [Shelf::RULES, Shelf::IFS, Shelf::INSTANCING, Shelf::LSYSTEMS];
     let entries = catalogue.entries();
     let mut worst = Vec::new();
     for entry in entries.iter().filter(|it| shelves.contains(&it.shelf)) {

@@ -364,7 +364,7 @@ fn blocks_agree(graph: &Graph, growth: &Growth<'_>) {
 fn blocks_of_the_library_are_the_elements_one_by_one() {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries();
-    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
         let source = catalogue.open(entry).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();

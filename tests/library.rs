@@ -61,7 +61,7 @@ fn entries(shelf: Shelf) -> Vec<LibraryFile> {
 
 /// Iterates over all rules, with their names.
 fn rules() -> impl Iterator<Item = (String, Arc<Rule>)> {
-    let names = entries(Shelf::Rules).into_iter().map(|entry| entry.name);
+    let names = entries(Shelf::RULES).into_iter().map(|entry| entry.name);
     names.map(|name| {
         let rule = resolved(&document(&name), &[]);
         (name, rule)
@@ -103,7 +103,7 @@ fn read_again(text: &str) -> Rule {
 
 #[test]
 fn the_promised_rules_exist() {
-    let names: BTreeSet<_> = entries(Shelf::Rules)
+    let names: BTreeSet<_> = entries(Shelf::RULES)
         .into_iter()
         .map(|entry| entry.name)
         .collect();
@@ -116,7 +116,7 @@ fn the_promised_rules_exist() {
 fn every_file_of_the_folder_is_found_by_its_name() {
     let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("library");
     let mut found = 0;
-    for shelf in Shelf::ALL {
+    for shelf in Shelf::all() {
         for file in fs::read_dir(library.join(shelf.folder())).unwrap() {
             let path = file.unwrap().path();
             assert_eq!(path.extension().unwrap(), "yaml", "{path:?}");

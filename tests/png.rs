@@ -151,7 +151,7 @@ fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
 #[test]
 fn both_formats_of_the_whole_library_are_the_same_picture() {
     let entries = Catalogue::embedded().entries();
-    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
         let name = entry.name.as_str();
         let rule = resolved(&document(name), &[]);
         agree(name, &rule, rule.steps().unwrap_or(4).min(8), 256);

@@ -24,7 +24,7 @@ use kfrac::style::{ColorBy, View, Width};
 fn library() -> Vec<(String, Arc<ifs::System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
-    let entries = entries.filter(|entry| entry.shelf == Shelf::Ifs);
+    let entries = entries.filter(|entry| entry.shelf == Shelf::IFS);
     let systems = entries.map(|entry| {
         let document = Document::read(&catalogue.open(&entry).unwrap(), &catalogue).unwrap();
         match document.resolve(&[]).unwrap().0 {

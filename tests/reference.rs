@@ -76,7 +76,7 @@ fn every_rule_of_the_library_is_held_against_the_reference() {
         .map(|entry| entry.rule_name().to_owned())
         .collect();
     for entry in Catalogue::embedded().entries() {
-        if entry.shelf != Shelf::Rules {
+        if entry.shelf != Shelf::RULES {
             continue;
         }
         // There are no independent numbers for rules that were made for kfrac.

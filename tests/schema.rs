@@ -34,10 +34,10 @@ fn yaml(text: &str) -> Option<Value> {
 /// Returns the shelf of a file by its content.
 fn shelf_of(value: &Value) -> Shelf {
     match value.get("kind").and_then(Value::as_str) {
-        Some("ifs") => Shelf::Ifs,
-        Some("instancing") => Shelf::Instancing,
-        Some("lsystem") => Shelf::LSystems,
-        _ => Shelf::Rules,
+        Some("ifs") => Shelf::IFS,
+        Some("instancing") => Shelf::INSTANCING,
+        Some("lsystem") => Shelf::LSYSTEMS,
+        _ => Shelf::RULES,
     }
 }
 
@@ -49,7 +49,7 @@ fn assert_valid(validator: &Validator, name: &str, text: &str) {
 
 #[test]
 fn the_files_of_the_library_say_what_the_command_prints() {
-    for shelf in Shelf::ALL {
+    for shelf in Shelf::all() {
         assert!(jsonschema::draft7::meta::is_valid(&parsed(shelf)));
         let path = format!("library/schema/{}.json", shelf.kind());
         if std::env::var_os("KFRAC_BLESS").is_some() {
@@ -140,7 +140,7 @@ proptest! {
 
     #[test]
     fn random_rules_are_valid(text in rules::rule(rules::Features::ALL)) {
-        assert_valid(&validator(Shelf::Rules), &text, &text);
+        assert_valid(&validator(Shelf::RULES), &text, &text);
     }
 }
 
@@ -161,7 +161,7 @@ fn is_of_structure(said: &str) -> bool {
 fn what_people_write_by_mistake_is_refused() {
     // The errors are in another file.
     const ACCEPTED: [&str; 1] = ["mistakes-in-a-component.yaml"];
-    let validator = validator(Shelf::Rules);
+    let validator = validator(Shelf::RULES);
     let mut accepted = Vec::new();
     for file in fs::read_dir("tests/bad").unwrap() {
         let path = file.unwrap().path();
@@ -288,7 +288,7 @@ fn the_schemas_and_the_reader_agree() {
         let validator = validator(shelf);
         let is_of_shelf = |value: &Value| match value.get("kind") {
             Some(kind) => kind == shelf.kind(),
-            None => shelf == Shelf::Rules && value.get("initiator").is_some(),
+            None => shelf == Shelf::RULES && value.get("initiator").is_some(),
         };
         let said = read(shelf, &sample, library.path());
         assert!(

@@ -52,7 +52,7 @@ fn system(text: &str) -> Arc<System> {
 fn library() -> Vec<(String, Arc<System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
-    let entries = entries.filter(|entry| entry.shelf == Shelf::Ifs);
+    let entries = entries.filter(|entry| entry.shelf == Shelf::IFS);
     let systems = entries.map(|entry| {
         let (system, doubts) = read(&catalogue.open(&entry).unwrap()).unwrap();
         assert!(doubts.is_empty(), "{doubts}");

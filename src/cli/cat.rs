@@ -55,5 +55,5 @@ fn without_modeline(text: &str) -> &str {
 }
 
 fn is_modeline(line: &str) -> bool {
-    Shelf::ALL.iter().any(|shelf| shelf.modeline() == line)
+    Shelf::all().any(|shelf| shelf.modeline() == line)
 }

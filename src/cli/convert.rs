@@ -46,14 +46,7 @@ Examples:
 ";
 
 fn kind() -> impl TypedValueParser<Value = Kind> {
-    let kinds = Kind::ALL.map(|kind| {
-        PossibleValue::new(kind.name()).help(match kind {
-            Kind::Rule => "A production rule; all maps must be similarities",
-            Kind::Ifs => "An iterated function system, recurrent where necessary",
-            Kind::Instancing => "Objects that instance each other",
-            Kind::LSystem => "An L-system, whose symbols draw lines",
-        })
-    });
+    let kinds = Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(described(kind)[1]));
     PossibleValuesParser::new(kinds).try_map(|name| {
         let mut kinds = Kind::ALL.into_iter();
         kinds.find(|kind| kind.name() == name).ok_or("unknown")
@@ -90,15 +83,25 @@ fn failure(error: ConvertError, loaded: &Loaded, to: Kind) -> Failure {
         ConvertError::Refused(Refusal::SameKind(_)) => Failure::Usage(format!(
             "{name} is not converted: {error}: `kfrac cat --inline` shows all of it"
         )),
-        _ => anyhow::anyhow!("{name} does not become {}: {error}", with_article(to)).into(),
+        _ => anyhow::anyhow!("{name} does not become {}: {error}", described(to)[0]).into(),
     }
 }
 
-fn with_article(kind: Kind) -> &'static str {
+/// Returns the noun of a kind with its article, and a description.
+fn described(kind: Kind) -> [&'static str; 2] {
     match kind {
-        Kind::Rule => "a production rule",
-        Kind::Ifs => "an iterated function system",
-        Kind::Instancing => "an instancing structure",
-        Kind::LSystem => "an L-system",
+        Kind::Rule => [
+            "a production rule",
+            "A production rule; all maps must be similarities",
+        ],
+        Kind::Ifs => [
+            "an iterated function system",
+            "An iterated function system, recurrent where necessary",
+        ],
+        Kind::Instancing => [
+            "an instancing structure",
+            "Objects that instance each other",
+        ],
+        Kind::LSystem => ["an L-system", "An L-system, whose symbols draw lines"],
     }
 }

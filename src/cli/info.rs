@@ -12,7 +12,6 @@ use crate::graph::{Count, Graph, Level};
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
 use crate::metadata::Parameter;
-use crate::model::Model;
 use crate::render::Options;
 use crate::rule::Generator;
 
@@ -288,14 +287,8 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
             hausdorff: hausdorff(exact.as_ref()),
             exact: exact.map(|known| known.hausdorff),
         },
-        system: match &loaded.model {
-            Model::Ifs(system) => Some(SystemInfo::of(system, place)),
-            Model::Rule(_) | Model::Instancing(_) | Model::LSystem(_) => None,
-        },
-        structure: match &loaded.model {
-            Model::Instancing(structure) => Some(StructureInfo::of(structure)),
-            Model::Rule(_) | Model::Ifs(_) | Model::LSystem(_) => None,
-        },
+        system: SystemInfo::of(&loaded.model, place),
+        structure: StructureInfo::of(&loaded.model),
     }
 }
 

@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         .max()
         .unwrap_or(0);
     let mut text = String::new();
-    for shelf in Shelf::ALL {
+    for shelf in Shelf::all() {
         let mut heading = Some(shelf.folder().replace('_', " "));
         for (_, row) in rows.iter().filter(|(of, _)| *of == shelf) {
             if let Some(heading) = heading.take() {

@@ -30,12 +30,12 @@ Examples:
 
 /// Returns a parser for the kinds as `kfrac list --json` names them; `-` is accepted for `_`.
 fn kind() -> impl TypedValueParser<Value = Shelf> {
-    let kinds = Shelf::ALL.map(|shelf| match shelf {
+    let kinds = Shelf::all().map(|shelf| match shelf {
         Shelf::BaseElements => PossibleValue::new(shelf.kind()).alias("base-element"),
         _ => PossibleValue::new(shelf.kind()),
     });
     PossibleValuesParser::new(kinds).try_map(|kind| {
-        let mut shelves = Shelf::ALL.into_iter();
+        let mut shelves = Shelf::all();
         let named = shelves.find(|shelf| shelf.kind() == kind.replace('-', "_"));
         named.ok_or("unknown")
     })

@@ -6,10 +6,9 @@ use clap::ValueHint;
 
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
-use crate::document::KindDocument;
 use crate::figure::rule;
-use crate::model::Model;
-use crate::render::{self, Size};
+use crate::model::Kind;
+use crate::render::{self, RenderError, Size};
 use crate::style::Named;
 
 use super::component::Component;
@@ -68,14 +67,6 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         None => arguments.rule.load(catalogue, arguments.quiet)?,
     };
     let alone = component.as_ref().map(Component::shelf);
-    if let Model::LSystem(_) = loaded.model {
-        let name = &loaded.name;
-        let message = format!(
-            "there is no figure of an L-system's productions: `kfrac cat {name}` shows them, and \
-             `kfrac sheet {name}` what they draw"
-        );
-        return Err(anyhow::anyhow!(message).into());
-    }
     let suffix = alone.map_or("-rule".into(), |shelf| {
         format!("-{}", shelf.kind().replace('_', "-"))
     });
@@ -83,23 +74,25 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let path = arguments.output.as_ref().unwrap_or(&default);
     let options = arguments.options(&loaded, alone, format);
     let ([width, height], bytes) = output::write(path, arguments.quiet, |out, _| {
-        let written = match (&loaded.model, loaded.document.kind()) {
-            (Model::Rule(rule), KindDocument::Rule(document)) => {
-                rule::write(rule, document, alone, &options, out)
+        let Loaded {
+            model, document, ..
+        } = &loaded;
+        rule::write(model, document, alone, &options, out).map_err(|error| match error {
+            RenderError::NoFigure(_) => {
+                let name = &loaded.name;
+                anyhow::anyhow!(
+                    "{error}: `kfrac cat {name}` shows them, and `kfrac sheet {name}` what they draw"
+                )
+                .into()
             }
-            (Model::Ifs(system), _) => rule::write_system(system, &options, out),
-            (Model::Instancing(structure), _) => rule::write_structure(structure, &options, out),
-            (Model::Rule(_) | Model::LSystem(_), _) => {
-                unreachable!("a model is of its document's kind")
-            }
-        };
-        written.map_err(|error| output::explain(error, path))
+            error => output::explain(error, path),
+        })
     })?;
     if !arguments.quiet {
         text::print_message(&format!(
             "{}: the {} of {}, {width} x {height} pixels, {}",
             output::called(path),
-            alone.map_or_else(|| noun(&loaded.model), Shelf::noun),
+            alone.map_or_else(|| loaded.model.kind().noun(), Shelf::noun),
             loaded.name,
             readable::bytes(bytes),
         ));
@@ -116,7 +109,10 @@ impl Arguments {
     ) -> rule::Options {
         let shown = match alone {
             Some(shelf) => format!("The {}", shelf.noun()),
-            None => shown(&loaded.model).into(),
+            None => match loaded.model.kind() {
+                Kind::Rule => "The production rule".into(),
+                kind => format!("The {}", kind.noun()),
+            },
         };
         let mut options = Vec::new();
         if format != render::Format::Svg {
@@ -131,23 +127,5 @@ impl Arguments {
             background: self.background.and_then(picture::Ink::colour),
             labels: labels(loaded, &shown, "show", options),
         }
-    }
-}
-
-fn noun(model: &Model) -> &'static str {
-    match model {
-        Model::Rule(_) => "rule",
-        Model::Ifs(_) => "system",
-        Model::Instancing(_) => "structure",
-        Model::LSystem(_) => "L-system",
-    }
-}
-
-fn shown(model: &Model) -> &'static str {
-    match model {
-        Model::Rule(_) => "The production rule",
-        Model::Ifs(_) => "The system",
-        Model::Instancing(_) => "The structure",
-        Model::LSystem(_) => "The L-system",
     }
 }

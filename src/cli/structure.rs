@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::readable;
-use crate::instancing::{Instancing, Master};
+use crate::instancing::Master;
+use crate::model::Model;
 
 /// Size of a structure, and whether it ends.
 #[derive(Serialize)]
@@ -22,13 +23,17 @@ pub(super) struct StructureInfo {
 }
 
 impl StructureInfo {
-    pub(super) fn of(structure: &Instancing) -> Self {
+    /// Collects the information of a structure.
+    pub(super) fn of(model: &Model) -> Option<Self> {
+        let Model::Instancing(structure) = model else {
+            return None;
+        };
         let shapes = structure
             .instances()
             .filter(|instance| matches!(instance.master, Master::Shape(_)))
             .count();
         let ends = structure.depth();
-        Self {
+        Some(Self {
             objects: structure.objects().len(),
             instances: structure.instances().count() - shapes,
             shapes,
@@ -37,7 +42,7 @@ impl StructureInfo {
                 .any(|instance| instance.tint.is_some()),
             recursive: ends.is_none(),
             ends,
-        }
+        })
     }
 
     /// Formats the information in lines, each with its label.

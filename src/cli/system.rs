@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::readable::decimal;
 use crate::geometry::{DVec2, Homothety};
-use crate::ifs::{System, Verdict};
+use crate::ifs::Verdict;
 use crate::model::Model;
 
 /// Maps of a system, their contraction, and the measure of random iteration.
@@ -50,14 +50,13 @@ struct MeasureInfo {
 }
 
 impl SystemInfo {
-    /// Collects the information. `place` maps coordinates near the unit box around the origin, in which
+    /// Collects the information of a system. `place` maps coordinates near the unit box around the origin, in which
     /// everything is computed, to those of the system.
-    pub(super) fn of(system: &System, place: &Homothety) -> Self {
-        let within = Model::Ifs(system.clone().into()).within(place);
-        let ifs = match &within {
-            Model::Ifs(within) => within.ifs(),
-            _ => system.ifs(),
+    pub(super) fn of(model: &Model, place: &Homothety) -> Option<Self> {
+        let (Model::Ifs(system), Model::Ifs(within)) = (model, model.within(place)) else {
+            return None;
         };
+        let ifs = within.ifs();
         let contraction = system.contraction();
         let point = |point: DVec2| (place.point(point) + DVec2::ZERO).to_array();
         let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
@@ -76,7 +75,7 @@ impl SystemInfo {
         } else {
             ifs.has_default_weights().then_some(Weights::Determinants)
         };
-        Self {
+        Some(Self {
             maps: maps.collect(),
             default_weights: weights_by.is_some(),
             weights_by,
@@ -91,7 +90,7 @@ impl SystemInfo {
                 length: contraction.length,
             },
             measure,
-        }
+        })
     }
 
     /// Formats the information in lines, each with its label.

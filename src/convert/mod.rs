@@ -83,12 +83,9 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
     }
-    let steps = match model {
-        Model::LSystem(system) => {
-            let own = model.metadata().steps;
-            own.unwrap_or_else(|| system.deepest(DEEPEST, MOST_ELEMENTS))
-        }
-        _ => STEPS,
+    let steps = match model.as_kind().deepest(DEEPEST, MOST_ELEMENTS) {
+        Some(deepest) => model.metadata().steps.unwrap_or(deepest),
+        None => STEPS,
     };
     let graph = model.compile(steps)?;
     // A time-indexed structure has no limit set, but is finite after its steps.

@@ -69,7 +69,7 @@ fn assemble_within(
     assembly.hoist_parameters(&mut entries);
     assembly.inline_data(&mut entries);
     assembly.inline_fractals(&mut entries);
-    let (kind, complete) = (assembly.kind.unwrap_or_default(), assembly.complete);
+    let (kind, complete) = (assembly.kind.unwrap_or(Kind::Rule), assembly.complete);
     let value = Value::Mapping(entries);
     Some((Node { place, value }, kind, complete))
 }
@@ -131,7 +131,7 @@ impl Assembly<'_> {
     fn entries(&mut self, node: Node) -> Option<(Place, Entries)> {
         let Value::Mapping(entries) = node.value else {
             let message = format!("a rule is needed here, this is {}", node.kind());
-            self.error(&node.place, message, shape(Kind::default()).hint);
+            self.error(&node.place, message, shape(Kind::Rule).hint);
             return None;
         };
         let kind = self.kind_of(&entries)?;
@@ -160,7 +160,7 @@ impl Assembly<'_> {
         let written = entries.iter().find(|(key, _)| key.name == "kind");
         let known = |name: &str| Kind::ALL.into_iter().find(|kind| kind.name() == name);
         let said = match written {
-            None => Kind::default(),
+            None => Kind::Rule,
             Some((_, node)) => match &node.value {
                 Value::Text(name) if known(name).is_some() => known(name)?,
                 _ => {
@@ -197,7 +197,7 @@ impl Assembly<'_> {
         let (_, parent) = entries.remove(index);
         let parents = self.parent(&parent).unwrap_or_else(|| {
             self.complete = false;
-            harmless_parent(&parent.place, self.kind.unwrap_or_default())
+            harmless_parent(&parent.place, self.kind.unwrap_or(Kind::Rule))
         });
         merge(&mut entries, parents);
         Some((place, entries))

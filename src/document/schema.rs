@@ -59,11 +59,13 @@ pub fn schema_of_all() -> String {
             "A file of kfrac: a rule, a system, a structure, an L-system, or a component of rules.",
         )
         .and(switch::by_kind());
-    let bodies = Shelf::ALL.map(|shelf| {
+    let bodies = Shelf::all().map(|shelf| {
         let at = format!("#{}", switch::place(shelf));
         (shelf.kind().to_owned(), body(shelf, &at).into())
     });
-    schema.with("definitions", Object(bodies.into())).to_text()
+    schema
+        .with("definitions", Object(bodies.collect()))
+        .to_text()
 }
 
 /// Returns the schema of the files of a shelf, located at `at` in the whole document.
@@ -74,19 +76,19 @@ fn body(shelf: Shelf, at: &str) -> Object {
         named: Vec::new(),
     };
     let (about, body) = match shelf {
-        Shelf::Rules => (
+        Shelf::RULES => (
             "A production rule: what the growth starts from, and what replaces an element.",
             definitions.grown(&RULE),
         ),
-        Shelf::Ifs => (
+        Shelf::IFS => (
             "An iterated function system: maps that shrink the plane, and what they are applied to.",
             definitions.grown(&IFS),
         ),
-        Shelf::Instancing => (
+        Shelf::INSTANCING => (
             "A structure of objects that instance each other, or themselves.",
             definitions.grown(&INSTANCING),
         ),
-        Shelf::LSystems => (
+        Shelf::LSYSTEMS => (
             "An L-system: a word, what replaces its symbols, and what a turtle draws of it.",
             definitions.grown(&LSYSTEM),
         ),

@@ -21,21 +21,18 @@ use std::io::Write;
 use std::num::NonZero;
 
 use crate::catalogue::Shelf;
-use crate::document::RuleDocument;
+use crate::document::Document;
 use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::model::Model;
 use crate::parallel::Team;
 use crate::render::{
     self, Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing,
 };
-use crate::rule::Rule;
 use crate::style::Colour;
 
 use super::LABEL;
 use super::text::Font;
 use block::Block;
-
-pub use structure::write_structure;
-pub use system::write_system;
 
 /// Options of a figure.
 #[derive(Clone, Debug)]
@@ -69,22 +66,28 @@ impl Default for Options {
     }
 }
 
-/// Draws the figure of a rule and writes it; returns width and height in pixels.
+/// Draws the figure of a rule, a system or a structure and writes it; returns width and height in pixels.
 ///
-/// `document` is the document that `rule` was resolved from: expressions are shown as written in it. With
+/// `document` is the document that `model` was resolved from: expressions of rules are shown as written in it. With
 /// `alone`, only the components of that shelf are shown.
 ///
 /// # Errors
 ///
-/// Returns an error if the picture is too large, or if `out` fails.
+/// Returns an error if there is no figure of the kind, if the picture is too large, or if `out` fails.
 pub fn write(
-    rule: &Rule,
-    document: &RuleDocument,
+    model: &Model,
+    document: &Document,
     alone: Option<Shelf>,
     options: &Options,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
-    let page = page::page(rule, document, alone, &options.labels.title);
+    let title = &options.labels.title;
+    let page = match (model, document.rule()) {
+        (Model::Rule(rule), Some(document)) => page::page(rule, document, alone, title),
+        (Model::Ifs(system), _) => system::page(system, title),
+        (Model::Instancing(structure), _) => structure::page(structure, title),
+        _ => return Err(RenderError::NoFigure(model.kind())),
+    };
     Figure::write(page, options, out)
 }
 

@@ -2,7 +2,6 @@
 
 use crate::graph::{CompileError, Graph};
 use crate::grow::WalkError;
-use crate::ifs::Verdict;
 use crate::model::Model;
 use crate::render::{Detail, NoDetail, RenderError};
 use crate::zoom::ZoomError;
@@ -41,7 +40,7 @@ impl Goal {
         compile: impl Fn(u32) -> Result<Graph, CompileError>,
     ) -> Result<Self, CompileError> {
         Ok(match (steps, detail) {
-            (None, Some(pixels)) if !starts_anew(model) => Self::Detail(pixels),
+            (None, Some(pixels)) if !model.as_kind().starts_anew() => Self::Detail(pixels),
             (None, None) if goes_on_to_a_detail(model, &compile) => Self::Detail(1.0),
             (Some(steps), pixels) => Self::Steps(steps, pixels),
             (None, pixels) => Self::Steps(proposed_steps(model, compile)?, pixels),
@@ -138,15 +137,14 @@ pub fn proposed_steps(
     if let Some(steps) = model.metadata().steps {
         return Ok(steps);
     }
-    if let Model::LSystem(system) = model {
-        return Ok(system.deepest(DEEPEST, MOST_ELEMENTS));
+    if let Some(deepest) = model.as_kind().deepest(DEEPEST, MOST_ELEMENTS) {
+        return Ok(deepest);
     }
     let graph = compile(DEEPEST)?;
     if graph.forecast().is_none() {
         return Ok(DEEPEST / 2);
     }
-    if let Model::Instancing(structure) = model
-        && let Some(depth) = structure.depth()
+    if let Some(depth) = model.as_kind().ends()
         && depth <= Goal::MOST_STEPS
         && graph.check_size(depth, MOST_ELEMENTS).is_ok()
     {
@@ -164,20 +162,6 @@ fn goes_on_to_a_detail(
     model: &Model,
     compile: impl Fn(u32) -> Result<Graph, CompileError>,
 ) -> bool {
-    match model {
-        Model::Ifs(system) => {
-            system.metadata().steps.is_none() && system.contraction().verdict == Verdict::Contracts
-        }
-        Model::Instancing(structure) => {
-            structure.metadata().steps.is_none()
-                && structure.depth().is_none()
-                && compile(0).is_ok_and(|graph| graph.limit_bounds().is_some())
-        }
-        Model::Rule(_) | Model::LSystem(_) => false,
-    }
-}
-
-/// Returns whether every step has an initiator of its own: a detail cannot decide the number of steps then.
-fn starts_anew(model: &Model) -> bool {
-    matches!(model, Model::LSystem(system) if !Graph::rewrites_edges(system))
+    let has_limit = || compile(0).is_ok_and(|graph| graph.limit_bounds().is_some());
+    model.metadata().steps.is_none() && model.as_kind().is_drawn_to_limit(&has_limit)
 }

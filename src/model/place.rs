@@ -12,9 +12,7 @@
 
 use crate::geometry::{Bounds, DVec2, Homothety};
 use crate::graph::{CompileError, Graph, exponent_of};
-use crate::ifs::{self, Map};
-use crate::instancing::{Instancing, Master};
-use crate::rule::Rule;
+use crate::ifs::Map;
 
 use super::Model;
 
@@ -69,7 +67,7 @@ pub enum OutOfRange {
 }
 
 /// Estimate of the position and size of a model.
-struct Extent {
+pub(crate) struct Extent {
     /// Point of the model.
     at: DVec2,
     /// Longer side of a box that is at most as large as the bounding box.
@@ -79,7 +77,7 @@ struct Extent {
 impl Extent {
     /// Returns the extent of points of a model and of the images of the first point under `maps`, or
     /// `None` if there is no point.
-    fn of(
+    pub(super) fn of(
         points: impl IntoIterator<Item = DVec2>,
         maps: impl Iterator<Item = Map>,
     ) -> Option<Self> {
@@ -92,36 +90,6 @@ impl Extent {
             at,
             size: bounds.size().max_element(),
         })
-    }
-
-    fn of_rule(rule: &Rule) -> Option<Self> {
-        Self::of(rule.initiator_points().iter().copied(), std::iter::empty())
-    }
-
-    fn of_system(system: &ifs::System) -> Option<Self> {
-        let ifs = system.ifs();
-        let sets = ifs.condensation().iter().map(|set| &set.shape);
-        let fixed = ifs.fixed_points().into_iter().flatten();
-        let drawn = sets.flat_map(|set| set.control_points());
-        Self::of(fixed.chain(drawn), ifs.maps().iter().cloned())
-    }
-
-    fn of_structure(structure: &Instancing) -> Option<Self> {
-        let maps = || {
-            let instances = structure.instances();
-            let objects = instances.filter(|it| matches!(it.master, Master::Object(_)));
-            objects.map(|it| Map::new(structure.map_of(it)))
-        };
-        let shapes = structure.instances().filter_map(|it| match &it.master {
-            Master::Shape(shape) => shape.transformed(&it.map),
-            Master::Object(_) => None,
-        });
-        let drawn = shapes.flat_map(|shape| shape.control_points());
-        let initial = structure.initial().map(ifs::Shape::control_points);
-        let fixed = maps().filter(Map::contracts);
-        let fixed = fixed.filter_map(|map| map.fixed_point());
-        let points = drawn.chain(initial.into_iter().flatten()).chain(fixed);
-        Self::of(points, maps())
     }
 
     /// Returns the homothety from suitable normalised coordinates; `exactly` measures the extent in
@@ -171,19 +139,14 @@ impl Model {
     /// If the extent of the model is above 1e300 or below 1e-300 (within a factor of 2), or its distance
     /// from the origin reaches 1e12 times its extent.
     pub fn place(&self) -> Result<Homothety, OutOfRange> {
-        let extent = match self {
-            Self::Rule(rule) => Extent::of_rule(rule),
-            Self::Ifs(system) => Extent::of_system(system),
-            Self::Instancing(structure) => Extent::of_structure(structure),
-            Self::LSystem(_) => None,
-        };
         let exactly = |place: &Homothety| {
             let graph = (self.compile_within(place, 0, 0, Self::MOST_ELEMENTS)).ok()?;
             Some(graph.limit_bounds()?.size().max_element())
         };
+        let extent = self.as_kind().extent();
         let place = extent.map_or(Ok(Homothety::IDENTITY), |extent| extent.place(exactly))?;
         let stays =
-            place.is_identity() || matches!(self, Self::Rule(_)) || self.moved(&place).is_some();
+            place.is_identity() || !self.as_kind().has_plane_maps() || self.moved(&place).is_some();
         Ok(if stays { place } else { Homothety::IDENTITY })
     }
 
@@ -196,11 +159,9 @@ impl Model {
     }
 
     fn moved(&self, place: &Homothety) -> Option<Self> {
-        match self {
-            _ if place.is_identity() => None,
-            Self::Ifs(system) => Some(Self::Ifs(system.within(place)?.into())),
-            Self::Instancing(structure) => Some(Self::Instancing(structure.within(place)?.into())),
-            Self::Rule(_) | Self::LSystem(_) => None,
+        match place.is_identity() {
+            true => None,
+            false => self.as_kind().within(place),
         }
     }
 
@@ -218,10 +179,7 @@ impl Model {
         most_elements: u64,
     ) -> Result<Graph, CompileError> {
         let graph = self.compile_within(&self.place()?, steps, seed, most_elements)?;
-        if !matches!(self, Self::Rule(_)) {
-            return Ok(graph);
-        }
-        let graph = graph.in_units_of(steps);
+        let graph = self.as_kind().normalised(graph, steps);
         graph.ok_or_else(|| OutOfRange::Growth { step: steps }.into())
     }
 
@@ -244,9 +202,9 @@ impl Model {
             return Ok(graph);
         }
         let graph = self.compile_for(steps, seed, most_elements)?;
-        Ok(match self {
-            Self::Rule(_) | Self::LSystem(_) => graph.started_within(place),
-            Self::Ifs(_) | Self::Instancing(_) => graph,
+        Ok(match self.as_kind().has_plane_maps() {
+            true => graph,
+            false => graph.started_within(place),
         })
     }
 

@@ -103,7 +103,7 @@ mod tests {
         let catalogue = Catalogue::embedded();
         let entries = catalogue.entries();
         let mut counted = 0;
-        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
             let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn what_is_counted_stays_within_limits() {
         let catalogue = Catalogue::embedded();
-        let source = catalogue.component(Shelf::Rules, "koch").unwrap();
+        let source = catalogue.component(Shelf::RULES, "koch").unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 100).unwrap();

@@ -214,7 +214,7 @@ mod tests {
         let catalogue = Catalogue::embedded();
         let entries = catalogue.entries();
         let [mut told, mut aged] = [0; 2];
-        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
             let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();

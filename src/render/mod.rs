@@ -72,6 +72,7 @@ use std::sync::atomic::AtomicBool;
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::metadata::Metadata;
+use crate::model::Kind;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
 use crate::zoom::ZoomError;
@@ -300,6 +301,9 @@ pub enum RenderError {
     /// The picture is too large for memory.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
+    /// There is no figure of a kind.
+    #[error("there is no figure of an {}'s productions", .0.noun())]
+    NoFigure(Kind),
     /// The picture cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),

@@ -211,7 +211,7 @@ mod tests {
             ("self-seeding-square", ColorBy::Fractal),
         ];
         for (name, color_by) in cases {
-            let source = catalogue.component(Shelf::Rules, name).unwrap();
+            let source = catalogue.component(Shelf::RULES, name).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
             let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
             let graph = Graph::compile(&rule, 30).unwrap();

@@ -186,7 +186,7 @@ mod tests {
         let catalogue = Catalogue::embedded();
         let entries = catalogue.entries();
         let mut drawn = 0;
-        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::Rules) {
+        for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
             let document = Document::read(&catalogue.open(entry).unwrap(), &catalogue).unwrap();
             let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
             let limits = [[1.0, 9.0], [0.0, 4.0], [0.0, 4.0], [0.0, 1.0]];
@@ -221,7 +221,7 @@ mod tests {
     fn parts_keep_in_mind_what_is_drawn_together() {
         let catalogue = Catalogue::embedded();
         for (name, generator, longest) in [("sea-fan", 0, 1.0), ("random-tree", 0, 0.9)] {
-            let source = catalogue.component(Shelf::Rules, name).unwrap();
+            let source = catalogue.component(Shelf::RULES, name).unwrap();
             let rule = Document::read(&source, &catalogue)
                 .unwrap()
                 .resolve(&[])

@@ -264,9 +264,9 @@ pub fn zoom(
 ///
 /// If an L-system does not rewrite edges: compiling it may require long words.
 pub fn check_model(model: &Model) -> Result<(), ZoomError> {
-    match model {
-        Model::LSystem(system) if !Graph::rewrites_edges(system) => Err(ZoomError::StartsAnew),
-        _ => Ok(()),
+    match model.as_kind().starts_anew() {
+        true => Err(ZoomError::StartsAnew),
+        false => Ok(()),
     }
 }
 

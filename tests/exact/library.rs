@@ -40,7 +40,7 @@ fn every_published_dimension_is_found() {
     let mut undecided = Vec::new();
     let mut seen = 0;
     let entries = Catalogue::embedded().entries().into_iter();
-    for entry in entries.filter(|entry| entry.shelf == Shelf::Rules) {
+    for entry in entries.filter(|entry| entry.shelf == Shelf::RULES) {
         let name = entry.name.as_str();
         let document = common::document(name);
         let resolved = common::resolved(&document, &[]);

@@ -14,7 +14,7 @@ use super::{check_paths, entries};
 
 /// Iterates over all L-systems, with their names.
 fn systems() -> impl Iterator<Item = (String, Arc<LSystem>)> {
-    let names = entries(Shelf::LSystems).into_iter();
+    let names = entries(Shelf::LSYSTEMS).into_iter();
     names.map(|entry| {
         let system = system(&document(&entry.name).to_yaml());
         (entry.name, system)

@@ -15,7 +15,7 @@ use super::{check_paths, entries};
 
 /// Returns all structures with their names and the numbers of steps that they are drawn with.
 fn structures() -> Vec<(String, Arc<Instancing>, u32)> {
-    let names = entries(Shelf::Instancing).into_iter();
+    let names = entries(Shelf::INSTANCING).into_iter();
     let structures = names.map(|entry| {
         let structure = structure(&document(&entry.name).to_yaml());
         let steps = structure.metadata().steps.or_else(|| structure.depth());

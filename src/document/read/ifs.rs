@@ -47,7 +47,7 @@ const IFS_ALONE: [Member; 9] = [
     ),
     key(
         "extends",
-        Form::File(Shelf::Ifs),
+        Form::File(Shelf::IFS),
         "Another system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.",
     ),

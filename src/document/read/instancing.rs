@@ -37,7 +37,7 @@ const INSTANCING_ALONE: [Member; 6] = [
     ),
     key(
         "extends",
-        Form::File(Shelf::Instancing),
+        Form::File(Shelf::INSTANCING),
         "Another structure to start from, by name or by file. The keys written here replace its \
          keys; `params`, `style` and `view` merge entry by entry.",
     ),

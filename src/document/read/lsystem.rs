@@ -32,7 +32,7 @@ const LSYSTEM_ALONE: [Member; 11] = [
     ),
     key(
         "extends",
-        Form::File(Shelf::LSystems),
+        Form::File(Shelf::LSYSTEMS),
         "Another L-system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.",
     ),

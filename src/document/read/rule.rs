@@ -41,7 +41,7 @@ const RULE_ALONE: [Member; 8] = [
     ),
     key(
         "extends",
-        Form::File(Shelf::Rules),
+        Form::File(Shelf::RULES),
         "Another rule to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.",
     ),

@@ -278,7 +278,7 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
     }
     let kind = match node.get("kind").map(|kind| &kind.value) {
         Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
-        _ => Kind::default(),
+        _ => Kind::Rule,
     };
     let mut inside = reader.inside();
     let file = read_kind(&mut inside, kind, node, true);

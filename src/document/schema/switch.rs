@@ -22,7 +22,7 @@ pub(super) fn by_kind() -> Object {
         let is_kind = Object::default().with("const", kind.name());
         let is_kind = Object::default().with("kind", is_kind);
         let condition = having(["kind"]).with("properties", is_kind);
-        (condition, refer(Shelf::of(kind)))
+        (condition, refer(Shelf::Fractals(kind)))
     });
     let known = Object::default().with("enum", list(Kind::ALL.map(Kind::name)));
     let unknown = Object::default().with("properties", Object::default().with("kind", known));
@@ -33,7 +33,7 @@ pub(super) fn by_kind() -> Object {
             Object::default().with("type", "array"),
             refer(Shelf::Initiators),
         ),
-        (having(of_rules), refer(Shelf::Rules)),
+        (having(of_rules), refer(Shelf::RULES)),
         (having(["points"]), refer(Shelf::BaseElements)),
         (having(of_generators), refer(Shelf::Generators)),
         (having(names(&INITIATOR)), refer(Shelf::Initiators)),
@@ -43,7 +43,7 @@ pub(super) fn by_kind() -> Object {
         .chain([(having(["kind"]), unknown)])
         .chain(components);
     all.rev()
-        .fold(refer(Shelf::Rules), |otherwise, (condition, schema)| {
+        .fold(refer(Shelf::RULES), |otherwise, (condition, schema)| {
             Object::default()
                 .with("if", condition)
                 .with("then", schema)

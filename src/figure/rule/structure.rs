@@ -2,19 +2,18 @@
 //! with the bounding boxes of its instances.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::{Graph, base_element, filling};
 use crate::instancing::{Instance, Instancing, Master};
-use crate::render::{Paint, RenderError};
+use crate::render::Paint;
 
 use super::super::text::Font;
 use super::block::{Block, Item, Outline};
 use super::ink;
 use super::lines::{flattened, outline};
+use super::onto_panel;
 use super::page::{SMALL, WORDS, lay_out, plural};
-use super::{Figure, Options, onto_panel};
 
 /// Largest side of the scene's panel, in pixels.
 const SCENE: f64 = 300.0;
@@ -40,16 +39,8 @@ const MOST_CHARACTERS: usize = 16;
 /// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
 
-/// Draws the figure of an instancing structure and writes it; returns width and height in pixels.
-///
-/// # Errors
-///
-/// Returns an error if the picture is too large, or if `out` fails.
-pub fn write_structure(
-    structure: &Instancing,
-    options: &Options,
-    out: &mut impl Write,
-) -> Result<[u32; 2], RenderError> {
+/// Lays out an instancing structure under a title.
+pub(super) fn page(structure: &Instancing, title: &str) -> Block {
     let font = Font::new();
     let shown = shown(structure);
     let plan = Plan {
@@ -76,14 +67,13 @@ pub fn write_structure(
         ));
     }
     let source = structure.metadata().description.source.as_deref();
-    let page = lay_out(
+    lay_out(
         &font,
         columns,
-        [&options.labels.title, source.unwrap_or_default()],
+        [title, source.unwrap_or_default()],
         |_| Block::default(),
         &notes,
-    );
-    Figure::write(page, options, out)
+    )
 }
 
 /// Returns the indices of the objects shown; of objects that differ only by their level, the first few.

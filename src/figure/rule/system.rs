@@ -1,20 +1,17 @@
 //! Figures of iterated function systems: the initial set, its images under the maps with their numbers, and
 //! the condensation sets.
 
-use std::io::Write;
-
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
-use crate::render::RenderError;
 use crate::rule::{BaseElement, Piece};
 
 use super::super::text::Font;
 use super::block::{Block, Item, Outline};
 use super::ink::{self, Kind};
 use super::lines::outline;
+use super::onto_panel;
 use super::page::{WORDS, lay_out, plural};
-use super::{Figure, Options, onto_panel};
 
 /// Largest width and height of the panel of images, in pixels.
 const MOST: DVec2 = DVec2::new(380.0, 380.0);
@@ -24,16 +21,8 @@ const SMALL: f64 = 0.55;
 /// Limit of the number of maps that are drawn with numbers.
 const MOST_NUMBERS: usize = 100;
 
-/// Draws the figure of a system and writes it; returns width and height in pixels.
-///
-/// # Errors
-///
-/// Returns an error if the picture is too large, or if `out` fails.
-pub fn write_system(
-    system: &System,
-    options: &Options,
-    out: &mut impl Write,
-) -> Result<[u32; 2], RenderError> {
+/// Lays out a system under a title.
+pub(super) fn page(system: &System, title: &str) -> Block {
     let graph = Graph::of_system(system);
     let font = Font::new();
     let ifs = system.ifs();
@@ -50,14 +39,13 @@ pub fn write_system(
         ));
     }
     let source = system.metadata().description.source.as_deref();
-    let page = lay_out(
+    lay_out(
         &font,
         columns,
-        [&options.labels.title, source.unwrap_or_default()],
+        [title, source.unwrap_or_default()],
         |_| Block::default(),
         &edges(ifs),
-    );
-    Figure::write(page, options, out)
+    )
 }
 
 /// Returns the edges of a recurrent system's digraph as text, one line for each map.

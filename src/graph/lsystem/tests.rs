@@ -231,7 +231,7 @@ fn library() {
     let mut words = Vec::new();
     for entry in entries
         .iter()
-        .filter(|entry| entry.shelf == Shelf::LSystems)
+        .filter(|entry| entry.shelf == Shelf::LSYSTEMS)
     {
         let document = Document::read(&catalogue.open(entry).unwrap(), &catalogue).unwrap();
         let Model::LSystem(system) = document.resolve(&[]).unwrap().0 else {

@@ -62,7 +62,7 @@ impl Visitor for Asking {
 fn some_elements_of_a_run_are_those_among_all() {
     let catalogue = Catalogue::embedded();
     for name in ["h-tree", "pythagoras-30", "koch", "t-square", "dragon"] {
-        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let source = catalogue.component(Shelf::RULES, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 6).unwrap();
@@ -129,7 +129,7 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
     let catalogue = Catalogue::embedded();
     let mut runs = 0;
     for entry in catalogue.entries() {
-        if !matches!(entry.shelf, Shelf::Rules | Shelf::Ifs) {
+        if !matches!(entry.shelf, Shelf::RULES | Shelf::IFS) {
             continue;
         }
         let source = catalogue.open(&entry).unwrap();

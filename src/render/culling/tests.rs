@@ -255,7 +255,7 @@ fn windows_of_the_library_show_their_part() {
         ("random-tree", 8, 0.6),
         ("fern", 6, 0.9),
     ] {
-        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let source = catalogue.component(Shelf::RULES, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let plain = Style {
@@ -306,7 +306,7 @@ fn ranks_count_what_is_not_visited() {
         "snow-crystal",
         "mandala",
     ] {
-        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let source = catalogue.component(Shelf::RULES, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let style = |fill: Option<Colour>| Style {
@@ -419,7 +419,7 @@ fn colours_by_step_leave_out_nothing() {
         "t-square",
         "archipelago",
     ] {
-        let source = catalogue.component(Shelf::Rules, name).unwrap();
+        let source = catalogue.component(Shelf::RULES, name).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
         let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 4).unwrap();

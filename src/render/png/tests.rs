@@ -375,7 +375,7 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
     let catalogue = Catalogue::embedded();
     let source = |name: &str| match name {
         "tree" => Source::new("tree.yaml", TREE),
-        name => catalogue.component(Shelf::Rules, name).unwrap(),
+        name => catalogue.component(Shelf::RULES, name).unwrap(),
     };
     let cases = [
         ("tree", 14, 0.15),

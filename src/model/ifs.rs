@@ -1,0 +1,41 @@
+//! Iterated function systems as a kind of model.
+
+use std::sync::Arc;
+
+use crate::geometry::Homothety;
+use crate::graph::{CompileError, Graph};
+use crate::ifs::{System, Verdict};
+use crate::metadata::Metadata;
+
+use super::place::Extent;
+use super::{Model, OfKind};
+
+impl OfKind for Arc<System> {
+    fn metadata(&self) -> &Metadata {
+        &self.heading
+    }
+
+    fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
+        Ok(Graph::of_system(self))
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        let ifs = self.ifs();
+        let sets = ifs.condensation().iter().map(|set| &set.shape);
+        let fixed = ifs.fixed_points().into_iter().flatten();
+        let drawn = sets.flat_map(|set| set.control_points());
+        Extent::of(fixed.chain(drawn), ifs.maps().iter().cloned())
+    }
+
+    fn within(&self, place: &Homothety) -> Option<Model> {
+        System::within(self, place).map(Model::from)
+    }
+
+    fn has_plane_maps(&self) -> bool {
+        true
+    }
+
+    fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {
+        self.contraction().verdict == Verdict::Contracts
+    }
+}

@@ -1,0 +1,40 @@
+//! L-systems as a kind of model.
+
+use std::sync::Arc;
+
+use crate::diagnostic::Diagnostic;
+use crate::graph::{CompileError, Graph};
+use crate::lsystem::LSystem;
+use crate::metadata::Metadata;
+
+use super::{Model, OfKind};
+
+impl OfKind for Arc<LSystem> {
+    fn metadata(&self) -> &Metadata {
+        &self.heading
+    }
+
+    fn compile(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Graph, CompileError> {
+        Graph::of_lsystem(self, steps, seed, most_elements)
+    }
+
+    fn diagnostic(&self, error: &CompileError) -> Diagnostic {
+        LSystem::diagnostic(self, error)
+    }
+
+    fn of_limit(&self) -> Option<Model> {
+        if Graph::rewrites_edges(self) {
+            return None;
+        }
+        let plain = self.without_appearance();
+        (plain != **self && Graph::rewrites_edges(&plain)).then(|| plain.into())
+    }
+
+    fn starts_anew(&self) -> bool {
+        !Graph::rewrites_edges(self)
+    }
+
+    fn deepest(&self, most_steps: u32, most_elements: u64) -> Option<u32> {
+        Some(LSystem::deepest(self, most_steps, most_elements))
+    }
+}
