@@ -23,7 +23,7 @@ use crate::graph::{Forecast, Graph, Population};
 use crate::grow::Growth;
 use crate::render::{self, Canvas, Format, Options};
 use crate::rule::{BaseElement, Piece};
-use crate::style::{ColorBy, Width};
+use crate::style::{ColorBy, ColorProperty, Width};
 
 /// Cost of drawing an approximant: sizes of the files and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,15 +188,13 @@ impl<'a> Estimator<'a> {
 
     /// Returns the number of classes of colour, each of which takes a walk; at most 64.
     fn classes(&self, step: u32, fractals: f64) -> f64 {
-        let classes = match self.options.style.color_by {
-            ColorBy::None | ColorBy::Hits | ColorBy::Tint => 1.0,
-            ColorBy::Fractal => fractals,
-            ColorBy::Index => 64.0,
-            ColorBy::Step | ColorBy::Age => f64::from(step) + 1.0,
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
-                1.0 + self.graph.origins() as f64
-            }
-            ColorBy::Direction => 4.0,
+        let classes = match self.options.style.color_by.property() {
+            ColorProperty::Uniform | ColorProperty::Tint => 1.0,
+            ColorProperty::Fractal => fractals,
+            ColorProperty::Index => 64.0,
+            ColorProperty::Step | ColorProperty::Age => f64::from(step) + 1.0,
+            ColorProperty::Object => 1.0 + self.graph.origins() as f64,
+            ColorProperty::Direction => 4.0,
         };
         classes.min(64.0)
     }

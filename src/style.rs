@@ -148,11 +148,46 @@ pub enum ColorBy {
     Tint,
 }
 
+/// Property that determines the class of an element by colour: all that rooms beside `render::Classes` need to know of a
+/// [`ColorBy`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ColorProperty {
+    /// There is one class.
+    Uniform,
+    /// There is one class, and objects have colours of their own.
+    Tint,
+    Step,
+    Age,
+    Fractal,
+    Index,
+    /// The object of the graph.
+    Object,
+    Direction,
+}
+
 impl ColorBy {
+    /// Returns the property on which the class of an element depends.
+    #[inline]
+    pub(crate) fn property(self) -> ColorProperty {
+        match self {
+            Self::None | Self::Hits => ColorProperty::Uniform,
+            Self::Tint => ColorProperty::Tint,
+            Self::Step => ColorProperty::Step,
+            Self::Age => ColorProperty::Age,
+            Self::Fractal => ColorProperty::Fractal,
+            Self::Index => ColorProperty::Index,
+            Self::Generator | Self::FirstMap | Self::LastMap => ColorProperty::Object,
+            Self::Direction => ColorProperty::Direction,
+        }
+    }
+
     /// Returns whether the colours of elements come from the palette.
     #[must_use]
     pub fn takes_palette(self) -> bool {
-        !matches!(self, Self::None | Self::Hits | Self::Tint)
+        !matches!(
+            self.property(),
+            ColorProperty::Uniform | ColorProperty::Tint
+        )
     }
 }
 

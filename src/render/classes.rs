@@ -4,7 +4,7 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Element, FractalInfo, Run};
-use crate::style::{ColorBy, Colour, Style};
+use crate::style::{ColorBy, ColorProperty, Colour, Style};
 
 /// Maximum number of classes into which values are quantised.
 const MOST_CLASSES: u64 = 64;
@@ -47,13 +47,11 @@ impl Classes {
     /// Returns the classes of approximant `steps` of a graph, as far as they are known without a prepass.
     pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
         let before = u128::from(draws_unmade(by, graph, steps));
-        let largest = match by {
-            ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Fractal | ColorBy::Index => 0,
-            ColorBy::Step | ColorBy::Age => u128::from(steps),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
-                (graph.origins() as u128 + before).saturating_sub(1)
-            }
-            ColorBy::Direction => 3,
+        let largest = match by.property() {
+            ColorProperty::Step | ColorProperty::Age => u128::from(steps),
+            ColorProperty::Object => (graph.origins() as u128 + before).saturating_sub(1),
+            ColorProperty::Direction => 3,
+            _ => 0,
         };
         Self {
             by,
@@ -94,17 +92,17 @@ impl Classes {
     /// Returns the value on which the colour of an element depends.
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u128 {
-        match self.by {
-            ColorBy::None | ColorBy::Hits | ColorBy::Tint => 0,
-            ColorBy::Step => element.born.into(),
-            ColorBy::Age => fractal.age.into(),
-            ColorBy::Fractal => fractal.number.into(),
-            ColorBy::Index => element.index - 1,
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+        match self.by.property() {
+            ColorProperty::Uniform | ColorProperty::Tint => 0,
+            ColorProperty::Step => element.born.into(),
+            ColorProperty::Age => fractal.age.into(),
+            ColorProperty::Fractal => fractal.number.into(),
+            ColorProperty::Index => element.index - 1,
+            ColorProperty::Object => {
                 let object = &graph.objects()[element.object];
                 self.value_of_object(object).unwrap_or(0)
             }
-            ColorBy::Direction => u128::from(element.frame.direction().number()) - 1,
+            ColorProperty::Direction => u128::from(element.frame.direction().number()) - 1,
         }
     }
 
@@ -208,10 +206,8 @@ impl Classes {
     /// Returns whether all elements of a fractal are in one class.
     #[must_use]
     pub fn keep_fractals_whole(&self) -> bool {
-        matches!(
-            self.by,
-            ColorBy::None | ColorBy::Hits | ColorBy::Tint | ColorBy::Age | ColorBy::Fractal
-        )
+        use ColorProperty::{Age, Fractal, Tint, Uniform};
+        matches!(self.by.property(), Uniform | Tint | Age | Fractal)
     }
 }
 

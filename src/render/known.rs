@@ -6,7 +6,7 @@ use crate::geometry::{Bounds, Direction};
 use crate::graph::{Evaluated, Graph, Object, Replacement};
 use crate::grow::{Census, Growth};
 use crate::rule::Placement;
-use crate::style::{ColorBy, Style};
+use crate::style::{ColorBy, ColorProperty, Style};
 
 use super::{Classes, Prepass};
 
@@ -51,18 +51,22 @@ impl<'g> Prepass<'g> {
         let tells_ages = style.color_by == ColorBy::Age && seeds;
         let stands = Standing::at(graph, growth.steps, tells_ages)?;
         prepass.bounds = prepass.known_bounds(growth)?;
-        let used: Vec<u128> = match style.color_by {
-            ColorBy::None | ColorBy::Hits | ColorBy::Tint => vec![0],
-            ColorBy::Age if seeds => stands.values(|stands| (growth.steps - stands.seeded).into()),
-            ColorBy::Age => vec![growth.steps.into()],
-            ColorBy::Fractal | ColorBy::Index => Vec::new(),
-            ColorBy::Step => stands.values(|stands| stands.born.into()),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => {
+        let used: Vec<u128> = match style.color_by.property() {
+            ColorProperty::Uniform | ColorProperty::Tint => vec![0],
+            ColorProperty::Age if seeds => {
+                stands.values(|stands| (growth.steps - stands.seeded).into())
+            }
+            ColorProperty::Age => vec![growth.steps.into()],
+            ColorProperty::Fractal | ColorProperty::Index => Vec::new(),
+            ColorProperty::Step => stands.values(|stands| stands.born.into()),
+            ColorProperty::Object => {
                 let classes = Classes::before_survey(style.color_by, graph, steps);
                 let value = |object: usize| classes.value_of_object(&graph.objects()[object]);
                 stands.values(|stands| value(stands.object).unwrap_or(0))
             }
-            ColorBy::Direction => stands.values(|stands| u128::from(stands.direction.number()) - 1),
+            ColorProperty::Direction => {
+                stands.values(|stands| u128::from(stands.direction.number()) - 1)
+            }
         };
         for value in used {
             prepass.use_value(value);

@@ -6,7 +6,7 @@ use crate::grow::Layer;
 use crate::render::culling::starts_rings;
 use crate::render::surface::Pen;
 use crate::render::{Canvas, Classes, NoRoom, Options, RenderError};
-use crate::style::{Cap, ColorBy, Colour, Join, Width};
+use crate::style::{Cap, ColorBy, ColorProperty, Colour, Join, Width};
 
 /// Maximum number of instances that are examined in the search for layers of one class.
 const MOST_PARTS: usize = 1 << 12;
@@ -53,12 +53,10 @@ impl Plan {
             && !graph.is_time_indexed()
             && graph.roots.elements.is_empty()
             && !graph.resets().contains(&true);
-        let is_told = match style.color_by {
-            ColorBy::None | ColorBy::Hits => true,
-            ColorBy::Tint => !graph.tints(),
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => true,
-            ColorBy::Step => true,
-            ColorBy::Age | ColorBy::Fractal | ColorBy::Index | ColorBy::Direction => false,
+        let is_told = match style.color_by.property() {
+            ColorProperty::Uniform | ColorProperty::Object | ColorProperty::Step => true,
+            ColorProperty::Tint => !graph.tints(),
+            _ => false,
         };
         let fills_rings = style.fill.is_some() && starts_rings(graph);
         if !is_known || !is_told || fills_rings || options.plot || !graph.contracts() {

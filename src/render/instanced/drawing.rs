@@ -11,7 +11,7 @@ use crate::instancing::Appearance;
 use crate::render::surface::FINE;
 use crate::render::svg::{ends_and_corners, opacity};
 use crate::render::{Canvas, Classes, Options, RenderError, Unit, pen};
-use crate::style::{ColorBy, Colour, Style, Width};
+use crate::style::{ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
@@ -139,12 +139,12 @@ impl<'a> Drawing<'a> {
     /// Returns the subsets of elements painted in the colour of a class, as seen from the virtual object that
     /// the initiator replaces.
     fn parts(&self, class: u64) -> Vec<Part> {
-        match self.style.color_by {
-            ColorBy::Step => {
+        match self.style.color_by.property() {
+            ColorProperty::Step => {
                 let steps = self.classes.steps(class).into_iter().flatten();
                 steps.map(|step| Part::Born(step + 1)).collect()
             }
-            ColorBy::Age if self.graph.seeds => {
+            ColorProperty::Age if self.graph.seeds => {
                 let steps = self.growth.steps;
                 let born = |age: u32| match steps - age {
                     0 => Part::Own,
@@ -153,8 +153,8 @@ impl<'a> Drawing<'a> {
                 let of_class = |age: &u32| self.classes.of_value((*age).into()) == class;
                 (0..=steps).filter(of_class).map(born).collect()
             }
-            ColorBy::Generator | ColorBy::FirstMap | ColorBy::LastMap => vec![Part::Class(class)],
-            ColorBy::Direction => {
+            ColorProperty::Object => vec![Part::Class(class)],
+            ColorProperty::Direction => {
                 let number = u32::try_from(class + 1).ok();
                 let direction = number.and_then(Direction::from_number);
                 direction.map(Part::Heading).into_iter().collect()
