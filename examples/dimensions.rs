@@ -18,7 +18,7 @@ use kfrac::diagnostic::Diagnostics;
 use kfrac::document::Document;
 use kfrac::measure::exact::dimensions_of_graph;
 use kfrac::measure::{BoxCounting, Grid, LimitSet};
-use kfrac::parallel::all_cores;
+use kfrac::render::Options;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let catalogue = Catalogue::embedded();
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         else {
             continue;
         };
-        let counting = BoxCounting::of_limit(&set, None, &grids, all_cores());
+        let counting = BoxCounting::of_limit(&set, None, &grids, Options::default().threads);
         let Some(estimate) = counting.estimate.filter(|estimate| estimate.sizes > 0) else {
             continue;
         };

@@ -16,7 +16,7 @@ use kfrac::diagnostic::Diagnostics;
 use kfrac::document::Document;
 use kfrac::measure::exact::{Spectrum, dimensions_of_graph};
 use kfrac::measure::{Cascade, Generalised};
-use kfrac::parallel::all_cores;
+use kfrac::render::Options;
 
 const ORDERS: [f64; 8] = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
 
@@ -44,7 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         if known.at(0.0) == 0.0 {
             continue;
         }
-        let spectrum = Generalised::of_measure(&measure, &ORDERS, None, series, all_cores());
+        let spectrum =
+            Generalised::of_measure(&measure, &ORDERS, None, series, Options::default().threads);
         let mut is_close = true;
         let cell = |it: &Generalised| {
             let Some(estimate) = it.estimate else {

@@ -12,7 +12,7 @@ use std::thread;
 
 /// Returns the number of threads that the machine runs at once; 1 if that is unknown.
 #[must_use]
-pub fn all_cores() -> NonZero<usize> {
+pub(crate) fn all_cores() -> NonZero<usize> {
     thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
 }
 

@@ -23,7 +23,6 @@ use kfrac::geometry::Bounds;
 use kfrac::graph::{Count, Graph};
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
-use kfrac::parallel::all_cores;
 use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
 use picture::Picture;
@@ -92,7 +91,14 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
 fn table_of(graph: &Graph, steps: u32, format: Format) -> String {
     let mut bytes = Vec::new();
     let growth = Growth::steps(steps);
-    export::write(graph, &growth, format, all_cores(), &mut bytes).unwrap();
+    export::write(
+        graph,
+        &growth,
+        format,
+        Options::default().threads,
+        &mut bytes,
+    )
+    .unwrap();
     String::from_utf8(bytes).unwrap()
 }
 

@@ -19,7 +19,7 @@ pub(super) enum Share {
 
 /// Classes of the elements of an approximant by colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Classes {
+pub(crate) struct Classes {
     by: ColorBy,
     /// Largest value that is distinguished; values start at 0.
     largest: u128,
@@ -62,7 +62,7 @@ impl Classes {
 
     /// Returns the number of classes, at most 64.
     #[must_use]
-    pub fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         u64::try_from(self.largest).map_or(MOST_CLASSES, |largest| (largest + 1).min(MOST_CLASSES))
     }
 
@@ -73,7 +73,7 @@ impl Classes {
     /// Returns the class of an element, from 0.
     #[inline]
     #[must_use]
-    pub fn of(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u64 {
+    pub(crate) fn of(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u64 {
         self.of_value(self.value(element, fractal, graph))
     }
 
@@ -177,7 +177,7 @@ impl Classes {
 
     /// Returns the colour of a class; `None` if the palette is not used.
     #[must_use]
-    pub fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
+    pub(crate) fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
         if !self.by.takes_palette() {
             return None;
         }
@@ -205,7 +205,7 @@ impl Classes {
 
     /// Returns whether all elements of a fractal are in one class.
     #[must_use]
-    pub fn keep_fractals_whole(&self) -> bool {
+    pub(crate) fn keep_fractals_whole(&self) -> bool {
         use ColorProperty::{Age, Fractal, Tint, Uniform};
         matches!(self.by.property(), Uniform | Tint | Age | Fractal)
     }

@@ -49,14 +49,14 @@ mod unit;
 mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
-pub use classes::Classes;
+pub(crate) use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
 pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
 pub use png::{PngEncoding, TooManyPixels};
-pub use prepass::Prepass;
+pub(crate) use prepass::Prepass;
 pub use unit::Unit;
 pub use zoomed::{NoZoom, ZoomTarget, write_zoomed};
 

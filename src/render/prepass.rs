@@ -73,7 +73,7 @@ impl Ranks {
 
 /// Properties of an approximant that are determined before it is drawn.
 #[derive(Clone, Debug)]
-pub struct Prepass<'g> {
+pub(crate) struct Prepass<'g> {
     graph: &'g Graph,
     style: &'g Style,
     /// Bounding box of the outlines, without strokes whose width is in pixels.
@@ -117,7 +117,7 @@ pub struct Prepass<'g> {
 impl<'g> Prepass<'g> {
     /// Creates an empty prepass.
     #[must_use]
-    pub fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
+    pub(crate) fn new(graph: &'g Graph, style: &'g Style, steps: u32) -> Self {
         Self {
             graph,
             style,
@@ -211,7 +211,7 @@ impl<'g> Prepass<'g> {
 
     /// Returns the final classes of colour, and the classes that are to be painted.
     #[must_use]
-    pub fn classes(&self) -> (Classes, Vec<u64>) {
+    pub(crate) fn classes(&self) -> (Classes, Vec<u64>) {
         let classes = self.classes.after_survey(self.fractals, self.largest_index);
         if classes.need_no_survey() && !self.has_more {
             let used = (0..).zip(&self.used).filter(|(_, used)| **used);
@@ -391,7 +391,7 @@ impl<'g> Prepass<'g> {
 
     /// Returns the distance, in pixels, by which strokes of a width in pixels extend beyond their paths.
     #[must_use]
-    pub fn overhang(&self) -> f64 {
+    pub(crate) fn overhang(&self) -> f64 {
         match self.style.width {
             Width::Pixels(width) if self.strokes => width * self.widest() * overhang(self.style),
             _ => 0.0,
