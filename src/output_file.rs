@@ -194,7 +194,7 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 /// Returns the file that a symbolic link resolves to, which need not exist.
-fn behind_links(named: &Path) -> Result<PathBuf, WriteError> {
+pub(crate) fn behind_links(named: &Path) -> Result<PathBuf, WriteError> {
     const MOST_LINKS: usize = 40;
     let mut path = named.to_path_buf();
     for _ in 0..MOST_LINKS {

@@ -7,7 +7,7 @@ use anyhow::{Context, anyhow};
 use serde::Serialize;
 
 use crate::grow::Progress;
-use crate::output_file::{BUFFER, OutputFile, WriteError};
+use crate::output_file::{BUFFER, OutputFile, WriteError, behind_links};
 use crate::render::{Remedy, RenderError};
 
 use super::{Failure, input, progress};
@@ -30,7 +30,7 @@ impl Output {
             return Ok(Self::Standard(BufWriter::with_capacity(BUFFER, out)));
         }
         if path.is_file() {
-            input::check_is_not_read(path)?;
+            input::check_is_not_read(&behind_links(path)?)?;
         }
         Ok(Self::File(OutputFile::create(path)?))
     }
