@@ -145,6 +145,7 @@ impl Drawing for Difference {
             surface.begin(&Paint {
                 fill: Some(colour),
                 stroke: None,
+                has_holes: false,
             })?;
             for (row, pixels) in (0u32..).zip(self.classes.chunks(width)) {
                 let mut column = 0u32;

@@ -98,6 +98,7 @@ impl Font {
         outline.tracer.begin(&Paint {
             fill: Some(colour),
             stroke: None,
+            has_holes: true,
         })?;
         for character in text.chars() {
             let glyph = self.glyph(character);

@@ -38,13 +38,13 @@ pub(super) struct BatchBuilder {
     ends: f64,
     /// Width below which lines form tufts, in pixels.
     below: f64,
-    /// Results, by the address of a batch's lines and by scale. A walk creates every batch once.
+    /// Results, by number of the batch's block and by scale.
     kept: Mutex<Kept>,
 }
 
 #[derive(Default)]
 struct Kept {
-    blocks: BTreeMap<(usize, i32), Arc<Combed>>,
+    blocks: BTreeMap<(u64, i32), Arc<Combed>>,
     bundles: usize,
 }
 
@@ -77,9 +77,14 @@ impl BatchBuilder {
         }
     }
 
-    /// Combines the lines of a segment batch that is drawn at `scale` pixels per unit. Returns the result and
+    /// Combines the lines of block `number` that is drawn at `scale` pixels per unit. Returns the result and
     /// the ratio of that scale to the one for which it was computed.
-    pub(super) fn comb(&self, sticks: &[LineElement], scale: f64) -> (Arc<Combed>, f64) {
+    pub(super) fn comb(
+        &self,
+        number: u64,
+        sticks: &[LineElement],
+        scale: f64,
+    ) -> (Arc<Combed>, f64) {
         let octave = libm::log2(scale) * SCALES_AN_OCTAVE;
         #[expect(
             clippy::cast_possible_truncation,
@@ -87,7 +92,7 @@ impl BatchBuilder {
         )]
         let step = (octave + 0.5).floor() as i32;
         let combed_scale = libm::exp2(f64::from(step) / SCALES_AN_OCTAVE);
-        let key = (sticks.as_ptr().addr(), step);
+        let key = (number, step);
         let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let known = kept().blocks.get(&key).cloned();
         let combed = known.unwrap_or_else(|| {

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use crate::graph::Object;
 use crate::grow::Subtree;
 
+use super::ShortCut;
 use super::scene::{Pass, Scene};
 use super::sketch::stands_alone;
 use super::sprites::Painted;
@@ -45,6 +46,9 @@ impl ContributionMask {
     /// Returns whether any descendant of an element may be painted.
     #[inline]
     pub(super) fn may_paint(&self, scene: &Scene<'_>, subtree: &Subtree) -> bool {
+        if !scene.short_cuts.has(ShortCut::Contribution) {
+            return true;
+        }
         if self.objects.get(subtree.object) == Some(&Part::Nothing) {
             return false;
         }

@@ -7,7 +7,9 @@ use crate::style::Width;
 
 use super::culling::{Culling, NEARLY};
 use super::prepass::overhang;
-use super::{Canvas, Empty, Format, Options, Picture, Plotted, Prepass, RenderError, Scene};
+use super::{
+    Canvas, Empty, Format, Options, Picture, Plotted, Prepass, RenderError, Scene, ShortCut,
+};
 
 /// Size down to which elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,6 +140,7 @@ impl<'a> Layout<'a> {
             surveyor.growth.steps -= fewer;
         }
         prepass.is_to_detail = options.detail.is_some();
+        prepass.short_cuts = options.short_cuts;
         if let Some(progress) = growth.progress {
             progress.expect(surveyor.elements);
         }
@@ -153,7 +156,7 @@ impl<'a> Surveyor<'a> {
     fn prepass(&self, culling: Culling) -> Result<Prepass<'a>, RenderError> {
         let Self { graph, growth, .. } = *self;
         let Options { style, threads, .. } = self.options;
-        if !culling.cuts() {
+        if !culling.cuts() && self.options.short_cuts.has(ShortCut::Prepass) {
             return Ok(Prepass::of(graph, &growth, style, growth.steps, *threads)?);
         }
         let prepass = Prepass::new(graph, style, growth.steps);

@@ -40,6 +40,7 @@ mod plot;
 mod png;
 mod prepass;
 mod scene;
+mod short_cuts;
 mod sketch;
 mod sprites;
 mod surface;
@@ -57,6 +58,7 @@ pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
 pub use png::{PngEncoding, TooManyPixels};
 pub(crate) use prepass::Prepass;
+pub use short_cuts::{ShortCut, ShortCuts};
 pub use unit::Unit;
 pub use zoomed::{NoZoom, ZoomTarget, write_zoomed};
 
@@ -168,6 +170,8 @@ pub struct Options {
     pub png: PngEncoding,
     /// Size below which elements are not replaced; none by default.
     pub detail: Option<Detail>,
+    /// Short cuts that drawing may take; all by default.
+    pub short_cuts: ShortCuts,
     /// Metadata of the file.
     pub labels: Labels,
     /// Number of threads; by default that of the machine's cores. The bytes do not depend on it.
@@ -206,6 +210,7 @@ impl Default for Options {
             band: 1 << 21,
             png: PngEncoding::default(),
             detail: None,
+            short_cuts: ShortCuts::default(),
             labels: Labels::default(),
             threads: all_cores(),
         }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::grow::Seam;
 use crate::style::{Cap, Colour, Join, Width};
 
+use super::ShortCut;
 use super::batch::BatchBuilder;
 use super::contribution::ContributionMask;
 use super::covered::CoveredPixels;
@@ -72,7 +73,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Returns the simplified outlines, if the surface permits them.
     pub(super) fn coarse(&self) -> Option<&'a LevelOfDetail> {
-        let grain = self.tracer.grain()?;
+        let is_taken = self.scene.short_cuts.has(ShortCut::LevelOfDetail);
+        let grain = self.tracer.grain().filter(|_| is_taken)?;
         let coarse = || LevelOfDetail::of(self.scene.graph, grain);
         self.scene.coarse.get_or_init(coarse).as_ref()
     }
@@ -93,7 +95,8 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         };
         let stroke = self.paint(PaintKey::TUFTS).stroke?;
         let below = self.tracer.tufts_below(&stroke);
-        (below > 0.0).then(|| BatchBuilder::new(width, stroke.pen, below))
+        let is_taken = self.scene.short_cuts.has(ShortCut::SegmentBatches);
+        (is_taken && below > 0.0).then(|| BatchBuilder::new(width, stroke.pen, below))
     }
 
     /// Creates the occlusion of a pass, if everything is covered in one opaque colour per class.
@@ -355,7 +358,11 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                     .and_then(stroke),
             ),
         };
-        Paint { fill, stroke }
+        Paint {
+            fill,
+            stroke,
+            has_holes: false,
+        }
     }
 
     fn end_path(&mut self) -> io::Result<()> {

@@ -101,9 +101,6 @@ pub(super) struct Png<'t, 'w> {
     stroker: Option<Stroker>,
     /// State of the current subpath.
     trail: Trail,
-    /// Whether the next path is text, whose letters have holes: to cover its subpaths one by one would fill
-    /// these.
-    has_holes: bool,
     /// Whether the path may contain polygons that are drawn as coverage.
     covers: bool,
     /// Vertices of the current polygon.
@@ -166,7 +163,6 @@ impl<'t, 'w> Png<'t, 'w> {
             strokers: Strokers::default(),
             stroker: None,
             trail: Trail::default(),
-            has_holes: false,
             covers: false,
             ring: Vec::new(),
             region: Region::default(),
@@ -267,8 +263,9 @@ impl Surface for Png<'_, '_> {
         self.stroker = stroke.and_then(|stroke| self.strokers.stroker(stroke.pen));
         let strokes = self.stroker.is_some();
         let is_opaque = paint.fill.is_some_and(|fill| fill == fill.opaque());
-        let has_holes = std::mem::take(&mut self.has_holes);
-        self.covers = may_cover && is_opaque && !has_holes && (paint.stroke.is_none() || strokes);
+        // Holes would be filled if subpaths were covered one by one.
+        self.covers =
+            may_cover && is_opaque && !paint.has_holes && (paint.stroke.is_none() || strokes);
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let inks = inks(
             paint.fill.filter(|_| self.covers),
@@ -470,9 +467,5 @@ impl Surface for Png<'_, '_> {
             self.outline.move_to_rows(&self.part.rows());
         }
         Ok(())
-    }
-
-    fn label(&mut self, _: &str) {
-        self.has_holes = true;
     }
 }

@@ -14,7 +14,7 @@ use crate::grow::{
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
 use super::culling::{Culling, starts_rings};
-use super::{Classes, WIDTHS_AN_OCTAVE};
+use super::{Classes, ShortCuts, WIDTHS_AN_OCTAVE};
 
 /// Approximate number of elements of a span, in prepasses and in the walks that follow them.
 const SPAN: u64 = 1 << 12;
@@ -98,6 +98,8 @@ pub(crate) struct Prepass<'g> {
     pub(super) steps: u32,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
+    /// Short cuts that drawing may take.
+    pub(super) short_cuts: ShortCuts,
     /// Ranks, if the colour depends on them and they are known.
     pub(super) ranks: Option<Ranks>,
     culling: Culling,
@@ -132,6 +134,7 @@ impl<'g> Prepass<'g> {
             is_bounded: false,
             steps: 0,
             is_to_detail: false,
+            short_cuts: ShortCuts::default(),
             ranks: None,
             culling: Culling::unbounded(),
             shown: None,

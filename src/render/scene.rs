@@ -17,7 +17,7 @@ use super::prepass::{Ranks, span};
 use super::sketch::{Means, Sketcher};
 use super::sprites::USES;
 use super::surface::{Pen, Surface};
-use super::{Canvas, Classes, Drawing, Prepass, RenderError};
+use super::{Canvas, Classes, Drawing, Prepass, RenderError, ShortCut, ShortCuts};
 
 /// Approximant on its canvas.
 pub(crate) struct Scene<'a> {
@@ -34,6 +34,7 @@ pub(crate) struct Scene<'a> {
     ranks: Option<Ranks>,
     /// Whether elements are replaced down to a detail only.
     pub(super) is_to_detail: bool,
+    pub(super) short_cuts: ShortCuts,
     /// Kinds of colonies, computed when sprites are first made.
     pub(super) colonies: OnceLock<ColonyKinds>,
     /// Minimum number of uses of a sprite.
@@ -90,6 +91,7 @@ impl<'a> Scene<'a> {
             elements: prepass.elements,
             ranks: prepass.ranks.clone(),
             is_to_detail: prepass.is_to_detail,
+            short_cuts: prepass.short_cuts,
             colonies: OnceLock::new(),
             uses: USES,
             fills_strokes: together && style.fill.is_some(),
@@ -139,7 +141,7 @@ impl Drawing for Scene<'_> {
                 coarse: painter.coarse(),
                 broadens: painter.broadens(),
                 sprites: sprites.map(Arc::new),
-                hidden,
+                hidden: hidden.filter(|_| self.short_cuts.has(ShortCut::Occlusion)),
                 aim,
             };
             let fresh = || Sketcher::new(self, pass, means.clone());

@@ -26,6 +26,7 @@ use crate::rule::Piece;
 use self::colonies::Colonies;
 pub(super) use self::colonies::Put;
 use self::runs::Runs;
+use super::ShortCut;
 use super::occlusion::Occlusion;
 use super::png::{Sprite, SpriteSheet};
 use super::scene::Scene;
@@ -123,9 +124,11 @@ impl<'a> Sprites<'a> {
             return None;
         }
         let has_pen = stencil.pen.is_some();
-        let painted = painted.filter(|_| !scene.culling.is_bounded());
+        let has = |short_cut| scene.short_cuts.has(short_cut);
+        let painted =
+            painted.filter(|_| !scene.culling.is_bounded() && has(ShortCut::ColonySprites));
         let colonies = painted.and_then(|painted| Colonies::of(scene, &hidden, painted, has_pen));
-        let runs = Runs::of(scene, &stencil, worth);
+        let runs = Runs::of(scene, &stencil, worth).filter(|_| has(ShortCut::RunSprites));
         let is_any = runs.is_some() || colonies.is_some();
         is_any.then(|| Self {
             stencil,

@@ -42,6 +42,8 @@ pub(crate) struct Paint {
     pub(crate) fill: Option<Colour>,
     /// Line along the path.
     pub(crate) stroke: Option<Stroke>,
+    /// Whether a subpath may be a hole in another, as in letters.
+    pub(crate) has_holes: bool,
 }
 
 /// Line along a path.
@@ -181,5 +183,5 @@ pub(crate) trait Surface {
     /// Ends a part.
     fn leave(&mut self) -> io::Result<()>;
     /// Sets the text that the next path represents, for formats that can state it.
-    fn label(&mut self, text: &str);
+    fn label(&mut self, _: &str) {}
 }

@@ -189,6 +189,7 @@ impl<S: Surface> Pad<'_, S> {
                     colour,
                     pen: pen(width),
                 }),
+                has_holes: false,
             },
         )
     }
@@ -200,6 +201,7 @@ impl<S: Surface> Pad<'_, S> {
             &Paint {
                 fill: Some(colour),
                 stroke: None,
+                has_holes: false,
             },
         )
     }

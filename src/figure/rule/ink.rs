@@ -151,6 +151,7 @@ fn stroke(colour: Colour, pen: Pen) -> Paint {
     Paint {
         fill: None,
         stroke: Some(Stroke { colour, pen }),
+        has_holes: false,
     }
 }
 

@@ -35,6 +35,7 @@ impl Parts<'_> {
         surface.begin(&Paint {
             fill: Some(colour),
             stroke: Some(Stroke { colour, pen: PEN }),
+            has_holes: false,
         })?;
         let at = |x: f64, y: f64| position(DVec2::new(x, y) * 100.0);
         surface.move_to(at(7.3, 2.1));

@@ -395,6 +395,7 @@ impl Drawing for Cells<'_> {
             surface.begin(&Paint {
                 fill: None,
                 stroke: Some(Stroke { colour, pen }),
+                has_holes: false,
             })?;
             for ends in marks {
                 let [from, to] = ends.map(place);

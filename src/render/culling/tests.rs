@@ -76,8 +76,6 @@ impl Surface for Recorder {
     fn leave(&mut self) -> io::Result<()> {
         unreachable!("pictures have no parts")
     }
-
-    fn label(&mut self, _: &str) {}
 }
 
 /// Returns the winding number of a path about a point. The point is in fiftieths of the unit of positions, so

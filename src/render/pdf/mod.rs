@@ -88,6 +88,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             pdf.paint(&Paint {
                 fill: Some(background),
                 stroke: None,
+                has_holes: false,
             });
             let [wide, high] = size.map(|side| u64::from(side) * 100);
             pdf.text(&format!("0 0 {wide} {high} re f\n"));
@@ -253,8 +254,6 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
         self.state = self.outer.pop().unwrap_or_default();
         Ok(())
     }
-
-    fn label(&mut self, _: &str) {}
 }
 
 /// Returns the resource name of an opacity.

@@ -174,8 +174,6 @@ impl Surface for Plotter {
         self.window = self.outer.pop().unwrap_or(self.window);
         Ok(())
     }
-
-    fn label(&mut self, _: &str) {}
 }
 
 /// Plot that is ready to be written.
@@ -354,6 +352,7 @@ impl Drawing for Plot {
                 colour,
                 pen: self.pen,
             }),
+            has_holes: false,
         };
         let paints: Vec<_> = self.colours().map(paint).collect();
         self.each(|layer, vertices, closed| {

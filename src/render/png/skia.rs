@@ -307,6 +307,7 @@ fn opaque(paint: Paint) -> Paint {
             colour: stroke.colour.opaque(),
             ..stroke
         }),
+        has_holes: false,
     }
 }
 
@@ -348,6 +349,7 @@ mod tests {
         let fill = Paint {
             fill: Some(Colour::of_rgba([250, 120, 0, 255])),
             stroke: None,
+            has_holes: false,
         };
         let stroke = Stroke {
             colour: Colour::BLACK,
@@ -383,6 +385,7 @@ mod tests {
         let paint = Paint {
             fill: Some(Colour::BLACK),
             stroke: None,
+            has_holes: false,
         };
         let mut whole = Pixmap::new(80, 60).unwrap();
         draw_long(&mut whole, &path, &paint, None, 4);

@@ -36,6 +36,7 @@ fn stroke(width: f64) -> Paint {
             pen,
         }),
         fill: None,
+        has_holes: false,
     }
 }
 
@@ -45,6 +46,7 @@ fn paths() -> Vec<(Paint, Vec<Position>)> {
     let fill = Paint {
         fill: Some(Colour::BLACK),
         stroke: None,
+        has_holes: false,
     };
     let paints = [0.02, 0.2, 0.9, 2.5, 4.0].map(stroke);
     let paints = paints.iter().chain([&fill]).cycle();
@@ -194,6 +196,7 @@ fn strokes_lie_over_fills() {
         png.begin(&Paint {
             fill: Some(Colour::BLACK),
             stroke: None,
+            has_holes: false,
         })
         .unwrap();
         assert!(png.polygon(&[[1300, 1300], [1500, 1300], [1500, 1500], [1300, 1500]]));
@@ -353,9 +356,6 @@ impl Surface for Plain<'_, '_, '_> {
     fn leave(&mut self) -> io::Result<()> {
         self.png.leave()
     }
-    fn label(&mut self, text: &str) {
-        self.png.label(text);
-    }
 }
 
 /// Tree with two different branches.
@@ -491,21 +491,25 @@ fn letters_have_holes() {
     let fill = Paint {
         fill: Some(Colour::BLACK),
         stroke: None,
+        has_holes: false,
     };
     for (side, wall) in [(600, 200), (4000, 1000)] {
         let mut hole = square(wall, side - wall);
         hole.reverse();
         let pixels = with_team(NonZero::<usize>::MIN, |team| {
             let mut png = Png::begin(SIZE, None, team).unwrap();
-            png.label("a word");
-            png.begin(&fill).unwrap();
+            png.begin(&Paint {
+                has_holes: true,
+                ..fill
+            })
+            .unwrap();
             for contour in [square(0, side), hole] {
                 png.move_to(contour[0]);
                 contour[1..].iter().for_each(|&vertex| png.line_to(vertex));
                 png.close();
             }
             png.end().unwrap();
-            // The next path is not text.
+            // The next path has none.
             png.begin(&fill).unwrap();
             assert!(png.covers);
             png.end().unwrap();

@@ -84,7 +84,7 @@ impl Sketcher<'_> {
             return false;
         };
         let map = self.scene.canvas.map(run.map());
-        let (combed, longer) = comb.comb(sticks, map.matrix2.x_axis.length());
+        let (combed, longer) = comb.comb(run.number(), sticks, map.matrix2.x_axis.length());
         if combed.is_bald() {
             return false;
         }
