@@ -16,7 +16,7 @@ use std::sync::Arc;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
-use kfrac::geometry::{Bounds, DVec2, Direction, Frame};
+use kfrac::geometry::{Bounds, DVec2, Direction, Frame2};
 use kfrac::graph::{Count, Graph};
 use kfrac::grow::{Element, FractalInfo, Growth, Progress, Visitor, walk};
 use kfrac::render::{self, Options, Size};
@@ -190,7 +190,7 @@ proptest! {
         // The map z → s z + t is applied to the initiator's points as written.
         let (sx, sy) = (f64::from(x) / 3.0, f64::from(y) / 3.0);
         let turned = turn_initiator(&text, [sx, sy], [f64::from(a), f64::from(b)]);
-        let similarity = Frame::between(
+        let similarity = Frame2::between(
             DVec2::new(f64::from(a), f64::from(b)),
             DVec2::new(f64::from(a) + sx, f64::from(b) + sy),
             Direction::Normal,
@@ -292,7 +292,7 @@ fn directions_multiply_like_the_klein_four_group() {
             assert_eq!(a * b, product);
             // The maps of the directions multiply alike, with elements from 0 to 1.
             let frames =
-                [a, b, product].map(|direction| Frame::between(DVec2::ZERO, DVec2::X, direction));
+                [a, b, product].map(|direction| Frame2::between(DVec2::ZERO, DVec2::X, direction));
             assert!(
                 frames[0]
                     .compose(&frames[1])

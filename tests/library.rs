@@ -19,7 +19,7 @@ use common::{compiled, document, document_of, grown, resolved};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, Format};
-use kfrac::geometry::Bounds;
+use kfrac::geometry::{Bounds, DVec2};
 use kfrac::graph::{Count, Graph};
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
@@ -307,7 +307,7 @@ fn pictures_of_lines_have_the_length_that_is_forecast() {
         let mut vertices = 0.0;
         for subpath in &picture.subpaths {
             #[expect(clippy::cast_precision_loss, reason = "the numbers are small")]
-            let mut points: Vec<_> = subpath
+            let mut points: Vec<DVec2> = subpath
                 .vertices
                 .iter()
                 .map(|v| v.map(|c| c as f64).into())

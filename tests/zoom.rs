@@ -17,7 +17,7 @@ use std::convert::Infallible;
 
 use common::{document, document_of};
 use kfrac::document::Document;
-use kfrac::geometry::{DAffine2, DVec2, Frame};
+use kfrac::geometry::{DAffine2, DVec2, Frame2};
 use kfrac::graph::{Graph, NoLimit, Production, Replacement};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
@@ -95,7 +95,7 @@ impl Seen {
         let mut seen = Self::new(graph, place, shortest);
         walk(graph, growth, &mut seen).unwrap();
         for element in &mut seen.elements {
-            element.frame = Frame::from(place).compose(&element.frame);
+            element.frame = Frame2::from(place).compose(&element.frame);
         }
         seen
     }
@@ -395,7 +395,7 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
 fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
     let listed = &rule.initiator().elements[way[0] as usize];
     let [from, to] = [listed.from, listed.to].map(|point| rule.initiator_points()[point]);
-    let mut frame = Frame::between(from, to, listed.direction);
+    let mut frame = Frame2::between(from, to, listed.direction);
     let (mut path, mut length) = (Path::of_seed(seed).child(way[0]), 1.0);
     let (mut scratch, mut points) = (Vec::new(), Vec::new());
     for (step, &position) in way[1..].iter().enumerate() {
@@ -409,7 +409,7 @@ fn random_point(rule: &Rule, seed: u64, way: &[u32]) -> DVec2 {
         generator.evaluate(&moment, path, &mut scratch, &mut points);
         let listed = generator.elements().nth(position as usize).unwrap();
         let [from, to] = [listed.from, listed.to].map(|point| points[point]);
-        frame = frame.compose(&Frame::between(from, to, listed.direction));
+        frame = frame.compose(&Frame2::between(from, to, listed.direction));
         length *= (to - from).length();
         path = path.child(position);
     }

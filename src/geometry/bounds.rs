@@ -1,47 +1,47 @@
 //! Axis-parallel boxes.
 
-use glam::DVec2;
+use super::{DVec2, Point};
 
-/// An axis-parallel box; empty until a point is added.
+/// An axis-parallel box in the plane or in space; empty until a point is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    min: DVec2,
-    max: DVec2,
+pub struct Bounds<P = DVec2> {
+    min: P,
+    max: P,
 }
 
-impl Bounds {
+impl<P: Point> Bounds<P> {
     /// The empty box.
     pub const EMPTY: Self = Self {
-        min: DVec2::INFINITY,
-        max: DVec2::NEG_INFINITY,
+        min: P::INFINITY,
+        max: P::NEG_INFINITY,
     };
 
     /// Creates the smallest box that holds two opposite corners.
     #[must_use]
-    pub fn new(a: DVec2, b: DVec2) -> Self {
+    pub fn new(a: P, b: P) -> Self {
         Self {
             min: a.min(b),
             max: a.max(b),
         }
     }
 
-    /// Returns the lower left corner.
+    /// Returns the corner of the least coordinates: in the plane, the lower left one.
     #[must_use]
-    pub fn min(&self) -> DVec2 {
+    pub fn min(&self) -> P {
         self.min
     }
 
-    /// Returns the upper right corner.
+    /// Returns the corner of the largest coordinates: in the plane, the upper right one.
     #[must_use]
-    pub fn max(&self) -> DVec2 {
+    pub fn max(&self) -> P {
         self.max
     }
 
-    /// Returns the width and the height; zero in both if the box is empty.
+    /// Returns the lengths of the sides: in the plane, width and height; all zero if the box is empty.
     #[must_use]
-    pub fn size(&self) -> DVec2 {
+    pub fn size(&self) -> P {
         if self.is_empty() {
-            DVec2::ZERO
+            P::ZERO
         } else {
             self.max - self.min
         }
@@ -50,10 +50,11 @@ impl Bounds {
     /// Returns `true` if the box holds no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.min.x > self.max.x || self.min.y > self.max.y
+        let [min, max] = [self.min, self.max].map(P::coordinates);
+        min.iter().zip(max).any(|(min, max)| *min > max)
     }
 
-    /// Returns `true` if all four coordinates are finite, which those of an empty box are not.
+    /// Returns `true` if all coordinates are finite, which those of an empty box are not.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
@@ -62,12 +63,16 @@ impl Bounds {
     /// Returns `true` if the two boxes have a point in common.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+        let at_most = |a: P, b: P| {
+            let (a, b) = (a.coordinates(), b.coordinates());
+            a.iter().zip(b).all(|(a, b)| *a <= b)
+        };
+        at_most(self.min, other.max) && at_most(other.min, self.max)
     }
 
     /// Extends the box to hold a point.
     #[inline]
-    pub fn add(&mut self, point: DVec2) {
+    pub fn add(&mut self, point: P) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }

@@ -1,256 +1,131 @@
-//! Frames: the placement of an element in the plane, as a map of the unit frame and a direction.
+//! Frames of elements, and the outlines that are drawn in them: the interface of the plane and of space.
 
-use glam::{DAffine2, DMat2, DVec2};
+use std::fmt::Debug;
 
-use super::{Direction, Homothety};
+use super::{Bounds, Direction, Point};
 
 /// Message for an element whose frame is not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
 
-/// The frame of an element: the map from the unit frame, and the direction along the element's path.
+/// The placement of an element: a map of the unit frame, and the direction along the element's path.
 ///
-/// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of traversal p0
-/// and p1 and the direction d, the map of a similarity is M(z) = p0 + (p1 − p0)·τ_d(z).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    map: DAffine2,
-    direction: Direction,
-}
+/// Graphs, walks, forecasts, bounds and draws know elements by this interface alone; [`Frame2`](super::Frame2)
+/// is the frame of the plane. In the unit frame an element runs from the origin to the unit point of the x
+/// axis.
+pub trait Frame: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// The points that frames map.
+    type Point: Point;
+    /// The shape that is drawn for an element, in the unit frame.
+    type Outline: Outline<Self>;
+    /// Points that are mapped together.
+    type Corners: Corners<Self>;
 
-impl Frame {
     /// The unit frame itself.
-    pub const UNIT: Self = Self {
-        map: DAffine2::IDENTITY,
-        direction: Direction::Normal,
-    };
+    const UNIT: Self;
 
-    /// Creates a frame from the map of the unit frame to the plane and the product of the directions along
-    /// the element's path.
-    #[inline]
+    /// Returns the frame of an element whose frame relative to this one is `inner`.
     #[must_use]
-    pub const fn new(map: DAffine2, direction: Direction) -> Self {
-        Self { map, direction }
-    }
-
-    /// Returns the frame of an element that runs from `from` to `to`, as listed, with a direction: the map is
-    /// the similarity z → from + (to − from)·τ_d(z).
-    #[must_use]
-    pub fn between(from: DVec2, to: DVec2, direction: Direction) -> Self {
-        let along = to - from;
-        let across = along.perp();
-        let (x_axis, y_axis, origin) = match direction {
-            Direction::Normal => (along, across, from),
-            Direction::YReflected => (along, -across, from),
-            Direction::XReflected => (-along, across, to),
-            Direction::BothReflected => (-along, -across, to),
-        };
-        let linear = DMat2::from_cols(x_axis, y_axis);
-        Self::new(DAffine2::from_mat2_translation(linear, origin), direction)
-    }
-
-    /// Returns the map from the unit frame to the plane.
-    ///
-    /// Only code that is bound to the plane needs it: outlines, drawing, and exact or numeric measures. Other
-    /// code asks the frame itself, as for [`apply`](Self::apply), [`origin`](Self::origin) and
-    /// [`stretch`](Self::stretch).
-    #[inline]
-    #[must_use]
-    pub fn map(&self) -> &DAffine2 {
-        &self.map
-    }
+    fn compose(&self, inner: &Self) -> Self;
 
     /// Returns the product of the directions along the element's path.
-    #[inline]
     #[must_use]
-    pub fn direction(&self) -> Direction {
-        self.direction
-    }
+    fn direction(&self) -> Direction;
 
-    /// Returns the image of (0, 0).
-    #[inline]
+    /// Returns the frame with another direction and an unchanged map.
     #[must_use]
-    pub fn origin(&self) -> DVec2 {
-        self.map.translation
-    }
+    fn with_direction(&self, direction: Direction) -> Self;
+
+    /// Returns the image of the origin.
+    #[must_use]
+    fn origin(&self) -> Self::Point;
+
+    /// Returns the frame translated to another origin.
+    #[must_use]
+    fn moved_to(&self, origin: Self::Point) -> Self;
 
     /// Returns the image of a point of the unit frame.
-    #[inline]
     #[must_use]
-    pub fn apply(&self, point: DVec2) -> DVec2 {
-        self.map.transform_point2(point)
-    }
+    fn apply(&self, point: Self::Point) -> Self::Point;
 
     /// Returns the pullback Aᵀv of a linear functional x → v·x, where A is the linear part of the map.
     ///
     /// The support function of the image of a set K is v·M(0) + h(Aᵀv), where h is that of K.
-    #[inline]
     #[must_use]
-    pub fn pullback(&self, functional: DVec2) -> DVec2 {
-        self.map.matrix2.transpose() * functional
-    }
+    fn pullback(&self, functional: Self::Point) -> Self::Point;
 
-    /// Returns the frame, in the plane, of an element whose frame relative to this one is `inner`.
-    #[inline]
+    /// Returns the first and the last point of traversal.
     #[must_use]
-    pub fn compose(&self, inner: &Self) -> Self {
-        Self {
-            map: self.map * inner.map,
-            direction: self.direction * inner.direction,
-        }
-    }
+    fn ends(&self) -> [Self::Point; 2];
 
-    /// Returns the frame with another direction and an unchanged map.
-    #[inline]
+    /// Returns the distance of the two points of traversal.
     #[must_use]
-    pub fn with_direction(&self, direction: Direction) -> Self {
-        Self { direction, ..*self }
-    }
+    fn length(&self) -> f64;
 
-    /// Returns the frame translated to another origin.
-    #[inline]
+    /// Returns the largest factor by which the map lengthens a vector: its largest singular value.
     #[must_use]
-    pub fn moved_to(&self, origin: DVec2) -> Self {
-        Self {
-            map: DAffine2::from_mat2_translation(self.map.matrix2, origin),
-            ..*self
-        }
-    }
+    fn stretch(&self) -> f64;
 
-    /// Returns the frame with the conjugate h M h⁻¹ of its map M; see [`Homothety::around`].
+    /// Returns the area of the image of the unit square, which in space lies in the plane z = 0.
     #[must_use]
-    pub fn conjugated(&self, homothety: &Homothety) -> Self {
-        Self {
-            map: homothety.around(&self.map),
-            ..*self
-        }
-    }
+    fn area(&self) -> f64;
 
-    /// Returns the frame that a homothety h maps to this one: its map is h⁻¹ M.
+    /// Returns `true` if the map is a similarity of a ratio, up to rounding.
     #[must_use]
-    pub fn preimage(&self, homothety: &Homothety) -> Self {
-        let linear = homothety.backwards().matrix2 * self.map.matrix2;
-        let origin = homothety.origin_of(self.map.translation);
-        Self {
-            map: DAffine2::from_mat2_translation(linear, origin),
-            ..*self
-        }
-    }
-
-    /// Returns the first and the last point of traversal, p0 and p1.
-    #[inline]
-    #[must_use]
-    pub fn ends(&self) -> [DVec2; 2] {
-        let origin = self.map.translation;
-        let unit = origin + self.map.matrix2.x_axis;
-        if self.direction.is_reversed() {
-            [unit, origin]
-        } else {
-            [origin, unit]
-        }
-    }
+    fn is_similarity(&self, ratio: f64) -> bool;
 
     /// Returns `true` if the squares of all entries of the map are within the range of doubles, as lengths
     /// and areas need.
-    #[inline]
     #[must_use]
-    pub fn is_in_range(&self) -> bool {
-        const LARGEST: f64 = 1e150;
-        let largest = self.map.translation.abs().max_element();
-        let linear = self.map.matrix2;
-        let largest = largest.max(linear.x_axis.abs().max(linear.y_axis.abs()).max_element());
-        // Minima and maxima ignore NaN.
-        largest < LARGEST && self.map.is_finite()
-    }
+    fn is_in_range(&self) -> bool;
+}
 
-    /// Returns `true` if no entry of the map is infinite or NaN.
-    #[inline]
+/// The shape that is drawn for an element, in its unit frame: lines and curves in the plane, surfaces in
+/// space.
+pub trait Outline<F: Frame<Outline = Self>>: Clone + Debug + Send + Sync + 'static {
+    /// Returns `true` if the shape never joins those of neighbouring elements.
     #[must_use]
-    pub fn is_finite(&self) -> bool {
-        self.map.is_finite()
-    }
+    fn is_closed(&self) -> bool;
 
-    /// Returns |p1 − p0|.
-    #[inline]
+    /// Returns `true` if the shape is the line between the ends of the unit frame.
     #[must_use]
-    pub fn length(&self) -> f64 {
-        let axis = self.map.matrix2.x_axis;
-        let length = axis.length();
-        if length.is_finite() {
-            length
-        } else {
-            // The square alone may overflow.
-            libm::hypot(axis.x, axis.y)
-        }
-    }
+    fn is_line(&self) -> bool;
 
-    /// Returns the area of the image of the unit square: the factor by which the map changes areas.
-    #[inline]
+    /// Returns whether the shape starts at the first end of the unit frame, and whether it ends at the last
+    /// one. Both are false for a closed shape.
     #[must_use]
-    pub fn area(&self) -> f64 {
-        self.map.matrix2.determinant().abs()
-    }
+    fn ends_meet_frame(&self) -> [bool; 2];
 
-    /// Returns the largest factor by which the map lengthens a vector: its larger singular value. For a
-    /// similarity it is the length.
-    #[inline]
+    /// Returns the area of the shape; for open lines of the plane, that between the line and its chord. It is
+    /// negative where the contour runs clockwise.
     #[must_use]
-    pub fn stretch(&self) -> f64 {
-        stretch(&self.map.matrix2)
+    fn signed_area(&self) -> f64;
+
+    /// Returns the support function of the shape: the maximum of x·u over its points x.
+    #[must_use]
+    fn support(&self, direction: F::Point) -> f64;
+
+    /// Extends `bounds` by the box of the shape placed in a frame, padded by `pad` on every side.
+    fn add_to(&self, bounds: &mut Bounds<F::Point>, frame: &F, pad: f64);
+
+    /// Adds the corners of the shape placed in a frame, in order of traversal, and returns `true`; `false`
+    /// if the shape has curves.
+    fn add_corners(&self, corners: &mut F::Corners, frame: &F) -> bool;
+
+    /// Returns the radius of a ball about `centre` that contains the shape: at least the least such radius,
+    /// and at most the square root of the dimension times that.
+    #[must_use]
+    fn radius_about(&self, centre: F::Point) -> f64 {
+        let axes = F::Point::AXES.iter();
+        let far = axes.map(|&axis| axis.abs() * (self.support(axis) - axis.dot(centre)).abs());
+        far.fold(F::Point::ZERO, F::Point::max).length()
     }
 }
 
-impl From<DAffine2> for Frame {
-    /// Creates a frame from a map, with the direction [`Normal`](Direction::Normal).
-    #[inline]
-    fn from(map: DAffine2) -> Self {
-        Self::new(map, Direction::Normal)
-    }
-}
+/// Points that a frame maps together, to extend a box.
+pub trait Corners<F: Frame>: Debug + Default + Send + Sync {
+    /// Adds a point.
+    fn add(&mut self, corner: F::Point);
 
-/// Least stretch that is computed from sums of squares, of which none that matters underflows.
-const LEAST_BY_SQUARES: f64 = 1e-140;
-
-/// Returns the larger singular value of a linear map: the largest factor by which it lengthens a vector.
-#[inline]
-pub(crate) fn stretch(matrix: &DMat2) -> f64 {
-    let (x, y) = (matrix.x_axis, matrix.y_axis);
-    // The components that preserve and that reverse the sense of rotation; one is zero for a similarity.
-    let kept = DVec2::new(x.x + y.y, x.y - y.x).length_squared();
-    let reversed = DVec2::new(x.x - y.y, x.y + y.x).length_squared();
-    let stretch = if reversed == 0.0 {
-        kept.sqrt() / 2.0
-    } else {
-        (kept.sqrt() + reversed.sqrt()) / 2.0
-    };
-    if (LEAST_BY_SQUARES..f64::INFINITY).contains(&stretch) {
-        stretch
-    } else {
-        scaled_stretch(matrix)
-    }
-}
-
-/// Returns the stretch of a matrix of which the squares of entries may leave the range of doubles.
-#[cold]
-fn scaled_stretch(matrix: &DMat2) -> f64 {
-    let (x, y) = (matrix.x_axis, matrix.y_axis);
-    (libm::hypot(x.x + y.y, x.y - y.x) + libm::hypot(x.x - y.y, x.y + y.x)) / 2.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stretches_reach_to_the_ends_of_the_range() {
-        for size in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
-            let turned = DMat2::from_angle(0.7) * size;
-            let sheared = DMat2::from_cols_array(&[size, 0.0, size, size]);
-            let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
-            for (matrix, expected) in [(turned, 1.0), (sheared, golden)] {
-                let ratio = stretch(&matrix) / size;
-                assert!((ratio - expected).abs() < 1e-14, "{size}: {ratio}");
-            }
-        }
-        assert_eq!(stretch(&DMat2::ZERO), 0.0);
-    }
+    /// Extends a box by the images of all points.
+    fn add_to(&self, bounds: &mut Bounds<F::Point>, frame: &F);
 }

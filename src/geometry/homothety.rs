@@ -1,22 +1,22 @@
 //! Homotheties by powers of two.
 
-use super::{Bounds, DAffine2, DMat2, DVec2};
+use super::{Bounds, DAffine2, DMat2, DVec2, Point};
 
 /// A homothety whose ratio is a power of two: x → 2ⁿ x + c.
 ///
 /// Multiplying by a power of two is exact in doubles, and so is the difference of numbers that are near
 /// each other: moving a distant model to the origin loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Homothety {
+pub struct Homothety<P = DVec2> {
     exponent: i32,
-    shift: DVec2,
+    shift: P,
 }
 
-impl Homothety {
+impl<P: Point> Homothety<P> {
     /// The identity.
     pub const IDENTITY: Self = Self {
         exponent: 0,
-        shift: DVec2::ZERO,
+        shift: P::ZERO,
     };
 
     /// The largest absolute value of an exponent: ratios and their inverses are normal doubles.
@@ -24,7 +24,7 @@ impl Homothety {
 
     /// Creates the map x → 2ⁿ x + c; exponents are clamped to ± [`MOST_EXPONENT`](Self::MOST_EXPONENT).
     #[must_use]
-    pub fn new(exponent: i32, shift: DVec2) -> Self {
+    pub fn new(exponent: i32, shift: P) -> Self {
         Self {
             exponent: exponent.clamp(-Self::MOST_EXPONENT, Self::MOST_EXPONENT),
             shift,
@@ -52,13 +52,13 @@ impl Homothety {
     /// Returns the image of a point.
     #[inline]
     #[must_use]
-    pub fn point(&self, point: DVec2) -> DVec2 {
+    pub fn point(&self, point: P) -> P {
         point * self.ratio() + self.shift
     }
 
     /// Returns the image of a box, which is empty if the box is.
     #[must_use]
-    pub fn bounds(&self, bounds: &Bounds) -> Bounds {
+    pub fn bounds(&self, bounds: &Bounds<P>) -> Bounds<P> {
         if bounds.is_empty() {
             return Bounds::EMPTY;
         }
@@ -67,11 +67,13 @@ impl Homothety {
 
     /// Returns the preimage of a point.
     #[must_use]
-    pub fn origin_of(&self, point: DVec2) -> DVec2 {
+    pub fn origin_of(&self, point: P) -> P {
         // After the division the difference of the two cannot overflow, but before it can.
         (point - self.shift) / self.ratio()
     }
+}
 
+impl Homothety {
     /// Returns the preimage of a window: lower left corner, width and height.
     #[must_use]
     pub fn origin_of_window(&self, [x, y, width, height]: [f64; 4]) -> [f64; 4] {

@@ -1,20 +1,28 @@
-//! Points, directions, frames and boxes of the plane.
+//! Points, directions, frames, outlines and boxes, of the plane and generic over the dimension.
 //!
 //! The plane has x to the right and y up; positive angles turn counter-clockwise. Points are
 //! [`glam::DVec2`], affine maps [`glam::DAffine2`] (they act on column vectors, so `f * g` applies
 //! `g` first).
 
+mod base_element;
 mod bounds;
+mod corners;
 mod direction;
 mod frame;
+mod frame2;
 mod homothety;
 mod hull;
+mod point;
 
+pub use base_element::{BaseElement, Piece, arc};
 pub use bounds::Bounds;
+pub use corners::Corners2;
 pub use direction::Direction;
-pub use frame::{BEYOND, Frame};
-pub use glam::{DAffine2, DMat2, DVec2};
+pub use frame::{BEYOND, Corners, Frame, Outline};
+pub use frame2::Frame2;
+pub use glam::{DAffine2, DMat2, DVec2, DVec3};
 pub use homothety::Homothety;
+pub use point::Point;
 
-pub(crate) use frame::stretch;
+pub(crate) use frame2::stretch;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

@@ -9,10 +9,10 @@
 use std::collections::hash_map::Entry;
 
 use crate::fast_hash::FastMap;
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
-use super::hull::{Fineness, Hulls};
+use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::{Graph, Instance, Object, Replacement};
 
 /// Limit of the number of states at one level.
@@ -30,20 +30,20 @@ const NEGLIGIBLE: f64 = 1e-17;
 /// and vectors of equal states differ by rounding, so fewer states merge.
 const ROUNDING: f64 = 1e-15;
 
-struct State {
+struct State<F: Frame> {
     object: usize,
-    vector: DVec2,
+    vector: F::Point,
     offset: f64,
     /// Accumulated rounding error of the offset.
     lost: f64,
 }
 
 /// Bounds on the subtrees of objects, on which the search relies.
-struct Reach {
+struct Reach<F: Frame> {
     spread: f64,
     ratio: f64,
     /// Polygons that contain the subtrees of objects, where ratios give no bound.
-    hulls: Option<Hulls>,
+    hulls: Option<Box<dyn Hulls<F>>>,
     /// Objects that are certain to draw something.
     alive: Vec<bool>,
     /// Padding around every object, as a multiple of its length.
@@ -53,15 +53,15 @@ struct Reach {
 }
 
 /// Bounding boxes of approximants, without stroke width: see [`Graph::bounds`].
-pub struct ApproximantBounds<'g> {
-    graph: &'g Graph,
-    reach: Reach,
+pub struct ApproximantBounds<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
+    reach: Reach<F>,
 }
 
-impl Reach {
+impl<F: Frame> Reach<F> {
     /// Returns an upper bound of x·u over the points x that a state draws, and a lower bound that holds
     /// if it draws anything: of the least x·u, or in the limit with polygons, of the greatest.
-    fn span(&self, state: &State, levels: Option<u32>) -> [f64; 2] {
+    fn span(&self, state: &State<F>, levels: Option<u32>) -> [f64; 2] {
         let Some(hulls) = &self.hulls else {
             let size = state.vector.length() * self.radius(levels);
             return [state.offset + size, state.offset - size];
@@ -76,7 +76,7 @@ impl Reach {
 
     /// Returns the contribution of a state to its offset in the limit, if polygons determine it to within
     /// `negligible`.
-    fn rest(&self, state: &State, negligible: f64) -> Option<f64> {
+    fn rest(&self, state: &State<F>, negligible: f64) -> Option<f64> {
         let hulls = self.hulls.as_ref()?;
         let [farthest, surely] = hulls.along(state.object, state.vector);
         (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
@@ -84,7 +84,7 @@ impl Reach {
 
     /// Returns a bound on the distance, along the vector of a state, of all that it draws from its
     /// origin.
-    fn size(&self, state: &State, levels: Option<u32>) -> f64 {
+    fn size(&self, state: &State<F>, levels: Option<u32>) -> f64 {
         match &self.hulls {
             Some(hulls) => {
                 let along = [state.vector, -state.vector];
@@ -120,27 +120,31 @@ impl Reach {
     }
 }
 
-impl Graph {
+impl<F: Bounded> Graph<F> {
     /// Returns the bounding box of approximant `steps` without stroke width, in the graph's coordinates.
     ///
     /// Exact to some 15 digits. `None` if nothing is drawn, if the graph does not determine the box
     /// (random and irregular rules, seeds placed as the initiator, too many directions), or if the graph
     /// was compiled for fewer steps.
     #[must_use]
-    pub fn bounds(&self, steps: u32) -> Option<Bounds> {
+    pub fn bounds(&self, steps: u32) -> Option<Bounds<F::Point>> {
         self.padded_bounds(steps, |_| 0.0)
     }
 
     /// Returns the bounding boxes of approximants, which share the computations that do not depend on the
     /// step. `None` if the graph determines none of them.
     #[must_use]
-    pub fn boxes(&self) -> Option<ApproximantBounds<'_>> {
+    pub fn boxes(&self) -> Option<ApproximantBounds<'_, F>> {
         self.boxes_with(false, |_| 0.0)
     }
 
     /// Returns the bounding box of approximant `steps` with padding around every object: `pad` returns it
     /// as a multiple of the object's length.
-    pub(crate) fn padded_bounds(&self, steps: u32, pad: impl Fn(&Object) -> f64) -> Option<Bounds> {
+    pub(crate) fn padded_bounds(
+        &self,
+        steps: u32,
+        pad: impl Fn(&Object<F>) -> f64,
+    ) -> Option<Bounds<F::Point>> {
         self.boxes_with(false, pad)?.at(steps)
     }
 
@@ -151,7 +155,7 @@ impl Graph {
     /// precision would take too long. `None` if there is no limit set, or if the graph does not determine
     /// the box.
     #[must_use]
-    pub fn limit_bounds(&self) -> Option<Bounds> {
+    pub fn limit_bounds(&self) -> Option<Bounds<F::Point>> {
         if self.depth.is_some() || !self.contracts() {
             return None;
         }
@@ -165,8 +169,8 @@ impl Graph {
     fn boxes_with(
         &self,
         limit: bool,
-        pad: impl Fn(&Object) -> f64,
-    ) -> Option<ApproximantBounds<'_>> {
+        pad: impl Fn(&Object<F>) -> f64,
+    ) -> Option<ApproximantBounds<'_, F>> {
         self.boxes_within(limit, Fineness::COARSE, pad)
     }
 
@@ -175,8 +179,8 @@ impl Graph {
         &self,
         limit: bool,
         fineness: Fineness,
-        pad: impl Fn(&Object) -> f64,
-    ) -> Option<ApproximantBounds<'_>> {
+        pad: impl Fn(&Object<F>) -> f64,
+    ) -> Option<ApproximantBounds<'_, F>> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -186,13 +190,10 @@ impl Graph {
         let (spread, ratio) = (self.spread(&pad), self.longest_ratio());
         let alive = self.alive(limit);
         let needs_hulls = self.affine || ratio >= 1.0;
-        let hulls = needs_hulls.then(|| {
-            self.hulls(
-                &|object| self.corners(object, pad(&self.objects[object])),
-                limit.then_some(&alive),
-                fineness,
-            )
-        });
+        let pads: Vec<f64> = self.objects.iter().map(&pad).collect();
+        let own = Own::Outlines(&pads);
+        let drawn = limit.then_some(&alive[..]);
+        let hulls = needs_hulls.then(|| F::hulls(self, &own, drawn, fineness));
         let hulls = hulls.flatten();
         let spared = { hulls.as_ref() }.map(|it| it.spared(&self.initiator(0).instances, fineness));
         let reach = Reach {
@@ -201,38 +202,21 @@ impl Graph {
             spared: spared.unwrap_or_default(),
             hulls,
             alive,
-            pads: self.objects.iter().map(&pad).collect(),
+            pads,
         };
         Some(ApproximantBounds { graph: self, reach })
     }
 
-    /// Iterates over all instances of fixed productions, with their placements.
-    pub(super) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
-        (0..self.objects.len()).flat_map(|object| self.children(object))
-    }
-
-    /// Returns the largest ratio of a fertile instance.
-    pub(super) fn longest_ratio(&self) -> f64 {
-        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
-        let fertile = self
-            .instances()
-            .filter(|(_, instance)| !kept(instance.object));
-        fertile
-            .map(|(_, instance)| instance.length)
-            .fold(0.0, f64::max)
-    }
-
     /// Returns the largest distance from an object's origin at which it draws something or places an
     /// instance.
-    fn spread(&self, pad: impl Fn(&Object) -> f64) -> f64 {
+    fn spread(&self, pad: impl Fn(&Object<F>) -> f64) -> f64 {
         let shape = |object: usize| {
             let base_element = &self.base_elements()[self.objects[object].base_element];
-            let axes = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y];
-            axes.iter()
-                .map(|&axis| base_element.support(axis))
+            let axes = F::Point::AXES.iter();
+            axes.map(|&axis| base_element.support(axis))
                 .map(f64::abs)
                 .fold(0.0, f64::max)
-                * std::f64::consts::SQRT_2
+                * F::Point::splat(1.0).length()
                 + pad(&self.objects[object])
         };
         let mut constant = (0..self.objects.len()).map(shape).fold(0.0, f64::max);
@@ -286,7 +270,7 @@ impl Graph {
         }
     }
 
-    fn support(&self, direction: DVec2, steps: Option<u32>, reach: &Reach) -> Option<f64> {
+    fn support(&self, direction: F::Point, steps: Option<u32>, reach: &Reach<F>) -> Option<f64> {
         let start = self.initiator(steps.unwrap_or(0)).instances.iter();
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
@@ -364,26 +348,26 @@ impl Graph {
     }
 }
 
-impl ApproximantBounds<'_> {
+impl<F: Bounded> ApproximantBounds<'_, F> {
     /// Returns the bounding box of approximant `steps`.
     #[must_use]
-    pub fn at(&self, steps: u32) -> Option<Bounds> {
+    pub fn at(&self, steps: u32) -> Option<Bounds<F::Point>> {
         let is_resolved = self.graph.depth.is_none_or(|depth| depth >= steps);
         is_resolved.then(|| self.of(Some(steps))).flatten()
     }
 
     /// Returns the bounding box of an approximant, or of the limit set if `steps` is `None`.
-    fn of(&self, steps: Option<u32>) -> Option<Bounds> {
-        let support = |direction| self.graph.support(direction, steps, &self.reach);
-        let max = DVec2::new(support(DVec2::X)?, support(DVec2::Y)?);
-        let min = -DVec2::new(support(-DVec2::X)?, support(-DVec2::Y)?);
+    fn of(&self, steps: Option<u32>) -> Option<Bounds<F::Point>> {
+        let mut ends = [F::Point::ZERO; 2];
+        for (number, &axis) in F::Point::AXES.iter().enumerate() {
+            let far = self.graph.support(axis, steps, &self.reach)?;
+            ends[number % 2] = ends[number % 2] + axis * far;
+        }
+        let [max, min] = ends;
         // Coordinates below the rounding error are replaced by zero.
         let nothing = self.reach.slack() * min.abs().max(max.abs()).max_element();
-        let rounded = |corner: DVec2| {
-            let is_nothing = corner.abs().cmple(DVec2::splat(nothing));
-            DVec2::select(is_nothing, DVec2::ZERO, corner)
-        };
-        let bounds = Bounds::new(rounded(min), rounded(max));
+        let rounded = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
+        let bounds = Bounds::new(min.map(rounded), max.map(rounded));
         bounds.is_finite().then_some(bounds)
     }
 }
@@ -399,7 +383,7 @@ fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<b
     }
 }
 
-fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
+fn child<F: Frame>(instance: &Instance<F>, vector: F::Point, offset: f64, lost: f64) -> State<F> {
     let shift = vector.dot(instance.frame.origin());
     // Knuth's exact sum of two doubles (TwoSum) keeps the errors of many levels from accumulating.
     let sum = offset + shift;
@@ -414,13 +398,13 @@ fn child(instance: &Instance, vector: DVec2, offset: f64, lost: f64) -> State {
 }
 
 /// Keeps the farthest of the states that are equal but for the offset.
-fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
-    let mut kept: Vec<State> = Vec::new();
+fn merged<F: Frame>(states: impl Iterator<Item = State<F>>) -> Vec<State<F>> {
+    let mut kept: Vec<State<F>> = Vec::new();
     let mut numbers = FastMap::default();
     for state in states {
         match numbers.entry((state.object, key(state.vector))) {
             Entry::Occupied(number) => {
-                let known: &mut State = &mut kept[*number.get()];
+                let known: &mut State<F> = &mut kept[*number.get()];
                 if (known.offset, known.lost) < (state.offset, state.lost) {
                     (known.offset, known.lost) = (state.offset, state.lost);
                 }
@@ -440,7 +424,7 @@ fn merged(states: impl Iterator<Item = State>) -> Vec<State> {
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
-fn key(vector: DVec2) -> ([i64; 2], u64) {
+fn key<P: Point>(vector: P) -> ([i64; 3], u64) {
     /// Number of low bits of a double that are dropped, by rounding: truncation would separate the
     /// neighbours of powers of two.
     const ROUNDED: u32 = 19;
@@ -452,7 +436,9 @@ fn key(vector: DVec2) -> ([i64; 2], u64) {
             (unit, vector.dot(unit))
         }
     };
-    let direction = [unit.x, unit.y].map(|value| (value * 1e10).round() as i64);
+    let direction = unit
+        .coordinates()
+        .map(|value| (value * 1e10).round() as i64);
     (
         direction,
         (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,

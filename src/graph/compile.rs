@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
-use crate::geometry::{DVec2, Homothety};
+use crate::geometry::DVec2;
 use crate::rule::draw::Path;
 use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, CompileError, Evaluated, Graph, Object, Production, Replacement};
+use super::{Alternative, CompileError, Graph, Object, Production, Replacement};
 
 /// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
 const MOST_OBJECTS: usize = 200_000;
@@ -165,23 +165,15 @@ impl<'r> Compiler<'r> {
             .flat_map(|generator| generator.parts())
             .any(|part| part.placement.seeds());
         Ok(Graph {
-            evaluated: Some(Evaluated::Rule(Arc::clone(rule))),
-            base_elements: rule.base_elements().into(),
+            source: Some(Arc::clone(rule) as _),
             origins: rule.generators().len(),
-            objects: self.objects,
-            initiators: vec![whole.body],
-            roots: Arc::default(),
             depth: beyond.then_some(self.steps),
             regular: !self.depends.index_is_free,
             counts_index: self.depends.counts_index,
             draws: rule.is_random(),
             seeds,
-            tints: false,
-            widest: None,
-            affine: false,
-            unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
-            place: Homothety::IDENTITY,
+            ..Graph::of(self.objects, rule.base_elements(), vec![whole.body])
         })
     }
 
@@ -227,13 +219,8 @@ impl<'r> Compiler<'r> {
         let becomes = (class.fertile, class.generator, state.clone());
         let behaviour = *self.behaviours.entry(becomes).or_insert(behaviours);
         self.objects.push(Object {
-            base_element: class.base_element,
             visible: class.visible,
             origin: class.origin,
-            last_map: None,
-            tint: None,
-            paint: None,
-            thickness: None,
             index: Self::index(&state, self.depends.modulus),
             behaviour,
             replacement: if class.fertile {
@@ -241,6 +228,7 @@ impl<'r> Compiler<'r> {
             } else {
                 Replacement::Kept
             },
+            ..Object::kept(class.base_element)
         });
         self.keys.push((class, state.clone()));
         self.numbers.insert((class, state), number);

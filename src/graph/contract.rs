@@ -1,8 +1,8 @@
 //! Contraction of products of maps, for graphs whose single maps do not all contract.
 
-use crate::geometry::DVec2;
-use crate::ifs::Shrinking;
+use crate::geometry::Point;
 
+use super::bounded::Bounded;
 use super::{Graph, Instance, Replacement};
 
 /// Bound on the stretch of products of maps: with weights u of the objects, the product over n instances
@@ -15,7 +15,7 @@ pub(crate) struct Products {
     pub(crate) weights: Vec<f64>,
 }
 
-impl Graph {
+impl<F: Bounded> Graph<F> {
     /// Returns whether fertile elements become smaller than any length, by the maps of single instances
     /// or by their products.
     #[must_use]
@@ -34,14 +34,14 @@ impl Graph {
             return Some(even(1.0 / (1.0 - ratio)));
         }
         self.products_by_weights()
-            .or_else(|| self.products_by_hulls().map(even))
+            .or_else(|| F::products(self).map(even))
     }
 
     /// Returns the radius about `centre`, in any object's unit frame, that contains the subtree of an
     /// object, if single maps do not contract but products do. `own` is the radius that contains what
     /// objects and kept instances draw themselves. `None` if single maps contract, or if no products are
     /// found that do.
-    pub(super) fn reach_by_products(&self, centre: DVec2, own: f64) -> Option<f64> {
+    pub(super) fn reach_by_products(&self, centre: F::Point, own: f64) -> Option<f64> {
         if self.longest_ratio() < 1.0 {
             return None;
         }
@@ -90,22 +90,8 @@ impl Graph {
         FACTORS.into_iter().find_map(weights)
     }
 
-    /// Returns the sum, over all n, of the largest stretch of products of n maps.
-    fn products_by_hulls(&self) -> Option<f64> {
-        if !self.affine || !self.is_plain() {
-            return None;
-        }
-        let images = self.images(|_| true);
-        let linear = images.iter().map(|images| {
-            let linear = images.iter().map(|(map, inner)| (map.matrix2, *inner));
-            linear.collect()
-        });
-        let shrinking = Shrinking::found(&linear.collect::<Vec<_>>())?;
-        Some(shrinking.sum)
-    }
-
     /// Iterates over the fertile instances of an object.
-    fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance> {
+    fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance<F>> {
         let children = self.children(object).map(|(_, instance)| instance);
         children.filter(|instance| {
             !matches!(self.objects[instance.object].replacement, Replacement::Kept)

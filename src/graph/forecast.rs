@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
-use crate::geometry::Direction;
-use crate::rule::{BaseElement, Placement};
+use crate::geometry::{Direction, Frame, Frame2, Outline, Point};
+use crate::rule::Placement;
 
 use super::{Alternative, Chain, Count, Graph, Instance, Object, Replacement};
 
@@ -33,8 +33,8 @@ pub struct Level {
 }
 
 /// Sizes of successive approximants, from approximant 0 on.
-pub struct Forecast<'g> {
-    graph: &'g Graph,
+pub struct Forecast<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
     /// Whether every production is a list of fixed maps.
     is_plain: bool,
     /// Whether all maps are similarities.
@@ -135,11 +135,11 @@ enum Outlines {
     Other,
 }
 
-impl Graph {
+impl<F: Frame> Graph<F> {
     /// Returns the forecast of the approximants, as far as the graph is resolved; `None` if the sizes are
     /// not known without a walk: for irregular rules, and if numbers of elements depend on draws.
     #[must_use]
-    pub fn forecast(&self) -> Option<Forecast<'_>> {
+    pub fn forecast(&self) -> Option<Forecast<'_, F>> {
         let known = self.is_regular()
             && self.behaviours().all(|object| match &object.replacement {
                 Replacement::Evaluated(alternatives) => self.are_equal(alternatives),
@@ -186,15 +186,20 @@ impl Graph {
         if visible.all(|object| self.base_elements()[object.base_element].is_closed()) {
             return Outlines::ClosedElements;
         }
-        let closed = |chain: &Chain| chain.is_joined() && chain.is_ring();
-        let seeds = |object: &Object| match &object.replacement {
+        let closed = |chain: &Chain<F>| chain.is_joined() && chain.is_ring();
+        let seeds = |object: &Object<F>| match &object.replacement {
             Replacement::Fixed(production) => {
                 production.seeds.iter().all(|seed| closed(&seed.chain))
             }
             Replacement::Kept | Replacement::Unresolved => true,
             Replacement::Evaluated(_) => false,
         };
-        if self.starts().all(closed) && self.objects.iter().all(seeds) && self.keeps_lines() {
+        let encloses = F::Point::ZERO.triangle(F::Point::ZERO).is_some();
+        if encloses
+            && self.starts().all(closed)
+            && self.objects.iter().all(seeds)
+            && self.keeps_lines()
+        {
             Outlines::ClosedPaths
         } else {
             Outlines::Other
@@ -213,14 +218,15 @@ fn side(direction: Direction) -> f64 {
 }
 
 /// Returns the signed area between a chain of elements, as straight lines, and the line back to its
-/// start.
-fn area_under(chain: &Chain) -> f64 {
+/// start; 0 in space.
+fn area_under<F: Frame>(chain: &Chain<F>) -> f64 {
     let ends = chain.instances.iter().map(|instance| instance.frame.ends());
-    ends.map(|[from, to]| from.perp_dot(to)).sum::<f64>() / 2.0
+    let areas = ends.map(|[from, to]| from.triangle(to).unwrap_or(0.0));
+    areas.sum()
 }
 
-impl<'g> Forecast<'g> {
-    fn new(graph: &'g Graph) -> Self {
+impl<'g, F: Frame> Forecast<'g, F> {
+    fn new(graph: &'g Graph<F>) -> Self {
         let mut forecast = Self {
             graph,
             is_plain: graph.is_plain(),
@@ -235,7 +241,7 @@ impl<'g> Forecast<'g> {
             areas: graph
                 .base_elements()
                 .iter()
-                .map(BaseElement::signed_area)
+                .map(Outline::signed_area)
                 .collect(),
             path_area: area_under(graph.initiator(0)).abs(),
         };
@@ -266,7 +272,7 @@ impl<'g> Forecast<'g> {
     }
 
     /// Returns the factor by which an instance changes areas.
-    fn square(&self, instance: &Instance) -> f64 {
+    fn square(&self, instance: &Instance<F>) -> f64 {
         if self.graph.affine {
             instance.frame.area()
         } else {
@@ -455,7 +461,7 @@ impl<'g> Forecast<'g> {
     }
 
     /// Adds the elements of a chain that replaces elements, or that they seed.
-    fn add_chain(&mut self, number: &Count, parent: Sums, chain: &Chain) {
+    fn add_chain(&mut self, number: &Count, parent: Sums, chain: &Chain<F>) {
         let count = number.to_f64();
         let Some(mut before) = chain.instances.last() else {
             return;

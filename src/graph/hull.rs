@@ -1,40 +1,13 @@
 //! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
 //! in products.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, convex_hull, distance_to_hull, thinned};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2, convex_hull, distance_to_hull, thinned};
+use crate::ifs::Shrinking;
 
+use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::contract::Products;
 use super::policy::{farthest, followed, rightmost};
 use super::{Graph, Instance, Replacement};
-
-/// Precision of polygons as approximations of the convex hulls.
-#[derive(Clone, Copy)]
-pub(super) struct Fineness {
-    /// Relative distance from the hulls at which iteration stops.
-    tolerance: f64,
-    /// Limit of the number of corners that are mapped.
-    most_work: usize,
-    /// Number of corners beyond which polygons are thinned more.
-    most_corners: usize,
-    /// Length by which a box may fall short, relative to its extent; rounding adds to it in any case.
-    spared: f64,
-}
-
-impl Fineness {
-    pub(super) const COARSE: Self = Self {
-        tolerance: 1e-4,
-        most_work: 1 << 20,
-        most_corners: 256,
-        spared: 0.0,
-    };
-
-    pub(super) const FINE: Self = Self {
-        tolerance: 1e-8,
-        most_work: 1 << 22,
-        most_corners: 2048,
-        spared: 1e-10,
-    };
-}
 
 /// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-14;
@@ -45,7 +18,7 @@ const LEAST_ROUNDS: usize = 4;
 const FEW_ROUNDS: usize = 4;
 
 /// Polygons that approximate the convex hulls of subtrees.
-pub(super) struct Hulls {
+struct Polygons {
     /// Number of each object's polygon: that of its behaviour, or its own if the object is not replaced.
     of: Vec<usize>,
     /// Corners of the polygons, counter-clockwise; none for an empty subtree.
@@ -57,33 +30,24 @@ pub(super) struct Hulls {
     within: Vec<f64>,
 }
 
-impl Hulls {
-    /// Returns an upper bound of x·u over the subtree of an object, u being the vector, and a lower bound
-    /// of its maximum in the limit.
-    pub(super) fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
+impl Hulls<Frame2> for Polygons {
+    fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
         let along = self.farthest(object, vector);
         let within = vector.length() * self.within[self.of[object]];
         [along + within, along - within]
     }
 
-    fn farthest(&self, object: usize, vector: DVec2) -> f64 {
-        let corners = self.corners(object);
-        let right = self.rightmost[self.of[object]];
-        match farthest(corners, right, vector) {
-            Some(corner) => corners[corner].dot(vector),
-            None => f64::NEG_INFINITY,
-        }
-    }
-
-    /// Returns the radius of a disc about a point that contains the subtree of an object.
-    pub(super) fn radius(&self, object: usize, centre: DVec2) -> f64 {
+    fn radius(&self, object: usize, centre: DVec2) -> f64 {
         let corners = self.corners(object).iter();
         let far = corners.map(|corner| corner.distance(centre));
         far.fold(0.0, f64::max) + self.within[self.of[object]]
     }
 
-    /// Returns the length by which a box of instances may fall short.
-    pub(super) fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
+    fn corners(&self, object: usize) -> &[DVec2] {
+        &self.corners[self.of[object]]
+    }
+
+    fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
         let extents = instances.iter().map(|instance| {
             let mut bounds = Bounds::EMPTY;
             for corner in self.corners(instance.object) {
@@ -94,20 +58,55 @@ impl Hulls {
         });
         fineness.spared * extents.fold(0.0, f64::max)
     }
+}
+
+impl Polygons {
+    fn farthest(&self, object: usize, vector: DVec2) -> f64 {
+        let corners = self.corners(object);
+        let right = self.rightmost[self.of[object]];
+        match farthest(corners, right, vector) {
+            Some(corner) => corners[corner].dot(vector),
+            None => f64::NEG_INFINITY,
+        }
+    }
 
     fn sorted(mut self) -> Self {
         self.rightmost = { self.corners.iter() }.map(|it| rightmost(it)).collect();
         self
     }
+}
 
-    /// Returns the corners of an object's polygon.
-    pub(super) fn corners(&self, object: usize) -> &[DVec2] {
-        &self.corners[self.of[object]]
+impl Bounded for Frame2 {
+    fn hulls(
+        graph: &Graph,
+        own: &Own<'_>,
+        drawn: Option<&[bool]>,
+        fineness: Fineness,
+    ) -> Option<Box<dyn Hulls<Self>>> {
+        let points = |object: usize| match own {
+            Own::Outlines(pads) => graph.corners(object, pads[object]),
+            Own::Discs(radii) => around(graph.middle, radii[object]).collect(),
+        };
+        let polygons = graph.polygons(&points, drawn, fineness)?;
+        Some(Box::new(polygons))
+    }
+
+    fn products(graph: &Graph) -> Option<f64> {
+        if !graph.affine || !graph.is_plain() {
+            return None;
+        }
+        let images = graph.images(|_| true);
+        let linear = images.iter().map(|images| {
+            let linear = images.iter().map(|(map, inner)| (map.matrix2, *inner));
+            linear.collect()
+        });
+        let shrinking = Shrinking::found(&linear.collect::<Vec<_>>())?;
+        Some(shrinking.sum)
     }
 }
 
 /// Function that returns points whose convex hull contains an object by itself.
-type Own<'a> = dyn Fn(usize) -> Vec<DVec2> + 'a;
+type Points<'a> = dyn Fn(usize) -> Vec<DVec2> + 'a;
 
 impl Graph {
     /// Returns polygons that contain the subtrees of objects: at every step, or in the limit if `drawn`
@@ -119,12 +118,12 @@ impl Graph {
     /// corners are [followed] to their limits.
     ///
     /// `None` if no products are found that contract, and for graphs that are not plain.
-    pub(super) fn hulls(
+    fn polygons(
         &self,
-        own: &Own<'_>,
+        own: &Points<'_>,
         drawn: Option<&[bool]>,
         fineness: Fineness,
-    ) -> Option<Hulls> {
+    ) -> Option<Polygons> {
         if !self.is_plain() || self.resets().contains(&true) {
             return None;
         }
@@ -209,11 +208,11 @@ impl Graph {
     /// replaced and, at every step, those of the objects themselves.
     fn points_of_hulls(
         &self,
-        own: &Own<'_>,
+        own: &Points<'_>,
         drawn: Option<&[bool]>,
         behaviours: usize,
-    ) -> (Hulls, Vec<Vec<DVec2>>) {
-        let mut hulls = Hulls {
+    ) -> (Polygons, Vec<Vec<DVec2>>) {
+        let mut hulls = Polygons {
             of: Vec::new(),
             corners: vec![Vec::new(); behaviours],
             rightmost: Vec::new(),
@@ -254,7 +253,7 @@ impl Graph {
     }
 
     /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
-    pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(DAffine2, usize)>> {
+    fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(DAffine2, usize)>> {
         let mut images = vec![Vec::new(); self.behaviours().count()];
         for (number, object) in self.behaviours_by_number() {
             for (_, instance) in self.children(number) {
@@ -270,7 +269,7 @@ impl Graph {
     }
 
     /// Returns points whose convex hull contains an object's outline with padding.
-    pub(super) fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
+    fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
         let points = self.base_elements()[self.objects[object].base_element].control_points();
         if pad > 0.0 {
             points.flat_map(|point| around(point, pad)).collect()
@@ -285,7 +284,7 @@ impl Graph {
 }
 
 /// Iterates over the corners of a polygon around a disc.
-pub(super) fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
+fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
     const CORNERS: u32 = 32;
     let turn = std::f64::consts::TAU / f64::from(CORNERS);
     let far = radius / libm::cos(turn / 2.0);

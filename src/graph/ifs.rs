@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame, Homothety};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
-use super::hull::Fineness;
+use super::bounded::{Bounded, Fineness, Own};
 use super::instancing::instance;
 use super::{Chain, Graph, Object, Production, Replacement};
 
@@ -52,7 +52,7 @@ impl Graph {
         let initial = ifs.initial().map_or_else(|| filling(limit), outline);
         let mut whole = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() {
-            initial.add_to(&mut whole, &Frame::UNIT, 0.0);
+            initial.add_to(&mut whole, &Frame2::UNIT, 0.0);
         }
         let mut base_elements = graph.base_elements.to_vec();
         base_elements[INITIAL] = initial;
@@ -68,11 +68,8 @@ impl Graph {
 fn middle(graph: &Graph) -> DVec2 {
     let mut bounds = Bounds::EMPTY;
     let drawn = graph.alive(true);
-    if let Some(hulls) = graph.hulls(
-        &|object| graph.corners(object, 0.0),
-        Some(&drawn),
-        Fineness::COARSE,
-    ) {
+    let own = Own::Outlines(&vec![0.0; drawn.len()]);
+    if let Some(hulls) = Frame2::hulls(graph, &own, Some(&drawn), Fineness::COARSE) {
         for corner in hulls.corners(0) {
             bounds.add(*corner);
         }
@@ -235,44 +232,26 @@ impl<'s> Compiler<'s> {
         let drawn =
             drawn.map(|outline| instance(self.drawn(None, outline), &DAffine2::IDENTITY, 0));
         let root = instance(0, &DAffine2::IDENTITY, 0);
+        let start = Chain {
+            instances: std::iter::once(root).chain(drawn).collect(),
+            meets_frame: [false; 2],
+        };
+        let outlines = std::iter::once(provisional).chain(outlines);
         Graph {
-            evaluated: None,
-            base_elements: std::iter::once(provisional).chain(outlines).collect(),
             origins: maps,
-            objects,
-            initiators: vec![Chain {
-                instances: std::iter::once(root).chain(drawn).collect(),
-                meets_frame: [false; 2],
-            }],
-            roots: Arc::default(),
-            depth: None,
-            regular: true,
-            counts_index: false,
-            draws: false,
-            seeds: false,
-            tints: false,
-            widest: None,
             affine: true,
-            unit: 1.0,
-            middle: DVec2::ZERO,
-            place: Homothety::IDENTITY,
+            ..Graph::of(objects, outlines.collect::<Vec<_>>(), vec![start])
         }
     }
 
     fn object(&self, base_element: usize, map: Option<usize>, last_map: Option<usize>) -> Object {
         Object {
-            base_element,
             visible: base_element != INITIAL
                 || self.sets.is_empty()
                 || self.ifs.initial().is_some(),
             origin: map,
             last_map,
-            tint: None,
-            paint: None,
-            thickness: None,
-            index: 1,
-            behaviour: 0,
-            replacement: Replacement::Kept,
+            ..Object::kept(base_element)
         }
     }
 

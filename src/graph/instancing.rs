@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame, Homothety};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
@@ -114,7 +114,7 @@ impl Graph {
 
 /// Creates an instance with a map, not joined to any other.
 pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
-    let frame = Frame::from(*map);
+    let frame = Frame2::from(*map);
     Instance {
         length: frame.stretch(),
         frame,
@@ -193,23 +193,9 @@ impl<'s> Compiler<'s> {
         let initiator = self.reach();
         let tints = self.objects.iter().any(|object| object.tint.is_some());
         Graph {
-            evaluated: None,
-            base_elements: self.base_elements.into(),
-            origins: 0,
-            objects: self.objects,
-            initiators: vec![initiator],
-            roots: Arc::default(),
-            depth: None,
-            regular: true,
-            counts_index: false,
-            draws: false,
-            seeds: false,
             tints,
-            widest: None,
             affine: true,
-            unit: 1.0,
-            middle: DVec2::ZERO,
-            place: Homothety::IDENTITY,
+            ..Graph::of(self.objects, self.base_elements, vec![initiator])
         }
     }
 
@@ -241,16 +227,9 @@ impl<'s> Compiler<'s> {
                 Kind::Shape(base_element) => (base_element, true, None),
             };
             self.objects.push(Object {
-                base_element,
                 visible,
-                origin: None,
-                last_map: None,
                 tint: instance.tint,
-                paint: None,
-                thickness: None,
-                index: 1,
-                behaviour: 0,
-                replacement: Replacement::Kept,
+                ..Object::kept(base_element)
             });
             self.of.push(of);
         }

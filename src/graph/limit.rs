@@ -1,5 +1,7 @@
 //! Check of the number of elements of an approximant against a limit.
 
+use crate::geometry::Frame;
+
 use super::{Count, Graph};
 
 /// Error: an approximant has more elements than are allowed.
@@ -18,7 +20,7 @@ const MOST_DIGITS: usize = 5_000;
 /// Limit of additions beyond which a forecast is abandoned.
 const MOST_WORK: usize = 2_000_000;
 
-impl Graph {
+impl<F: Frame> Graph<F> {
     /// Returns the number of elements of approximant `steps`, provided that no approximant up to it
     /// exceeds `most_elements`; `None` if the graph has no forecast, or none within a reasonable time.
     ///

@@ -1,10 +1,11 @@
 //! Recognition of graphs whose elements are lines that join each other.
 
+use crate::geometry::{Frame, Outline};
 use crate::rule::Part;
 
 use super::{Chain, Graph, Replacement};
 
-impl Chain {
+impl<F: Frame> Chain<F> {
     /// Returns whether every instance but the first joins the one before it.
     pub(crate) fn is_joined(&self) -> bool {
         let mut later = self.instances.iter().skip(1);
@@ -20,7 +21,7 @@ impl Chain {
     }
 }
 
-impl Graph {
+impl<F: Frame> Graph<F> {
     /// Returns whether every element is a visible line from end to end of its frame and is replaced by
     /// such a line.
     pub(crate) fn keeps_lines(&self) -> bool {

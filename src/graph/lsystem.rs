@@ -24,16 +24,15 @@ pub(crate) use similar::Chords;
 pub(crate) use words::Words;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::{Bounds, DVec2, Homothety};
+use crate::geometry::Bounds;
 use crate::instancing::Thickness;
 use crate::lsystem::{LSystem, Placed, RewriteError, Turtle};
 use crate::rule::BaseElement;
 
 use self::effects::Effects;
-use super::{Chain, CompileError, Graph, Instance, Object, Replacement};
+use super::{Chain, CompileError, Graph, Instance, Object};
 
 impl Graph {
     /// Compiles an L-system for a number of steps: by edge rewriting, otherwise to objects by module and
@@ -95,23 +94,9 @@ impl Graph {
             strings.base_elements[base_element].add_to(&mut bounds, &instance.frame, 0.0);
         }
         let mut graph = Self {
-            evaluated: None,
-            base_elements: strings.base_elements.into(),
-            origins: 0,
             tints: system.has_colours(),
-            objects: strings.objects,
-            initiators: vec![initiator],
-            roots: Arc::default(),
-            widest: None,
-            depth: None,
-            regular: true,
-            counts_index: false,
             draws: !system.is_deterministic(),
-            seeds: false,
-            affine: false,
-            unit: 1.0,
-            middle: DVec2::ZERO,
-            place: Homothety::IDENTITY,
+            ..Self::of(strings.objects, strings.base_elements, vec![initiator])
         };
         graph.find_widths();
         if !bounds.is_empty() {
@@ -177,16 +162,9 @@ impl<'s> Strings<'s> {
         if number == made {
             let palette = &self.system.heading.style.palette;
             self.objects.push(Object {
-                base_element,
-                visible: true,
-                origin: None,
-                last_map: None,
-                tint: None,
                 paint: colour.map(|index| palette.entry(index)),
                 thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),
-                index: 1,
-                behaviour: 0,
-                replacement: Replacement::Kept,
+                ..Object::kept(base_element)
             });
         }
         number

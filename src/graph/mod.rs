@@ -19,6 +19,7 @@
 //! near](crate::model::Model::compile_normalised) the unit box around the origin: [`Graph::place`] maps them to
 //! the model's.
 
+mod bounded;
 mod bounds;
 mod compile;
 mod contract;
@@ -37,9 +38,11 @@ mod policy;
 mod probable_reach;
 mod reach;
 mod roots;
+mod source;
 mod state;
 mod thickness;
 
+pub use bounded::Bounded;
 pub use bounds::ApproximantBounds;
 pub use count::Count;
 pub use error::CompileError;
@@ -48,20 +51,22 @@ pub use limit::TooLarge;
 pub use no_limit::NoLimit;
 
 pub(crate) use ifs::{filling, outline as base_element};
-pub(crate) use lsystem::{Chords, Words};
+pub(crate) use lsystem::Chords;
+use lsystem::Words;
 pub(crate) use place::exponent_of;
 pub(crate) use roots::{Root, Roots, Sown};
+pub(crate) use source::{Buffers, Source};
 
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame, Homothety};
+use crate::geometry::{DVec2, Frame, Frame2, Homothety, Point};
 use crate::instancing::{Appearance, Thickness, Tint};
-use crate::rule::{BaseElement, Part, Placement, Rule};
+use crate::rule::{Part, Placement};
 use crate::style::Colour;
 
 /// Object: a class of elements in a state that determines their subtrees.
 #[derive(Clone, Debug)]
-pub struct Object {
+pub struct Object<F: Frame = Frame2> {
     /// Number of its base element.
     pub base_element: usize,
     /// Whether it is drawn.
@@ -83,29 +88,20 @@ pub struct Object {
     /// appearance.
     pub(crate) behaviour: usize,
     /// Replacement in the next step.
-    pub replacement: Replacement,
+    pub replacement: Replacement<F>,
 }
 
 /// Replacement of an object in the next step; objects of one behaviour share it.
 #[derive(Clone, Debug)]
-pub enum Replacement {
+pub enum Replacement<F: Frame = Frame2> {
     /// Infertile: the element is kept.
     Kept,
     /// Fixed instances.
-    Fixed(Arc<Production>),
+    Fixed(Arc<Production<F>>),
     /// Instances that are computed for each element, by one of these alternatives.
     Evaluated(Arc<[Alternative]>),
     /// Not resolved: the object is first reached at the depth for which the graph was compiled.
     Unresolved,
-}
-
-/// Source of instances that are computed for each element.
-#[derive(Clone, Debug)]
-pub(crate) enum Evaluated {
-    /// Rule whose generators depend on draws or on an index.
-    Rule(Arc<Rule>),
-    /// L-system with random productions.
-    Words(Arc<Words>),
 }
 
 /// Generator that may replace an object, with the objects of its elements.
@@ -119,9 +115,9 @@ pub struct Alternative {
 
 /// Instance: a frame inside its parent's frame, and the object that is placed there.
 #[derive(Clone, Debug)]
-pub struct Instance {
+pub struct Instance<F: Frame = Frame2> {
     /// Map and direction relative to the parent.
-    pub frame: Frame,
+    pub frame: F,
     /// Length as a multiple of its parent's: |to − from|, or the largest stretch of its map if that is
     /// not a similarity.
     pub length: f64,
@@ -134,10 +130,10 @@ pub struct Instance {
 }
 
 /// Sequence of instances.
-#[derive(Clone, Debug, Default)]
-pub struct Chain {
+#[derive(Clone, Debug)]
+pub struct Chain<F: Frame = Frame2> {
     /// Instances in the order of listing.
-    pub instances: Vec<Instance>,
+    pub instances: Vec<Instance<F>>,
     /// Whether the first instance starts, and whether the last one ends, at the end points of the
     /// replaced element.
     pub meets_frame: [bool; 2],
@@ -145,20 +141,20 @@ pub struct Chain {
 
 /// Chain that starts a new fractal.
 #[derive(Clone, Debug)]
-pub struct Seed {
+pub struct Seed<F: Frame = Frame2> {
     /// Placement of the new fractal.
     pub placement: Placement,
     /// Elements of the new fractal.
-    pub chain: Chain,
+    pub chain: Chain<F>,
 }
 
 /// Instances that replace an element, and the new fractals that it seeds.
-#[derive(Clone, Debug, Default)]
-pub struct Production {
+#[derive(Clone, Debug)]
+pub struct Production<F: Frame = Frame2> {
     /// Instances that take the place of the element; empty if it vanishes.
-    pub body: Chain,
+    pub body: Chain<F>,
     /// New fractals, in the order of their parts.
-    pub seeds: Vec<Seed>,
+    pub seeds: Vec<Seed<F>>,
 }
 
 /// Instancing graph of a model.
@@ -166,19 +162,19 @@ pub struct Production {
 /// Guarantees: all numbers of objects and base elements are in range; every object that is reached within
 /// the depth for which the graph was compiled has its replacement.
 #[derive(Clone, Debug)]
-pub struct Graph {
+pub struct Graph<F: Frame = Frame2> {
     /// Source of instances that are computed for each element; `None` if all are fixed.
-    pub(crate) evaluated: Option<Evaluated>,
-    pub(crate) base_elements: Arc<[BaseElement]>,
+    pub(crate) source: Option<Arc<dyn Source<F>>>,
+    pub(crate) base_elements: Arc<[F::Outline]>,
     /// Number of origins that objects may have.
     pub(crate) origins: usize,
-    pub(crate) objects: Vec<Object>,
+    pub(crate) objects: Vec<Object<F>>,
     /// Initiators, by the number of steps that are grown from them; the last is that of all larger
     /// numbers. Never empty.
-    pub(crate) initiators: Vec<Chain>,
+    pub(crate) initiators: Vec<Chain<F>>,
     /// Ancestry of the initiator's elements, and fractals seeded before; empty if growth begins with the
     /// initiator.
-    pub(crate) roots: Arc<Roots>,
+    pub(crate) roots: Arc<Roots<F>>,
     pub(crate) depth: Option<u32>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,
@@ -193,26 +189,69 @@ pub struct Graph {
     /// Length of an element whose frame is the unit frame.
     pub(crate) unit: f64,
     /// Approximate centre of the subtree of an element, in the unit frame.
-    pub(crate) middle: DVec2,
+    pub(crate) middle: F::Point,
     /// Homothety from the graph's coordinates to those of the model.
-    pub(crate) place: Homothety,
+    pub(crate) place: Homothety<F::Point>,
 }
 
-impl Graph {
+impl<F: Frame> Object<F> {
+    /// Creates a visible object of a base element that is kept, without origin and appearance.
+    pub(crate) fn kept(base_element: usize) -> Self {
+        Self {
+            base_element,
+            visible: true,
+            origin: None,
+            last_map: None,
+            tint: None,
+            paint: None,
+            thickness: None,
+            index: 1,
+            behaviour: 0,
+            replacement: Replacement::Kept,
+        }
+    }
+}
+
+impl<F: Frame> Graph<F> {
+    /// Creates a graph of objects with fixed instances that are similarities, without draws, seeds and changes
+    /// of appearance, resolved for any number of steps.
+    pub(crate) fn of(
+        objects: Vec<Object<F>>,
+        base_elements: impl Into<Arc<[F::Outline]>>,
+        initiators: Vec<Chain<F>>,
+    ) -> Self {
+        Self {
+            source: None,
+            base_elements: base_elements.into(),
+            origins: 0,
+            objects,
+            initiators,
+            roots: Arc::default(),
+            depth: None,
+            regular: true,
+            counts_index: false,
+            draws: false,
+            seeds: false,
+            tints: false,
+            widest: None,
+            affine: false,
+            unit: 1.0,
+            middle: F::Point::ZERO,
+            place: Homothety::IDENTITY,
+        }
+    }
+
     /// Returns the source of instances that are computed for each element.
-    pub(crate) fn evaluated(&self) -> &Evaluated {
-        let Some(evaluated) = &self.evaluated else {
-            unreachable!("nothing else is evaluated while a walk goes on");
+    pub(crate) fn source(&self) -> &dyn Source<F> {
+        let Some(source) = &self.source else {
+            unreachable!("all instances of a graph without a source are fixed");
         };
-        evaluated
+        &**source
     }
 
     /// Returns the parts of an alternative; empty if all of its elements stay.
     pub(crate) fn parts(&self, alternative: &Alternative) -> &[Part] {
-        match self.evaluated() {
-            Evaluated::Rule(rule) => rule.generators()[alternative.generator].parts(),
-            Evaluated::Words(_) => &[],
-        }
+        self.source().parts(alternative.generator)
     }
 
     /// Returns the number of origins that objects may have: the number of generators of a rule, or of maps
@@ -224,20 +263,20 @@ impl Graph {
 
     /// Returns the objects.
     #[must_use]
-    pub fn objects(&self) -> &[Object] {
+    pub fn objects(&self) -> &[Object<F>] {
         &self.objects
     }
 
     /// Returns the chain from which a number of steps is grown: approximant 0, unless the graph [is
     /// time-indexed](Graph::is_time_indexed).
     #[must_use]
-    pub fn initiator(&self, steps: u32) -> &Chain {
+    pub fn initiator(&self, steps: u32) -> &Chain<F> {
         let last = self.initiators.len() - 1;
         &self.initiators[(steps as usize).min(last)]
     }
 
     /// Iterates over all chains from which growth starts: initiators, and fractals seeded before.
-    pub(crate) fn starts(&self) -> impl Iterator<Item = &Chain> {
+    pub(crate) fn starts(&self) -> impl Iterator<Item = &Chain<F>> {
         let sown = self.roots.sown.iter().map(|sown| &sown.chain);
         self.initiators.iter().chain(sown)
     }
@@ -251,7 +290,7 @@ impl Graph {
 
     /// Returns the base elements to which objects refer.
     #[must_use]
-    pub fn base_elements(&self) -> &[BaseElement] {
+    pub fn base_elements(&self) -> &[F::Outline] {
         &self.base_elements
     }
 
@@ -279,6 +318,21 @@ impl Graph {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
+    }
+
+    /// Returns whether an object may be replaced, unlike one that is [kept](Replacement::Kept).
+    #[inline]
+    pub(crate) fn is_fertile(&self, object: usize) -> bool {
+        !matches!(self.objects[object].replacement, Replacement::Kept)
+    }
+
+    /// Returns the base element of an object that is drawn.
+    #[inline]
+    pub(crate) fn drawn(&self, object: usize) -> Option<&F::Outline> {
+        let object = &self.objects[object];
+        object
+            .visible
+            .then(|| &self.base_elements[object.base_element])
     }
 
     /// Returns the change of appearance that an object applies to its subtree.
@@ -325,12 +379,10 @@ impl Graph {
     /// Returns whether all maps are similarities, up to rounding.
     #[must_use]
     pub fn is_similar(&self) -> bool {
-        const ROUNDING: f64 = 1e-12;
-        let similar = |instance: &Instance| {
-            let square = instance.length * instance.length;
-            (instance.frame.area() - square).abs() <= ROUNDING * square
-        };
-        !self.affine || self.instances().all(|(_, instance)| similar(instance))
+        !self.affine
+            || self
+                .instances()
+                .all(|(_, instance)| instance.frame.is_similarity(instance.length))
     }
 
     /// Returns whether any element may join the one before it.
@@ -348,12 +400,12 @@ impl Graph {
     }
 
     /// Iterates over the first object of every behaviour.
-    pub(crate) fn behaviours(&self) -> impl Iterator<Item = &Object> {
+    pub(crate) fn behaviours(&self) -> impl Iterator<Item = &Object<F>> {
         self.behaviours_by_number().map(|(_, object)| object)
     }
 
     /// Iterates over the first object of every behaviour, with its number.
-    pub(crate) fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object)> {
+    pub(crate) fn behaviours_by_number(&self) -> impl Iterator<Item = (usize, &Object<F>)> {
         // Behaviours are numbered in the order of the objects.
         let mut next = 0;
         self.objects.iter().enumerate().filter(move |(_, object)| {
@@ -373,9 +425,27 @@ impl Graph {
     }
 }
 
-impl Production {
+impl<F: Frame> Default for Chain<F> {
+    fn default() -> Self {
+        Self {
+            instances: Vec::new(),
+            meets_frame: [false; 2],
+        }
+    }
+}
+
+impl<F: Frame> Default for Production<F> {
+    fn default() -> Self {
+        Self {
+            body: Chain::default(),
+            seeds: Vec::new(),
+        }
+    }
+}
+
+impl<F: Frame> Production<F> {
     /// Iterates over all instances with their placements: the body, then the seeds.
-    pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance)> {
+    pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         let body = self.body.instances.iter();
         let seeds = self.seeds.iter().flat_map(|seed| {
             let instances = seed.chain.instances.iter();
@@ -384,7 +454,9 @@ impl Production {
         body.map(|instance| (Placement::Stays, instance))
             .chain(seeds)
     }
+}
 
+impl Production {
     /// Overwrites the production with that of a generator whose points have been evaluated, and reuses
     /// its memory.
     ///
@@ -412,7 +484,7 @@ impl Production {
             for element in &part.elements {
                 let (from, to) = (points[element.from], points[element.to]);
                 instances.push(Instance {
-                    frame: Frame::between(from, to, element.direction),
+                    frame: Frame2::between(from, to, element.direction),
                     length: (to - from).length(),
                     joined: element.joined,
                     position,

@@ -1,6 +1,6 @@
 //! Reasons why a graph does not determine a limit set.
 
-use super::Graph;
+use super::{Bounded, Graph};
 
 /// Reason why a graph does not determine a limit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -26,7 +26,7 @@ pub enum NoLimit {
     Empty,
 }
 
-impl Graph {
+impl<F: Bounded> Graph<F> {
     /// Checks that the graph determines the limit set: that of the approximants as drawn, which contains
     /// infertile visible elements.
     ///

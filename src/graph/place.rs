@@ -63,7 +63,7 @@ impl Graph {
         let size = size.map_or(1.0, |size| size.max_element());
         let back = if size > 0.0 { exponent_of(size) } else { 0 };
         let exponent = before + most + back;
-        let fits = exponent <= Homothety::MOST_EXPONENT;
+        let fits = exponent <= Homothety::<DVec2>::MOST_EXPONENT;
         fits.then(|| Self {
             place: Homothety::new(exponent, shift),
             ..small.started_within(&Homothety::new(back, DVec2::ZERO))

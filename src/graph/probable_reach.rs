@@ -1,5 +1,7 @@
 //! Probable radii of the subtrees of objects, for rules whose draws are unbounded.
 
+use crate::geometry::Frame;
+
 use super::{Graph, Object, Replacement};
 
 /// Exponents of the moments that are tried.
@@ -14,7 +16,7 @@ const MOST_SWEEPS: usize = 200;
 /// Limit beyond which norms are taken to diverge.
 const MOST: f64 = 1e6;
 
-impl Graph {
+impl<F: Frame> Graph<F> {
     /// Returns radii as [`reaches`](Graph::reaches) does, for all but improbable draws: the probability
     /// that the subtree of an object exceeds its radius is below 2⁻⁶⁴. Infinite where the graph gives no
     /// bound.
@@ -25,7 +27,7 @@ impl Graph {
     /// ‖ratio(c)‖ · ‖M(c)‖)^q. Numbers that satisfy this inequality in place of the norms are upper
     /// bounds of them; by Markov's inequality M(o) exceeds t with a probability of at most (‖M(o)‖ /
     /// t)^q.
-    pub(crate) fn probable_radii(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
+    pub(crate) fn probable_radii(&self, own: impl Fn(&Object<F>) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let mut reaches = vec![f64::INFINITY; own.len()];
         if self.resets().contains(&true) {
@@ -152,7 +154,7 @@ mod tests {
         let mut farthest: f64 = 0.0;
         let object = graph.initiator(0).instances[0].object;
         for seed in 0..2_000 {
-            let mut standing = Standing::whole(seed);
+            let mut standing: Standing = Standing::whole(seed);
             standing.frame = standing.frame.moved_to(DVec2::new(0.5, 0.25));
             let reached = reached(&graph, &standing, object, 0);
             assert!(reached <= reaches[object], "{seed}: {reached}");

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::expression::Interval;
-use crate::geometry::DVec2;
+use crate::geometry::{Frame, Outline, Point};
 use crate::rule::Placement;
 
-use super::hull::{Fineness, around};
-use super::{Evaluated, Graph, Instance, Object, Replacement};
+use super::bounded::{Bounded, Fineness, Own};
+use super::{Graph, Instance, Object, Replacement};
 
 /// Relative change of the radii below which iteration stops.
 const TOLERANCE: f64 = 1e-3;
@@ -28,7 +28,7 @@ pub(super) struct Edge {
     pub(super) length: f64,
 }
 
-impl Graph {
+impl<F: Bounded> Graph<F> {
     /// Returns, for every object, the radius of a disc about the [middle](Graph::middle) of its unit
     /// frame that contains it and its subtree, seeds included, at every step and for all draws; infinite
     /// where the graph gives no bound: if seeds are placed as the initiator, or if the subtree is not
@@ -42,7 +42,7 @@ impl Graph {
     /// a geometric series or from infinity. For random instances, the largest distance and the largest
     /// length are used.
     #[must_use]
-    pub fn reaches(&self, own: impl Fn(&Object) -> f64) -> Vec<f64> {
+    pub fn reaches(&self, own: impl Fn(&Object<F>) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let edges = self.edges(f64::INFINITY);
         let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
@@ -104,19 +104,63 @@ impl Graph {
 
     /// Decreases the radii to those of the polygons that contain the subtrees.
     fn narrow(&self, radii: &mut [f64], own: &[f64]) {
-        let disc = |object: usize| around(self.middle, own[object]).collect();
-        if let Some(hulls) = self.hulls(&disc, None, Fineness::COARSE) {
+        if let Some(hulls) = F::hulls(self, &Own::Discs(own), None, Fineness::COARSE) {
             for (object, radius) in radii.iter_mut().enumerate() {
                 *radius = radius.min(hulls.radius(object, self.middle));
             }
         }
     }
 
+    /// Returns whether all fertile elements shrink below any length: no object leads back to itself at
+    /// its own size or larger, and no seed is placed as the initiator.
+    ///
+    /// Random instances are assumed to shrink.
+    #[must_use]
+    pub fn shrinks(&self) -> bool {
+        // Ratios are rounded; an object that returns at its own size must not seem to shrink.
+        const SLACK: f64 = 1.0 + 1e-9;
+        if self.resets().contains(&true) {
+            return false;
+        }
+        if self.longest_ratio() * SLACK < 1.0 {
+            return true;
+        }
+        if self.affine {
+            return self.contracts();
+        }
+        // The longest paths (Bellman 1958) grow without end if and only if there is such a cycle.
+        let mut longest = vec![1.0; self.objects.len()];
+        for _ in 0..=longest.len() {
+            let mut grows = false;
+            for object in 0..longest.len() {
+                for (_, instance) in self.children(object) {
+                    let fertile =
+                        !matches!(self.objects[instance.object].replacement, Replacement::Kept);
+                    let length = longest[object] * instance.length * SLACK;
+                    if fertile && length > longest[instance.object] {
+                        longest[instance.object] = length;
+                        grows = true;
+                    }
+                }
+            }
+            if !grows {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl<F: Frame> Graph<F> {
     /// Returns the radius, about the middle of the unit frame, of a disc that contains the outline of an
     /// object, if it is drawn, and its unit frame.
-    pub(crate) fn outline_radius(&self, object: &Object) -> f64 {
+    pub(crate) fn outline_radius(&self, object: &Object<F>) -> f64 {
         // Invisible elements have a position nevertheless; in systems it is a point.
-        let frame = if self.affine { 0.0 } else { self.middle.x };
+        let frame = if self.affine {
+            0.0
+        } else {
+            self.middle.length()
+        };
         if object.visible {
             let base_element = &self.base_elements()[object.base_element];
             base_element.radius_about(self.middle).max(frame)
@@ -143,7 +187,7 @@ impl Graph {
         let mut extents = BTreeMap::new();
         let edges = |object: usize| {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
-                let edge = |(_, instance): (_, &Instance)| Edge {
+                let edge = |(_, instance): (_, &Instance<F>)| Edge {
                     object: instance.object,
                     away: (instance.frame.apply(self.middle) - self.middle).length(),
                     length: instance.length,
@@ -155,15 +199,7 @@ impl Graph {
                 let generator = alternative.generator;
                 let extents = extents
                     .entry(generator)
-                    .or_insert_with(|| match self.evaluated() {
-                        Evaluated::Rule(rule) if power.is_infinite() => {
-                            rule.generators()[generator].extents(&self.moments())
-                        }
-                        Evaluated::Rule(rule) => {
-                            rule.generators()[generator].means(power, &self.moments())
-                        }
-                        Evaluated::Words(words) => words.extents(generator).to_vec(),
-                    });
+                    .or_insert_with(|| self.source().extents(generator, power, &self.moments()));
                 let drawn = alternative.objects.iter().zip(extents);
                 edges.extend(drawn.map(|(&object, extent)| Edge {
                     object,
@@ -186,7 +222,7 @@ impl Graph {
 
     /// Returns the approximate centre of the subtree of an element, in its unit frame.
     #[must_use]
-    pub fn middle(&self) -> DVec2 {
+    pub fn middle(&self) -> F::Point {
         self.middle
     }
 
@@ -267,7 +303,7 @@ impl Graph {
         if !self.roots.elements.is_empty() || self.resets().contains(&true) {
             return None;
         }
-        let fertile = |instance: &&Instance| {
+        let fertile = |instance: &&Instance<F>| {
             !matches!(self.objects[instance.object].replacement, Replacement::Kept)
         };
         let start = self.initiator(0).instances.iter().filter(fertile);
@@ -276,47 +312,11 @@ impl Graph {
         Some([start * self.unit, one_length(later.filter(fertile))?])
     }
 
-    /// Returns whether all fertile elements shrink below any length: no object leads back to itself at
-    /// its own size or larger, and no seed is placed as the initiator.
-    ///
-    /// Random instances are assumed to shrink.
-    #[must_use]
-    pub fn shrinks(&self) -> bool {
-        // Ratios are rounded; an object that returns at its own size must not seem to shrink.
-        const SLACK: f64 = 1.0 + 1e-9;
-        if self.resets().contains(&true) {
-            return false;
-        }
-        if self.longest_ratio() * SLACK < 1.0 {
-            return true;
-        }
-        if self.affine {
-            return self.contracts();
-        }
-        // The longest paths (Bellman 1958) grow without end if and only if there is such a cycle.
-        let mut longest = vec![1.0; self.objects.len()];
-        for _ in 0..=longest.len() {
-            let mut grows = false;
-            for object in 0..longest.len() {
-                for (_, instance) in self.children(object) {
-                    let fertile =
-                        !matches!(self.objects[instance.object].replacement, Replacement::Kept);
-                    let length = longest[object] * instance.length * SLACK;
-                    if fertile && length > longest[instance.object] {
-                        longest[instance.object] = length;
-                        grows = true;
-                    }
-                }
-            }
-            if !grows {
-                return true;
-            }
-        }
-        false
-    }
-
     /// Iterates over the fixed instances that take an object's place or that it seeds.
-    pub(crate) fn children(&self, object: usize) -> impl Iterator<Item = (Placement, &Instance)> {
+    pub(crate) fn children(
+        &self,
+        object: usize,
+    ) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         let production = match &self.objects[object].replacement {
             Replacement::Fixed(production) => Some(production),
             _ => None,
@@ -324,6 +324,22 @@ impl Graph {
         production
             .into_iter()
             .flat_map(|production| production.placed_instances())
+    }
+
+    /// Iterates over all instances of fixed productions, with their placements.
+    pub(super) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
+        (0..self.objects.len()).flat_map(|object| self.children(object))
+    }
+
+    /// Returns the largest ratio of a fertile instance.
+    pub(super) fn longest_ratio(&self) -> f64 {
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let fertile = self
+            .instances()
+            .filter(|(_, instance)| !kept(instance.object));
+        fertile
+            .map(|(_, instance)| instance.length)
+            .fold(0.0, f64::max)
     }
 
     /// Iterates over the objects that may take an object's place or that it may seed.
@@ -353,10 +369,10 @@ impl Graph {
 }
 
 /// Returns the common length of all instances, if there is one.
-fn one_length<'g>(mut instances: impl Iterator<Item = &'g Instance>) -> Option<f64> {
+fn one_length<'g, F: Frame>(mut instances: impl Iterator<Item = &'g Instance<F>>) -> Option<f64> {
     // Rounding makes equal sides slightly unequal.
     const ROUNDING: f64 = 1e-12;
     let length = instances.next()?.length;
-    let same = |instance: &Instance| (instance.length - length).abs() <= ROUNDING * length;
+    let same = |instance: &Instance<F>| (instance.length - length).abs() <= ROUNDING * length;
     instances.all(same).then_some(length)
 }

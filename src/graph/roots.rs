@@ -2,19 +2,20 @@
 
 use std::ops::Range;
 
+use crate::geometry::{Frame, Frame2};
 use crate::instancing::Appearance;
 use crate::rule::draw::Path;
 
 use super::Chain;
 
 /// Ancestry of the elements and fractals from which a graph starts in the middle of growth.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Roots {
+#[derive(Clone, Debug)]
+pub(crate) struct Roots<F: Frame = Frame2> {
     /// Ancestry of the elements of the initiator and of the [sown](Self::sown) chains, by position.
     pub(crate) elements: Vec<Root>,
     /// Fractals seeded before, in the order of their parent fractals, each after its parent; the seeds of
     /// one fractal are in the order of their birth steps, then of the elements that seeded them.
-    pub(crate) sown: Vec<Sown>,
+    pub(crate) sown: Vec<Sown<F>>,
 }
 
 /// Ancestry of an element.
@@ -31,7 +32,7 @@ pub(crate) struct Root {
 
 /// Fractal that was seeded before.
 #[derive(Clone, Debug)]
-pub(crate) struct Sown {
+pub(crate) struct Sown<F: Frame = Frame2> {
     /// Fractal that seeded it: 0 for the initiator, otherwise its number in the list, from 1.
     pub(crate) by: usize,
     /// Position of the first root whose descendants come after the element that seeded it.
@@ -39,10 +40,19 @@ pub(crate) struct Sown {
     /// Step of its birth.
     pub(crate) born: u32,
     /// Roots that it consists of.
-    pub(crate) chain: Chain,
+    pub(crate) chain: Chain<F>,
 }
 
-impl Roots {
+impl<F: Frame> Default for Roots<F> {
+    fn default() -> Self {
+        Self {
+            elements: Vec::new(),
+            sown: Vec::new(),
+        }
+    }
+}
+
+impl<F: Frame> Roots<F> {
     /// Returns the range of fractals that a fractal has seeded before.
     pub(crate) fn sown_by(&self, fractal: usize) -> Range<usize> {
         let from = self.sown.partition_point(|sown| sown.by < fractal);

@@ -1,10 +1,11 @@
 //! Largest stroke width in graphs whose objects change widths.
 
+use crate::geometry::Frame;
 use crate::instancing::Thickness;
 
 use super::{Graph, Replacement};
 
-impl Graph {
+impl<F: Frame> Graph<F> {
     /// Computes the largest factor of stroke widths, if any object changes them; it is infinite if an
     /// object leads back to itself with a larger width.
     pub(super) fn find_widths(&mut self) {

@@ -13,18 +13,17 @@ pub(super) use made::{Blocks, MOST_LEAVES};
 
 use std::ops::{Range, RangeInclusive};
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
-use crate::graph::{Graph, Replacement};
+use crate::geometry::{Bounds, Corners, DAffine2, DVec2, Direction, Frame, Frame2, Outline};
+use crate::graph::Graph;
 use crate::instancing::Appearance;
-use crate::rule::Piece;
 
 use super::Element;
 
 /// Element of a block, relative to the object that the block replaces.
 #[derive(Clone, Copy, Debug)]
-struct Leaf {
+struct Leaf<F> {
     /// Frame relative to the object's.
-    frame: Frame,
+    frame: F,
     length: f64,
     appearance: Appearance,
     object: usize,
@@ -37,9 +36,9 @@ struct Leaf {
 
 /// Element that is a line.
 #[derive(Clone, Copy, Debug)]
-pub struct LineElement {
+pub struct LineElement<P = DVec2> {
     /// First and last point, in order of traversal.
-    pub ends: [DVec2; 2],
+    pub ends: [P; 2],
     /// Base-2 logarithm of its length.
     pub octave: f64,
     /// Whether it joins the preceding element.
@@ -48,16 +47,16 @@ pub struct LineElement {
 
 /// Expansion of an object over a number of steps.
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct Block<F: Frame = Frame2> {
     /// Unique number of the block.
     number: u64,
-    leaves: Vec<Leaf>,
+    leaves: Vec<Leaf<F>>,
     /// Leaves as lines in the object's unit frame, if all are visible lines.
-    sticks: Option<Vec<LineElement>>,
+    sticks: Option<Vec<LineElement<F::Point>>>,
     /// End points of the lines, if each joins the one before.
-    line: Option<Vec<DVec2>>,
+    line: Option<Vec<F::Point>>,
     /// Corners of the outlines, if these have no curves.
-    corners: Option<Corners>,
+    corners: Option<F::Corners>,
     /// Number of fertile leaves.
     fertile: u64,
     /// Sum of the leaves' lengths.
@@ -70,18 +69,18 @@ pub(super) struct Block {
     pub(super) meets_end: bool,
 }
 
-impl Block {
+impl<F: Frame> Block<F> {
     pub(super) fn len(&self) -> u64 {
         self.leaves.len() as u64
     }
 }
 
 /// Consecutive elements that a visitor receives at once: a block placed by a map.
-pub struct Run<'b> {
-    pub(super) block: &'b Block,
+pub struct Run<'b, F: Frame = Frame2> {
+    pub(super) block: &'b Block<F>,
     pub(super) object: usize,
     /// Frame of the object that the block replaces.
-    pub(super) frame: Frame,
+    pub(super) frame: F,
     pub(super) length: f64,
     /// Appearance of the object.
     pub(super) appearance: Appearance,
@@ -91,10 +90,10 @@ pub struct Run<'b> {
     pub(super) index: u128,
     /// Whether the preceding element ends where the object starts.
     pub(super) joined: bool,
-    pub(super) graph: &'b Graph,
+    pub(super) graph: &'b Graph<F>,
 }
 
-impl Run<'_> {
+impl<F: Frame> Run<'_, F> {
     /// Returns the number of elements.
     #[must_use]
     pub fn count(&self) -> u64 {
@@ -114,7 +113,7 @@ impl Run<'_> {
     }
 
     /// Returns the frame of the object that the elements replace.
-    pub(crate) fn frame(&self) -> Frame {
+    pub(crate) fn frame(&self) -> F {
         self.frame
     }
 
@@ -123,32 +122,26 @@ impl Run<'_> {
         self.born
     }
 
-    /// Returns the run placed by another map, with the direction unchanged.
-    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
-        let frame = Frame::new(map, self.frame.direction());
-        Self { frame, ..*self }
-    }
-
     /// Returns the first element.
     #[must_use]
-    pub fn first(&self) -> Option<Element> {
+    pub fn first(&self) -> Option<Element<F>> {
         self.elements().next()
     }
 
     /// Returns the last element.
     #[must_use]
-    pub fn last(&self) -> Option<Element> {
+    pub fn last(&self) -> Option<Element<F>> {
         self.elements().next_back()
     }
 
     /// Iterates over the elements in order of traversal.
-    pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element> {
+    pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element<F>> {
         let leaves = self.block.leaves.iter().enumerate();
         leaves.map(|(number, leaf)| self.element(number, leaf, self.frame.compose(&leaf.frame)))
     }
 
     /// Iterates over the elements as [`Run::elements`] does, but with the run's map instead of their own.
-    pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element> {
+    pub(crate) fn elements_in_place(&self) -> impl DoubleEndedIterator<Item = Element<F>> {
         let leaves = self.block.leaves.iter().enumerate();
         leaves.map(|(number, leaf)| {
             let direction = self.frame.direction() * leaf.frame.direction();
@@ -160,8 +153,8 @@ impl Run<'_> {
     /// instead of the elements'.
     pub(crate) fn chosen(
         &self,
-        test: impl Fn(&Element) -> bool,
-    ) -> impl Iterator<Item = (usize, Element)> {
+        test: impl Fn(&Element<F>) -> bool,
+    ) -> impl Iterator<Item = (usize, Element<F>)> {
         let elements = self.elements_in_place().enumerate();
         let chosen = elements.filter(move |(_, element)| test(element));
         chosen.map(|(number, element)| {
@@ -175,7 +168,7 @@ impl Run<'_> {
     pub(crate) fn born_in(
         &self,
         steps: RangeInclusive<u32>,
-    ) -> impl Iterator<Item = (usize, Element)> {
+    ) -> impl Iterator<Item = (usize, Element<F>)> {
         let range = self.births(&steps);
         self.block.by_birth[range].iter().map(|&number| {
             let leaf = &self.block.leaves[number as usize];
@@ -198,7 +191,7 @@ impl Run<'_> {
         before(*steps.start())..before(steps.end().saturating_add(1))
     }
 
-    fn element(&self, number: usize, leaf: &Leaf, frame: Frame) -> Element {
+    fn element(&self, number: usize, leaf: &Leaf<F>, frame: F) -> Element<F> {
         Element {
             frame,
             length: self.length * leaf.length,
@@ -206,10 +199,7 @@ impl Run<'_> {
             index: self.index + number as u128,
             object: leaf.object,
             born: self.born + leaf.born,
-            fertile: !matches!(
-                self.graph.objects()[leaf.object].replacement,
-                Replacement::Kept
-            ),
+            fertile: self.graph.is_fertile(leaf.object),
             joined: leaf.joined && (number > 0 || self.joined),
         }
     }
@@ -217,14 +207,14 @@ impl Run<'_> {
     /// Returns the end points of the elements in order of traversal, in the unit frame of [`Run::map`], if
     /// all elements are visible lines and each joins the one before.
     #[must_use]
-    pub fn line(&self) -> Option<&[DVec2]> {
+    pub fn line(&self) -> Option<&[F::Point]> {
         self.block.line.as_deref()
     }
 
     /// Returns the elements as lines in the unit frame of [`Run::map`], if all are visible lines. Whether the
     /// first one joins the preceding element is a field of [`Run::first`].
     #[must_use]
-    pub fn sticks(&self) -> Option<&[LineElement]> {
+    pub fn sticks(&self) -> Option<&[LineElement<F::Point>]> {
         self.block.sticks.as_deref()
     }
 
@@ -246,18 +236,24 @@ impl Run<'_> {
     }
 
     /// Extends a box by the outlines of all visible elements, without strokes.
-    pub fn add_to(&self, bounds: &mut Bounds) {
+    pub fn add_to(&self, bounds: &mut Bounds<F::Point>) {
         if let Some(corners) = &self.block.corners {
-            corners.add_to(bounds, self.frame.map());
+            corners.add_to(bounds, &self.frame);
             return;
         }
         for element in self.elements() {
-            let object = &self.graph.objects()[element.object];
-            if object.visible {
-                let base_element = &self.graph.base_elements()[object.base_element];
+            if let Some(base_element) = self.graph.drawn(element.object) {
                 base_element.add_to(bounds, &element.frame, 0.0);
             }
         }
+    }
+}
+
+impl Run<'_> {
+    /// Returns the run placed by another map, with the direction unchanged.
+    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
+        let frame = Frame2::new(map, self.frame.direction());
+        Self { frame, ..*self }
     }
 
     /// Returns the map from the block's unit frame to the plane.
@@ -278,7 +274,7 @@ fn unit(reversed: bool) -> Direction {
 
 /// Returns the number of leaves born before each step, counted from the object's birth, up to the step by
 /// which all are born.
-fn births(leaves: &[Leaf]) -> Vec<usize> {
+fn births<F>(leaves: &[Leaf<F>]) -> Vec<usize> {
     let last = leaves.iter().map(|leaf| leaf.born).max().unwrap_or(0);
     let mut births = vec![0; last as usize + 2];
     for leaf in leaves {
@@ -288,73 +284,4 @@ fn births(leaves: &[Leaf]) -> Vec<usize> {
         births[step] += births[step - 1];
     }
     births
-}
-
-/// Corners of outlines, stored by coordinate for vector instructions.
-#[derive(Debug, Default)]
-struct Corners {
-    xs: Vec<f64>,
-    ys: Vec<f64>,
-}
-
-/// Number of corners that are mapped at once: their boxes fit into the vector registers.
-const LANES: usize = 4;
-
-impl Corners {
-    /// Adds the mapped corners of an outline; `None` if it has curves.
-    fn with(mut self, start: DVec2, pieces: &[Piece], map: &DAffine2) -> Option<Self> {
-        self.add(map.transform_point2(start));
-        for piece in pieces {
-            let Piece::Line(end) = *piece else {
-                return None;
-            };
-            self.add(map.transform_point2(end));
-        }
-        Some(self)
-    }
-
-    fn add(&mut self, corner: DVec2) {
-        // A line that continues from the last corner adds no new start.
-        if self.xs.last() != Some(&corner.x) || self.ys.last() != Some(&corner.y) {
-            self.xs.push(corner.x);
-            self.ys.push(corner.y);
-        }
-    }
-
-    /// Extends a box by the images of all corners under a map.
-    fn add_to(&self, bounds: &mut Bounds, map: &DAffine2) {
-        let [x, y] = [map.matrix2.row(0), map.matrix2.row(1)];
-        let mut wide = [[f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]];
-        let mut high = wide;
-        let (xs, ys) = (self.xs.as_chunks(), self.ys.as_chunks());
-        for (xs, ys) in xs.0.iter().zip(ys.0) {
-            stretch(&mut wide, xs, ys, x);
-            stretch(&mut high, xs, ys, y);
-        }
-        let lanes = if xs.0.is_empty() { 0 } else { LANES };
-        for lane in 0..lanes {
-            for [x, y] in [0, 1].map(|end| [wide[end][lane], high[end][lane]]) {
-                bounds.add(map.translation + DVec2::new(x, y));
-            }
-        }
-        for (&x, &y) in xs.1.iter().zip(ys.1) {
-            bounds.add(map.transform_point2(DVec2::new(x, y)));
-        }
-    }
-}
-
-/// Extends a range by one coordinate of mapped corners.
-#[inline]
-fn stretch(range: &mut [[f64; LANES]; 2], xs: &[f64; LANES], ys: &[f64; LANES], row: DVec2) {
-    let [low, high] = range;
-    for lane in 0..LANES {
-        let value = row.x * xs[lane] + row.y * ys[lane];
-        // Each comparison of this form compiles to a single instruction.
-        low[lane] = if value < low[lane] { value } else { low[lane] };
-        high[lane] = if value > high[lane] {
-            value
-        } else {
-            high[lane]
-        };
-    }
 }

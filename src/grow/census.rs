@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::Direction;
+use crate::geometry::{Direction, Frame};
 use crate::graph::{Chain, Graph, Instance, Replacement};
 
 use super::Subtree;
@@ -62,7 +62,7 @@ pub(crate) struct Census {
 impl Census {
     /// Counts the elements of `steps` steps, where elements shorter than `shortest` are not replaced. `None`
     /// if the graph does not determine the descendants of elements, or if there are too many kinds.
-    pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Option<Self> {
+    pub(crate) fn of<F: Frame>(graph: &Graph<F>, steps: u32, shortest: f64) -> Option<Self> {
         let tells = graph.is_plain()
             && !graph.counts_index()
             && graph.roots.elements.is_empty()
@@ -131,7 +131,7 @@ impl Census {
 
     /// Counts the descendants of all kinds, from the last step backwards, and returns the number of elements
     /// of the largest fractal.
-    fn count_up(&mut self, graph: &Graph, start: &Chain) -> u128 {
+    fn count_up<F: Frame>(&mut self, graph: &Graph<F>, start: &Chain<F>) -> u128 {
         let mut largest = 0;
         for step in (0..self.steps.len()).rev() {
             let (above, below) = self.steps.split_at_mut(step + 1);
@@ -168,7 +168,7 @@ impl Census {
 
     /// Returns the number of descendants, in its own fractal at the last step, of an element that can be
     /// replaced.
-    pub(super) fn becomes(&self, subtree: &Subtree) -> u128 {
+    pub(super) fn becomes<F: Frame>(&self, subtree: &Subtree<F>) -> u128 {
         let length = if self.shortest > 0.0 {
             subtree.frame.stretch()
         } else {
@@ -202,7 +202,7 @@ fn rounded(length: f64) -> u64 {
 }
 
 /// Returns the key and the length of an instance in the place of an element of a kind.
-fn child(parent: &Kind, instance: &Instance) -> (Key, f64) {
+fn child<F: Frame>(parent: &Kind, instance: &Instance<F>) -> (Key, f64) {
     let length = parent.length * instance.frame.stretch();
     let key = Key {
         object: instance.object,
@@ -212,7 +212,7 @@ fn child(parent: &Kind, instance: &Instance) -> (Key, f64) {
     (key, length)
 }
 
-fn add(standing: &mut Standing, parent: &Kind, instance: &Instance) {
+fn add<F: Frame>(standing: &mut Standing, parent: &Kind, instance: &Instance<F>) {
     let (key, length) = child(parent, instance);
     let kind = standing.entry(key).or_insert(Kind {
         object: key.object,
@@ -226,7 +226,7 @@ fn add(standing: &mut Standing, parent: &Kind, instance: &Instance) {
 }
 
 /// Returns the number of descendants of a chain in the place of an element of a kind.
-fn sum(standing: &Standing, parent: &Kind, chain: &Chain) -> u128 {
+fn sum<F: Frame>(standing: &Standing, parent: &Kind, chain: &Chain<F>) -> u128 {
     let children = chain.instances.iter().map(|instance| {
         let (key, _) = child(parent, instance);
         standing.get(&key).map_or(0, |kind| kind.becomes)

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame};
+use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Replacement, Seed};
 
 use super::start::{Standing, Start, StartChain};
@@ -24,11 +24,11 @@ const TURNS: f64 = 1e6;
 
 /// Seeded fractal with all its descendant fractals.
 #[derive(Clone, Copy, Debug)]
-pub struct Colony<'g> {
-    graph: &'g Graph,
+pub struct Colony<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
     /// Index of the object that seeded it, and of the seed in its production.
     seed: [usize; 2],
-    standing: Standing,
+    standing: Standing<F>,
     born: u32,
     steps: u32,
 }
@@ -63,9 +63,9 @@ impl Taken {
     }
 }
 
-impl<'g> Colony<'g> {
+impl<'g, F: Frame> Colony<'g, F> {
     /// Creates the colony of a fractal in approximant `steps`; `None` unless a fixed production seeds it.
-    pub(super) fn of(graph: &'g Graph, start: &Start<'g>, steps: u32) -> Option<Self> {
+    pub(super) fn of(graph: &'g Graph<F>, start: &Start<'g, F>, steps: u32) -> Option<Self> {
         let StartChain::Fixed { seed, .. } = start.chain else {
             return None;
         };
@@ -79,7 +79,7 @@ impl<'g> Colony<'g> {
     }
 
     /// Returns the frame of the element that seeded it.
-    pub(crate) fn frame(&self) -> Frame {
+    pub(crate) fn frame(&self) -> F {
         self.standing.frame
     }
 
@@ -88,19 +88,12 @@ impl<'g> Colony<'g> {
         self.born
     }
 
-    /// Returns the colony with the map of its frame replaced.
-    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
-        let mut moved = *self;
-        moved.standing.frame = Frame::new(map, self.standing.frame.direction());
-        moved
-    }
-
     /// Visits the elements of the first fractal, or of the whole colony.
     ///
     /// # Errors
     ///
     /// Returns the errors of [`walk`](super::walk()).
-    pub(crate) fn walk<V: Visitor>(
+    pub(crate) fn walk<V: Visitor<F>>(
         &self,
         is_whole: bool,
         visitor: &mut V,
@@ -121,7 +114,16 @@ impl<'g> Colony<'g> {
     }
 }
 
-fn seed_of(graph: &Graph, [object, number]: [usize; 2]) -> Option<&Seed> {
+impl Colony<'_> {
+    /// Returns the colony with the map of its frame replaced.
+    pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
+        let mut moved = *self;
+        moved.standing.frame = Frame2::new(map, self.standing.frame.direction());
+        moved
+    }
+}
+
+fn seed_of<F: Frame>(graph: &Graph<F>, [object, number]: [usize; 2]) -> Option<&Seed<F>> {
     match &graph.objects()[object].replacement {
         Replacement::Fixed(production) => production.seeds.get(number),
         _ => None,
@@ -133,7 +135,7 @@ fn seed_of(graph: &Graph, [object, number]: [usize; 2]) -> Option<&Seed> {
 pub(crate) struct ColonyKind {
     seed: [usize; 2],
     /// Frame of the element that seeded the first one found.
-    pub(crate) frame: Frame,
+    pub(crate) frame: Frame2,
     born: u32,
     steps: u32,
     /// Number of colonies of the kind.
@@ -236,7 +238,7 @@ impl ColonyKinds {
                 add(&mut next, from, &production.body);
                 for (number, seed) in production.seeds.iter().enumerate() {
                     add(&mut next, from, &seed.chain);
-                    let frame = Frame::new(DAffine2::from_mat2(linear), direction);
+                    let frame = Frame2::new(DAffine2::from_mat2(linear), direction);
                     let sown = ColonyKind {
                         seed: [object, number],
                         frame,
@@ -283,7 +285,7 @@ impl ColonyKinds {
         self.find(&(colony.seed, colony.born, frame.direction()), &frame)
     }
 
-    fn find(&self, key: &Key, frame: &Frame) -> Option<usize> {
+    fn find(&self, key: &Key, frame: &Frame2) -> Option<usize> {
         let length = frame.stretch();
         let mut alike = self.numbers.get(key)?.iter().copied();
         alike.find(|&number| {
@@ -345,10 +347,6 @@ fn turned(map: &DAffine2, symmetries: &[DAffine2]) -> DAffine2 {
 fn turn(linear: &DMat2) -> [i64; 4] {
     let unit = *linear * stretch(linear).recip();
     unit.to_cols_array().map(|part| round(part * TURNS))
-}
-
-fn stretch(linear: &DMat2) -> f64 {
-    crate::geometry::stretch(linear)
 }
 
 #[expect(

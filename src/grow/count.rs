@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::num::NonZero;
 
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, DVec2, Frame, Outline};
 use crate::graph::Graph;
 
 use super::{Element, FractalInfo, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
@@ -13,7 +13,7 @@ const MANY: u64 = 1 << 16;
 
 /// Result of [`count`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Counted {
+pub struct Counted<P = DVec2> {
     /// Numbers of elements and of fractals.
     pub walked: Walked,
     /// Number of elements that are replaced in the next step.
@@ -21,7 +21,7 @@ pub struct Counted {
     /// Sum of |p1 − p0| over all elements.
     pub length: f64,
     /// Bounding box of the outlines, without strokes; empty if nothing is visible.
-    pub bounds: Bounds,
+    pub bounds: Bounds<P>,
 }
 
 /// Counts the elements of an approximant and computes its bounding box, on several threads.
@@ -32,11 +32,11 @@ pub struct Counted {
 /// # Errors
 ///
 /// Returns an error if the walk ends early.
-pub fn count(
-    graph: &Graph,
+pub fn count<F: Frame>(
+    graph: &Graph<F>,
     growth: &Growth<'_>,
     threads: NonZero<usize>,
-) -> Result<Counted, WalkError<Infallible>> {
+) -> Result<Counted<F::Point>, WalkError<Infallible>> {
     let none = Counter {
         graph,
         fertile: 0,
@@ -67,15 +67,22 @@ pub fn count(
 }
 
 /// Visitor that counts elements and extends a box.
-#[derive(Clone, Copy)]
-struct Counter<'g> {
-    graph: &'g Graph,
+struct Counter<'g, F: Frame> {
+    graph: &'g Graph<F>,
     fertile: u64,
     length: f64,
-    bounds: Bounds,
+    bounds: Bounds<F::Point>,
 }
 
-impl Visitor for Counter<'_> {
+impl<F: Frame> Clone for Counter<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: Frame> Copy for Counter<'_, F> {}
+
+impl<F: Frame> Visitor<F> for Counter<'_, F> {
     type Error = Infallible;
 
     fn takes_runs(&self) -> bool {
@@ -86,18 +93,16 @@ impl Visitor for Counter<'_> {
         Ok(())
     }
 
-    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+    fn element(&mut self, element: &Element<F>) -> Result<(), Infallible> {
         self.fertile += u64::from(element.fertile);
         self.length += element.frame.length();
-        let object = &self.graph.objects()[element.object];
-        if object.visible {
-            let base_element = &self.graph.base_elements()[object.base_element];
+        if let Some(base_element) = self.graph.drawn(element.object) {
             base_element.add_to(&mut self.bounds, &element.frame, 0.0);
         }
         Ok(())
     }
 
-    fn run(&mut self, run: &Run<'_>) -> Result<(), Infallible> {
+    fn run(&mut self, run: &Run<'_, F>) -> Result<(), Infallible> {
         self.fertile += run.fertile();
         self.length += run.length();
         run.add_to(&mut self.bounds);

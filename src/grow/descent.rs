@@ -1,6 +1,6 @@
 //! Depth-first traversal of one fractal at one step.
 
-use crate::geometry::{Direction, Frame};
+use crate::geometry::{Direction, Frame, Frame2, Outline};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
 use crate::instancing::Appearance;
 
@@ -13,8 +13,8 @@ use super::{Enter, Subtree};
 
 /// Element that a descent has reached.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub(super) standing: Standing,
+pub(super) struct Found<F: Frame = Frame2> {
+    pub(super) standing: Standing<F>,
     pub(super) object: usize,
     /// Step of its birth.
     pub(super) level: u32,
@@ -26,10 +26,10 @@ pub(super) struct Found {
 }
 
 /// Block that a descent has reached in place of its elements.
-pub(super) struct FoundRun<'b> {
-    pub(super) block: &'b Block,
+pub(super) struct FoundRun<'b, F: Frame> {
+    pub(super) block: &'b Block<F>,
     pub(super) object: usize,
-    pub(super) frame: Frame,
+    pub(super) frame: F,
     pub(super) length: f64,
     pub(super) appearance: Appearance,
     /// Step of birth of the object that the block replaces.
@@ -42,9 +42,9 @@ pub(super) struct FoundRun<'b> {
 
 /// Element that a descent has reached and whose subtree it leaves to another descent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FoundSubtree {
+pub(super) struct FoundSubtree<F: Frame> {
     /// Root of the subtree; `joined` is whether the preceding element ends where it starts.
-    pub(super) root: Found,
+    pub(super) root: Found<F>,
     /// Upper bound of its number of descendants.
     pub(super) size: u64,
     /// Whether its end point is also that of every replaced ancestor of which it is the last part.
@@ -54,14 +54,14 @@ pub(super) struct FoundSubtree {
 }
 
 /// Next position of a descent.
-pub(super) enum Next<'b> {
+pub(super) enum Next<'b, F: Frame> {
     /// Element of the approximant.
-    Element(Found),
+    Element(Found<F>),
     /// Consecutive elements, if the descent stops at blocks.
-    Run(FoundRun<'b>),
+    Run(FoundRun<'b, F>),
     /// Element to be replaced, if the descent stops at subtrees. The descent assumes that its last
     /// descendant reaches its end point.
-    Subtree(FoundSubtree),
+    Subtree(FoundSubtree<F>),
     /// Many elements were replaced since the last result: an opportunity to stop.
     Pause,
     /// End of the fractal.
@@ -70,10 +70,10 @@ pub(super) enum Next<'b> {
 
 /// Condition under which a descent does not replace an element.
 #[derive(Clone, Copy)]
-pub(super) enum Stop<'b> {
+pub(super) enum Stop<'b, F: Frame> {
     Nowhere,
     /// The element is replaced by a block.
-    AtBlocks(&'b Blocks),
+    AtBlocks(&'b Blocks<F>),
     /// The number of descendants is known to be small.
     AtSubtrees(&'b Sizes),
 }
@@ -83,16 +83,16 @@ pub(super) const PATIENCE: u64 = 1 << 12;
 
 /// Source of the chain of a stack entry.
 #[derive(Clone, Copy)]
-enum Source<'g> {
+enum Source<'g, F: Frame> {
     Start,
-    Fixed(&'g Chain),
+    Fixed(&'g Chain<F>),
     /// Chain in the pool of evaluated productions.
     Pooled(usize),
 }
 
-struct Entry<'g> {
-    standing: Standing,
-    source: Source<'g>,
+struct Entry<'g, F: Frame> {
+    standing: Standing<F>,
+    source: Source<'g, F>,
     reversed: bool,
     /// Number of instances visited.
     next: usize,
@@ -103,11 +103,11 @@ struct Entry<'g> {
 }
 
 /// Depth-first traversal of one fractal of approximant `target`.
-pub(super) struct Descent<'g> {
-    graph: &'g Graph,
+pub(super) struct Descent<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
     born: u32,
     target: u32,
-    stack: Vec<Entry<'g>>,
+    stack: Vec<Entry<'g, F>>,
     /// Whether the preceding element ends where the next one starts.
     joined: bool,
     ranks: Ranks,
@@ -116,9 +116,9 @@ pub(super) struct Descent<'g> {
     pub(super) census: Option<&'g Census>,
     /// Number of elements of the fractal so far.
     pub(super) index: u128,
-    pool: Vec<Production>,
+    pool: Vec<Production<F>>,
     free: Vec<usize>,
-    evaluator: Evaluator,
+    evaluator: Evaluator<F>,
     /// Number of visits since the caller last reset it.
     pub(super) visited: u64,
 }
@@ -153,8 +153,8 @@ impl Ranks {
     }
 }
 
-impl<'g> Descent<'g> {
-    pub(super) fn new(graph: &'g Graph, start: &Start<'g>, target: u32) -> Self {
+impl<'g, F: Frame> Descent<'g, F> {
+    pub(super) fn new(graph: &'g Graph<F>, start: &Start<'g, F>, target: u32) -> Self {
         let chain = start.chain();
         let levels = if graph.counts_index() {
             (target - start.born) as usize + 1
@@ -189,7 +189,12 @@ impl<'g> Descent<'g> {
 
     /// Creates a descent over the expansion of an object in a number of steps, alone in the unit frame, as if
     /// a preceding element ended where the object starts.
-    pub(super) fn below(graph: &'g Graph, object: usize, steps: u32, direction: Direction) -> Self {
+    pub(super) fn below(
+        graph: &'g Graph<F>,
+        object: usize,
+        steps: u32,
+        direction: Direction,
+    ) -> Self {
         let mut start = Start::initiator(graph, steps, 0);
         start.standing.frame = start.standing.frame.with_direction(direction);
         let mut descent = Self::new(graph, &start, steps);
@@ -203,7 +208,7 @@ impl<'g> Descent<'g> {
     }
 
     /// Creates a descent over subtrees that other walks have reached; initially it has none.
-    pub(super) fn over_subtrees(graph: &'g Graph, target: u32) -> Self {
+    pub(super) fn over_subtrees(graph: &'g Graph<F>, target: u32) -> Self {
         let mut descent = Self::new(graph, &Start::initiator(graph, target, 0), target);
         descent.stack.clear();
         descent
@@ -216,7 +221,7 @@ impl<'g> Descent<'g> {
 
     /// Takes over an element from another descent, and returns its rank: the other descent's, if a census
     /// counts the elements that are not visited.
-    pub(super) fn come_to(&mut self, found: &Found) -> u128 {
+    pub(super) fn come_to(&mut self, found: &Found<F>) -> u128 {
         self.index = match self.census {
             Some(_) => found.index,
             None => self.index + 1,
@@ -228,11 +233,11 @@ impl<'g> Descent<'g> {
     /// is whether the preceding element ends where it starts.
     pub(super) fn enter<'b>(
         &mut self,
-        subtree: &FoundSubtree,
+        subtree: &FoundSubtree<F>,
         born: u32,
         joined: bool,
-        blocks: Option<&'b Blocks>,
-    ) -> Result<Option<FoundRun<'b>>, CompileError> {
+        blocks: Option<&'b Blocks<F>>,
+    ) -> Result<Option<FoundRun<'b, F>>, CompileError> {
         let Found {
             standing,
             object,
@@ -258,12 +263,12 @@ impl<'g> Descent<'g> {
     #[inline]
     fn run<'b>(
         &mut self,
-        standing: &Standing,
+        standing: &Standing<F>,
         object: usize,
         level: u32,
         meets_end: bool,
-        blocks: &'b Blocks,
-    ) -> Option<FoundRun<'b>> {
+        blocks: &'b Blocks<F>,
+    ) -> Option<FoundRun<'b, F>> {
         let block = blocks.get(self.graph, object, self.target - level, &standing.frame)?;
         let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
         self.visited += block.len();
@@ -291,10 +296,10 @@ impl<'g> Descent<'g> {
     #[inline]
     pub(super) fn next<'b>(
         &mut self,
-        start: &Start<'g>,
-        mut enter: impl FnMut(&Subtree) -> Enter,
-        stop: Stop<'b>,
-    ) -> Result<Next<'b>, CompileError> {
+        start: &Start<'g, F>,
+        mut enter: impl FnMut(&Subtree<F>) -> Enter,
+        stop: Stop<'b, F>,
+    ) -> Result<Next<'b, F>, CompileError> {
         loop {
             if self.visited >= PATIENCE {
                 return Ok(Next::Pause);
@@ -440,7 +445,7 @@ impl<'g> Descent<'g> {
     /// Enters the production that replaces an element.
     fn push(
         &mut self,
-        standing: Standing,
+        standing: Standing<F>,
         object: usize,
         level: u32,
         rank: u64,
@@ -478,7 +483,7 @@ impl<'g> Descent<'g> {
     /// Computes the production of an element into the pool, and returns its number there.
     fn evaluate(
         &mut self,
-        standing: &Standing,
+        standing: &Standing<F>,
         object: usize,
         level: u32,
         rank: u64,
@@ -499,10 +504,10 @@ impl<'g> Descent<'g> {
     }
 
     /// Returns the fractals that an element of approximant `target` seeds when it is replaced.
-    pub(super) fn seeds(&mut self, found: &Found) -> Result<Vec<Start<'g>>, CompileError> {
+    pub(super) fn seeds(&mut self, found: &Found<F>) -> Result<Vec<Start<'g, F>>, CompileError> {
         let standing = found.standing;
         let graph = self.graph;
-        let start = |seed: &Seed, chain| Start {
+        let start = |seed: &Seed<F>, chain| Start {
             chain,
             standing: seed_placement(graph, &standing, seed.placement),
             born: found.level + 1,

@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 use std::ops::RangeInclusive;
 
-use crate::graph::{Graph, Replacement};
+use crate::geometry::{Frame, Frame2};
+use crate::graph::Graph;
 
 use super::colony::{Colony, Taken};
 use super::descent::{Descent, Found, Next, Stop};
@@ -12,10 +13,9 @@ use super::tally::Tally;
 use super::walk::{Fractals, Sink};
 use super::{Element, Enter, FractalInfo, Growth, Subtree, WalkError};
 
-impl Element {
+impl<F: Frame> Element<F> {
     #[inline]
-    pub(super) fn found(graph: &Graph, found: &Found) -> Self {
-        let object = &graph.objects()[found.object];
+    pub(super) fn found(graph: &Graph<F>, found: &Found<F>) -> Self {
         Self {
             frame: found.standing.frame,
             length: found.standing.length,
@@ -23,7 +23,7 @@ impl Element {
             index: found.index,
             object: found.object,
             born: found.level,
-            fertile: !matches!(object.replacement, Replacement::Kept),
+            fertile: graph.is_fertile(found.object),
             joined: found.joined,
         }
     }
@@ -33,29 +33,29 @@ impl Element {
 ///
 /// Memory is proportional to the number of steps. After an error the iterator is exhausted.
 #[must_use = "iterators are lazy"]
-pub struct Elements<'g> {
-    graph: &'g Graph,
-    fractals: Fractals<'g>,
+pub struct Elements<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
+    fractals: Fractals<'g, F>,
     steps: u32,
-    current: Option<Current<'g>>,
+    current: Option<Current<'g, F>>,
     counts: Counts<'g>,
     has_ended: bool,
 }
 
 /// The fractal whose elements are being visited.
-struct Current<'g> {
+struct Current<'g, F: Frame> {
     fractal: FractalInfo,
-    start: Start<'g>,
-    descent: Descent<'g>,
+    start: Start<'g, F>,
+    descent: Descent<'g, F>,
 }
 
-impl<'g> Elements<'g> {
+impl<'g, F: Frame> Elements<'g, F> {
     /// Returns the elements of approximant `growth.steps`.
     ///
     /// # Panics
     ///
     /// If the graph was compiled for fewer steps.
-    pub fn of(graph: &'g Graph, growth: &Growth<'g>) -> Self {
+    pub fn of(graph: &'g Graph<F>, growth: &Growth<'g>) -> Self {
         let first = Start::initiator(graph, growth.steps, growth.seed);
         Self {
             graph,
@@ -67,7 +67,7 @@ impl<'g> Elements<'g> {
         }
     }
 
-    fn advance(&mut self) -> Result<Option<(FractalInfo, Element)>, WalkError<Infallible>> {
+    fn advance(&mut self) -> Result<Option<(FractalInfo, Element<F>)>, WalkError<Infallible>> {
         loop {
             let current = match &mut self.current {
                 Some(current) => current,
@@ -88,7 +88,7 @@ impl<'g> Elements<'g> {
                 descent,
             } = current;
             let found = descent.next(start, |_| Enter::Replace, Stop::Nowhere)?;
-            self.counts.visit(std::mem::take(&mut descent.visited))?;
+            self.counts.0.visit(std::mem::take(&mut descent.visited))?;
             match found {
                 Next::Element(found) => {
                     self.counts.0.count(1)?;
@@ -106,8 +106,8 @@ impl<'g> Elements<'g> {
     }
 }
 
-impl Iterator for Elements<'_> {
-    type Item = Result<(FractalInfo, Element), WalkError<Infallible>>;
+impl<F: Frame> Iterator for Elements<'_, F> {
+    type Item = Result<(FractalInfo, Element<F>), WalkError<Infallible>>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.has_ended {
@@ -119,15 +119,15 @@ impl Iterator for Elements<'_> {
     }
 }
 
-impl std::iter::FusedIterator for Elements<'_> {}
+impl<F: Frame> std::iter::FusedIterator for Elements<'_, F> {}
 
 /// A sink that counts, for limits and cancelling.
 struct Counts<'g>(Tally<'g>);
 
-impl<'g> Sink<'g> for Counts<'_> {
+impl<'g, F: Frame> Sink<'g, F> for Counts<'_> {
     type Error = WalkError<Infallible>;
 
-    fn enter(&mut self, _: &Subtree) -> Enter {
+    fn enter(&mut self, _: &Subtree<F>) -> Enter {
         Enter::Replace
     }
 
@@ -139,7 +139,7 @@ impl<'g> Sink<'g> for Counts<'_> {
         Ok(())
     }
 
-    fn found(&mut self, _: Next<'_>) -> Result<(), Self::Error> {
+    fn found(&mut self, _: Next<'_, F>) -> Result<(), Self::Error> {
         Ok(())
     }
 
@@ -147,11 +147,11 @@ impl<'g> Sink<'g> for Counts<'_> {
         Ok(())
     }
 
-    fn takes(&self, _: &Colony<'_>) -> Taken {
+    fn takes(&self, _: &Colony<'_, F>) -> Taken {
         Taken::Nothing
     }
 
-    fn colony(&mut self, _: Colony<'g>, _: Taken) -> Result<(), Self::Error> {
+    fn colony(&mut self, _: Colony<'g, F>, _: Taken) -> Result<(), Self::Error> {
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Productions that are computed for each element.
 
-use crate::geometry::DVec2;
-use crate::graph::{CompileError, Evaluated, Graph, Production, Replacement};
+use crate::geometry::{Frame, Frame2};
+use crate::graph::{Buffers, CompileError, Graph, Production, Replacement};
 use crate::rule;
 
 use super::start::Standing;
@@ -20,7 +20,7 @@ pub(crate) struct ReplacementContext {
 impl ReplacementContext {
     /// Returns the values that a rule's expressions see of the element.
     #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
-    pub(crate) fn seen(self, standing: &Standing) -> rule::ElementContext {
+    pub(crate) fn seen<F: Frame>(self, standing: &Standing<F>) -> rule::ElementContext {
         rule::ElementContext {
             index: self.rank.max(1) as f64,
             age: f64::from(self.level - self.born),
@@ -31,48 +31,29 @@ impl ReplacementContext {
 }
 
 /// Evaluator of productions, with buffers that are reused.
-#[derive(Default)]
-pub(crate) struct Evaluator {
-    slots: Vec<f64>,
-    points: Vec<DVec2>,
+pub(crate) struct Evaluator<F: Frame = Frame2>(Buffers<F>);
+
+impl<F: Frame> Default for Evaluator<F> {
+    fn default() -> Self {
+        Self(Buffers::default())
+    }
 }
 
-impl Evaluator {
+impl<F: Frame> Evaluator<F> {
     /// Computes the production of an object that is [`Replacement::Evaluated`], and overwrites `production`.
     pub(crate) fn evaluate(
         &mut self,
-        graph: &Graph,
-        standing: &Standing,
+        graph: &Graph<F>,
+        standing: &Standing<F>,
         object: usize,
         moment: ReplacementContext,
-        production: &mut Production,
+        production: &mut Production<F>,
     ) -> Result<(), CompileError> {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");
         };
-        let rule = match graph.evaluated() {
-            Evaluated::Rule(rule) => rule,
-            Evaluated::Words(words) => {
-                words.evaluate(alternatives, standing.path, production);
-                return Ok(());
-            }
-        };
-        let moment = moment.seen(standing);
-        let alternative = if let [only] = &alternatives[..] {
-            only
-        } else {
-            let generator = rule.selection().select(&moment, standing.path);
-            alternatives
-                .iter()
-                .find(|alternative| alternative.generator == generator)
-                .unwrap_or_else(|| unreachable!("every candidate has its alternative"))
-        };
-        let generator = &rule.generators()[alternative.generator];
-        generator.evaluate(&moment, standing.path, &mut self.slots, &mut self.points);
-        if !self.points.iter().all(|point| point.is_finite()) {
-            return Err(CompileError::not_finite(generator.name(), &moment));
-        }
-        production.set(generator.parts(), &self.points, &alternative.objects);
-        Ok(())
+        let (path, context) = (standing.path, moment.seen(standing));
+        let source = graph.source();
+        source.evaluate(alternatives, path, &context, &mut self.0, production)
     }
 }

@@ -2,8 +2,8 @@
 
 use std::convert::Infallible;
 
-use crate::geometry::Bounds;
-use crate::graph::Graph;
+use crate::geometry::{Bounds, Frame, Frame2, Outline};
+use crate::graph::{Bounded, Graph};
 
 use super::{Element, Enter, FractalInfo, Growth, Reaches, Visitor, WalkError, search, walk};
 
@@ -18,7 +18,10 @@ mod tests;
 /// # Errors
 ///
 /// Returns an error if the walk ends early.
-pub fn extent(graph: &Graph, growth: &Growth<'_>) -> Result<Bounds, WalkError<Infallible>> {
+pub fn extent<F: Bounded>(
+    graph: &Graph<F>,
+    growth: &Growth<'_>,
+) -> Result<Bounds<F::Point>, WalkError<Infallible>> {
     let reaches = Reaches {
         all: &graph.reaches(|object| graph.outline_radius(object)),
         pads: &vec![0.0; graph.objects().len()],
@@ -34,22 +37,20 @@ pub fn extent(graph: &Graph, growth: &Growth<'_>) -> Result<Bounds, WalkError<In
     Ok(extent.bounds)
 }
 
-struct Extent<'g> {
-    graph: &'g Graph,
-    bounds: Bounds,
+struct Extent<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
+    bounds: Bounds<F::Point>,
 }
 
-impl Visitor for Extent<'_> {
+impl<F: Frame> Visitor<F> for Extent<'_, F> {
     type Error = Infallible;
 
     fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
-    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        let object = &self.graph.objects()[element.object];
-        if object.visible {
-            let base_element = &self.graph.base_elements()[object.base_element];
+    fn element(&mut self, element: &Element<F>) -> Result<(), Infallible> {
+        if let Some(base_element) = self.graph.drawn(element.object) {
             base_element.add_to(&mut self.bounds, &element.frame, 0.0);
         }
         Ok(())

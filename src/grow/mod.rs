@@ -28,6 +28,9 @@ mod start;
 mod tally;
 mod walk;
 
+#[cfg(test)]
+mod tests;
+
 pub use block::{LineElement, Run};
 pub use colony::{Colony, Taken};
 pub use count::{Counted, count};
@@ -48,15 +51,15 @@ pub(crate) use start::Standing;
 
 use std::ops::{Range, RangeInclusive};
 
-use crate::geometry::Frame;
+use crate::geometry::{Frame, Frame2};
 use crate::graph::CompileError;
 use crate::instancing::Appearance;
 
 /// Element of an approximant.
 #[derive(Clone, Copy, Debug)]
-pub struct Element {
+pub struct Element<F: Frame = Frame2> {
     /// Frame, in the graph's coordinates.
-    pub frame: Frame,
+    pub frame: F,
     /// Length as a multiple of that of the initiator's element from which it descends.
     pub length: f64,
     /// Appearance composed of its own and those of its ancestors.
@@ -74,10 +77,10 @@ pub struct Element {
     pub joined: bool,
 }
 
-impl Element {
+impl<F: Frame> Element<F> {
     /// Returns the element as the root of a subtree.
     #[must_use]
-    pub fn subtree(&self) -> Subtree {
+    pub fn subtree(&self) -> Subtree<F> {
         Subtree {
             frame: self.frame,
             object: self.object,
@@ -100,9 +103,9 @@ pub struct FractalInfo {
 
 /// Element that a walk is about to replace, as the root of a subtree.
 #[derive(Clone, Copy, Debug)]
-pub struct Subtree {
+pub struct Subtree<F: Frame = Frame2> {
     /// Frame, in the graph's coordinates.
-    pub frame: Frame,
+    pub frame: F,
     /// Number of its object.
     pub object: usize,
     /// Step of its birth: 0 for the initiator's elements.
@@ -121,7 +124,7 @@ pub enum Enter {
 }
 
 /// Receiver of the elements of a walk.
-pub trait Visitor {
+pub trait Visitor<F: Frame = Frame2> {
     /// Error that ends a walk.
     type Error;
 
@@ -145,7 +148,7 @@ pub trait Visitor {
     /// Not called if the walk counts indices ([`Graph::counts_index`](crate::graph::Graph)), because elements
     /// that are not visited could not be counted.
     #[inline]
-    fn enter(&mut self, _: &Subtree) -> Enter {
+    fn enter(&mut self, _: &Subtree<F>) -> Enter {
         Enter::Replace
     }
 
@@ -161,7 +164,7 @@ pub trait Visitor {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn element(&mut self, element: &Element) -> Result<(), Self::Error>;
+    fn element(&mut self, element: &Element<F>) -> Result<(), Self::Error>;
 
     /// Returns whether the visitor accepts runs of elements whose frames are fixed. [`Visitor::enter`] is not
     /// called for the elements of a run, so it may keep elements only for being shorter than
@@ -180,7 +183,7 @@ pub trait Visitor {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn run(&mut self, run: &Run<'_>) -> Result<(), Self::Error> {
+    fn run(&mut self, run: &Run<'_, F>) -> Result<(), Self::Error> {
         run.elements()
             .try_for_each(|element| self.element(&element))
     }
@@ -193,7 +196,7 @@ pub trait Visitor {
 
     /// Returns the part of a colony that the visitor takes as a whole, in [`Visitor::colony`]. For this part
     /// the methods for elements and fractals are not called. Only called for seeds of fixed productions.
-    fn takes(&self, _: &Colony<'_>) -> Taken {
+    fn takes(&self, _: &Colony<'_, F>) -> Taken {
         Taken::Nothing
     }
 
@@ -202,7 +205,7 @@ pub trait Visitor {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn colony(&mut self, _: &Colony<'_>, _: Taken) -> Result<(), Self::Error> {
+    fn colony(&mut self, _: &Colony<'_, F>, _: Taken) -> Result<(), Self::Error> {
         Ok(())
     }
 

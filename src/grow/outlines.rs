@@ -1,6 +1,6 @@
 //! Outlines of an approximant as shapes.
 
-use crate::geometry::{DVec2, Frame};
+use crate::geometry::{DVec2, Frame2};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
@@ -17,7 +17,7 @@ use super::{Element, FractalInfo, Growth, Visitor, WalkError, walk};
 pub(crate) fn outlines(
     graph: &Graph,
     growth: &Growth<'_>,
-    frame: Frame,
+    frame: Frame2,
     fills: bool,
     most: usize,
 ) -> Result<Vec<BaseElement>, WalkError<OutlineError>> {
@@ -47,7 +47,7 @@ pub(crate) enum OutlineError {
 
 struct Outliner<'g> {
     graph: &'g Graph,
-    frame: Frame,
+    frame: Frame2,
     fills: bool,
     /// Number of pieces that may still be added.
     left: usize,
@@ -174,7 +174,7 @@ mod tests {
         let (model, _) = document.resolve(&[]).unwrap();
         let graph = model.compile(steps).unwrap();
         let growth = Growth::steps(steps);
-        outlines(&graph, &growth, Frame::UNIT, fills, 10_000).unwrap()
+        outlines(&graph, &growth, Frame2::UNIT, fills, 10_000).unwrap()
     }
 
     #[test]

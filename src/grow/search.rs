@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Production, Replacement};
 
 use super::evaluator::{Evaluator, ReplacementContext};
@@ -25,8 +25,8 @@ pub(crate) struct Reaches<'a> {
 }
 
 /// Element to be replaced.
-struct Node {
-    standing: Standing,
+struct Node<F: Frame> {
+    standing: Standing<F>,
     object: usize,
     /// Step of birth of its fractal.
     born: u32,
@@ -35,36 +35,36 @@ struct Node {
     farthest: f64,
 }
 
-impl PartialEq for Node {
+impl<F: Frame> PartialEq for Node<F> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Node {}
+impl<F: Frame> Eq for Node<F> {}
 
-impl PartialOrd for Node {
+impl<F: Frame> PartialOrd for Node<F> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Node {
+impl<F: Frame> Ord for Node<F> {
     fn cmp(&self, other: &Self) -> Ordering {
         self.farthest.total_cmp(&other.farthest)
     }
 }
 
-struct Search<'a, E> {
-    graph: &'a Graph,
+struct Search<'a, F: Frame, E> {
+    graph: &'a Graph<F>,
     steps: u32,
     reaches: &'a Reaches<'a>,
     enter: E,
     /// Box of the elements found so far.
-    bounds: Bounds,
+    bounds: Bounds<F::Point>,
     /// Direction in which the search maximises.
-    direction: DVec2,
-    heap: BinaryHeap<Node>,
+    direction: F::Point,
+    heap: BinaryHeap<Node<F>>,
 }
 
 /// Computes the bounding box that a walk with `enter` as its visitor's decision would find, bit by bit.
@@ -72,12 +72,12 @@ struct Search<'a, E> {
 /// `None` if the walk counts indices, if a subtree is not bounded, if a generator yields points that are not
 /// finite, if the search takes more than 2¹⁸ replacements, or if it is cancelled. The box is empty if nothing
 /// is drawn.
-pub(crate) fn search(
-    graph: &Graph,
+pub(crate) fn search<F: Frame>(
+    graph: &Graph<F>,
     growth: &Growth<'_>,
     reaches: &Reaches<'_>,
-    enter: impl Fn(&Subtree) -> Enter,
-) -> Option<Bounds> {
+    enter: impl Fn(&Subtree<F>) -> Enter,
+) -> Option<Bounds<F::Point>> {
     if graph.counts_index() || !reaches.all.iter().all(|reach| reach.is_finite()) {
         return None;
     }
@@ -87,13 +87,13 @@ pub(crate) fn search(
         reaches,
         enter,
         bounds: Bounds::EMPTY,
-        direction: DVec2::X,
+        direction: F::Point::ZERO,
         heap: BinaryHeap::new(),
     };
     let mut evaluator = Evaluator::default();
     let mut drawn = Production::default();
     let mut work = 0;
-    for direction in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+    for &direction in F::Point::AXES {
         search.direction = direction;
         search.heap.clear();
         let whole = Standing::whole(growth.seed);
@@ -129,7 +129,7 @@ pub(crate) fn search(
     Some(search.bounds)
 }
 
-impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
+impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
     /// Returns the extent, in the direction of the search, of the box found so far.
     fn found(&self) -> f64 {
         if self.bounds.is_empty() {
@@ -139,7 +139,7 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
         min.dot(self.direction).max(max.dot(self.direction))
     }
 
-    fn replace(&mut self, node: &Node, production: &Production) {
+    fn replace(&mut self, node: &Node<F>, production: &Production<F>) {
         let level = node.level + 1;
         for instance in &production.body.instances {
             let standing = node.standing.child(self.graph, instance);
@@ -155,7 +155,7 @@ impl<E: Fn(&Subtree) -> Enter> Search<'_, E> {
     }
 
     /// Adds an element: extends the box by its outline, or queues it if its subtree may extend the box.
-    fn add(&mut self, standing: Standing, object: usize, born: u32, level: u32) {
+    fn add(&mut self, standing: Standing<F>, object: usize, born: u32, level: u32) {
         // The slack covers rounding in the bound, which could exclude an element that decides the box.
         const SLACK: f64 = 1.0 + 1e-9;
         let subtree = Subtree {

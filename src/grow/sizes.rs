@@ -1,5 +1,6 @@
 //! Numbers of descendants of objects over a few steps.
 
+use crate::geometry::Frame;
 use crate::graph::{Alternative, Graph, Object, Replacement};
 use crate::saturating::whole;
 
@@ -31,12 +32,12 @@ pub(super) struct Sizes {
 
 impl Sizes {
     /// Computes the sizes of expansions that have fixed instances and at most `most` elements.
-    pub(super) fn fixed(graph: &Graph, most: u64) -> Self {
+    pub(super) fn fixed<F: Frame>(graph: &Graph<F>, most: u64) -> Self {
         Self::of(graph, most, |_, _| u64::MAX)
     }
 
     /// Computes upper bounds of the sizes of expansions that cannot exceed `most` elements.
-    pub(super) fn most(graph: &Graph, most: u64) -> Self {
+    pub(super) fn most<F: Frame>(graph: &Graph<F>, most: u64) -> Self {
         Self::of(graph, most, |alternatives, counts| {
             // Seed parts are counted as if they stayed in the fractal.
             let of = |alternative: &Alternative| sum(alternative.objects.iter().copied(), counts);
@@ -44,9 +45,13 @@ impl Sizes {
         })
     }
 
-    fn of(graph: &Graph, most: u64, evaluated: impl Fn(&[Alternative], &[u64]) -> u64) -> Self {
+    fn of<F: Frame>(
+        graph: &Graph<F>,
+        most: u64,
+        evaluated: impl Fn(&[Alternative], &[u64]) -> u64,
+    ) -> Self {
         let objects = graph.objects();
-        let count = |object: &Object, beyond: u64, now: &[u64]| match &object.replacement {
+        let count = |object: &Object<F>, beyond: u64, now: &[u64]| match &object.replacement {
             Replacement::Kept => 1,
             Replacement::Fixed(production) => {
                 let instances = production.body.instances.iter();
@@ -74,7 +79,7 @@ impl Sizes {
         let mut counts = vec![vec![1]; objects.len()];
         let mut now = vec![1; objects.len()];
         for steps in 1..=MOST_STEPS {
-            let count = |object: &Object| count(object, u64::MAX, &now);
+            let count = |object: &Object<F>| count(object, u64::MAX, &now);
             let next: Vec<_> = objects.iter().map(count).collect();
             let mut grows = false;
             for (object, &count) in next.iter().enumerate() {
@@ -103,7 +108,7 @@ impl Sizes {
 
     /// Adds the sizes of expansions of at most `most` elements in which elements shorter than `shortest` are
     /// not replaced.
-    pub(super) fn down_to(self, graph: &Graph, shortest: f64, most: u64) -> Self {
+    pub(super) fn down_to<F: Frame>(self, graph: &Graph<F>, shortest: f64, most: u64) -> Self {
         if shortest <= 0.0 || graph.objects().len() > MOST_OBJECTS {
             return self;
         }

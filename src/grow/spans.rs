@@ -10,6 +10,7 @@ use std::num::NonZero;
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
+use crate::geometry::Frame;
 use crate::graph::Graph;
 use crate::parallel::{Line, Team, with_team};
 
@@ -68,8 +69,8 @@ impl Seam {
 /// # Panics
 ///
 /// Panics if the graph was compiled for fewer steps, or if a visitor panics.
-pub fn walk_in_spans<V: Visitor + Send>(
-    graph: &Graph,
+pub fn walk_in_spans<F: Frame, V: Visitor<F> + Send>(
+    graph: &Graph<F>,
     growth: &Growth<'_>,
     threads: NonZero<usize>,
     span: Option<u64>,
@@ -107,9 +108,9 @@ pub(crate) enum Ranks<'r> {
 }
 
 /// Walks as [`walk_in_spans`] does, with a team that may have other work.
-pub(crate) fn walk_with<'w, V: Visitor + Send + 'w>(
+pub(crate) fn walk_with<'w, F: Frame, V: Visitor<F> + Send + 'w>(
     team: &Team<'w>,
-    graph: &'w Graph,
+    graph: &'w Graph<F>,
     growth: &Growth<'_>,
     division: Division<'w>,
     mut fresh: impl FnMut() -> V,
@@ -179,13 +180,13 @@ where
 }
 
 /// Item of a span.
-enum Item<'w> {
+enum Item<'w, F: Frame> {
     /// Beginning of a fractal, with the step of its birth.
     Begin(FractalInfo, u32),
-    Element(Found),
-    Subtree(FoundSubtree),
+    Element(Found<F>),
+    Subtree(FoundSubtree<F>),
     /// Part of a colony that the visitor takes.
-    Colony(Colony<'w>, Taken),
+    Colony(Colony<'w, F>, Taken),
     /// End of the fractal; the flag holds only if the preceding element ends where its subtree does.
     End(bool),
 }
@@ -201,19 +202,30 @@ struct Position {
 }
 
 /// Consecutive part of a walk.
-#[derive(Default)]
-struct Span<'w> {
+struct Span<'w, F: Frame> {
     from: Position,
     /// Position where it ends.
     to: Position,
-    items: Vec<Item<'w>>,
+    items: Vec<Item<'w, F>>,
     /// Upper bound of its number of elements, plus 1 for each subtree and each fractal that begins.
     size: u64,
     /// Number of visits above its subtrees.
     visited: u64,
 }
 
-impl<'w> Span<'w> {
+impl<F: Frame> Default for Span<'_, F> {
+    fn default() -> Self {
+        Self {
+            from: Position::default(),
+            to: Position::default(),
+            items: Vec::new(),
+            size: 0,
+            visited: 0,
+        }
+    }
+}
+
+impl<'w, F: Frame> Span<'w, F> {
     /// Restarts at the end of another span.
     fn follow(&mut self, other: &Self) {
         self.items.clear();
@@ -221,7 +233,7 @@ impl<'w> Span<'w> {
         (self.size, self.visited) = (0, 0);
     }
 
-    fn push(&mut self, item: Item<'w>, size: u64) {
+    fn push(&mut self, item: Item<'w, F>, size: u64) {
         self.items.push(item);
         self.size += size;
     }
@@ -233,11 +245,11 @@ impl<'w> Span<'w> {
 }
 
 /// Span with its visitor.
-struct Job<'w, V: Visitor> {
-    graph: &'w Graph,
-    blocks: Option<Arc<Blocks>>,
-    descent: Descent<'w>,
-    span: Span<'w>,
+struct Job<'w, F: Frame, V: Visitor<F>> {
+    graph: &'w Graph<F>,
+    blocks: Option<Arc<Blocks<F>>>,
+    descent: Descent<'w, F>,
+    span: Span<'w, F>,
     /// Range of ranks that the visitor receives, if known before.
     ranks: Option<Range<u128>>,
     visitor: V,
@@ -256,7 +268,7 @@ struct Outcome {
     joined: Option<bool>,
 }
 
-impl<V: Visitor> Job<'_, V> {
+impl<F: Frame, V: Visitor<F>> Job<'_, F, V> {
     fn run(&mut self) {
         self.outcome = self.walk();
     }
@@ -298,7 +310,7 @@ impl<V: Visitor> Job<'_, V> {
                     let run = self.descent.enter(subtree, born, joined, blocks)?;
                     run.iter().try_for_each(|run| visiting.run(run))?;
                     loop {
-                        let enter = |subtree: &Subtree| visiting.visitor.enter(subtree);
+                        let enter = |subtree: &Subtree<F>| visiting.visitor.enter(subtree);
                         match self.descent.next(&start, enter, stop)? {
                             Next::Element(found) => visiting.element(&found)?,
                             Next::Run(found) => visiting.run(&found)?,
@@ -341,7 +353,10 @@ struct Order<'v, T> {
 }
 
 impl<T> Order<'_, T> {
-    fn take<V: Visitor>(&mut self, job: &mut Job<'_, V>) -> Result<(), WalkError<V::Error>>
+    fn take<F: Frame, V: Visitor<F>>(
+        &mut self,
+        job: &mut Job<'_, F, V>,
+    ) -> Result<(), WalkError<V::Error>>
     where
         T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
     {
@@ -369,33 +384,34 @@ impl<T> Order<'_, T> {
 }
 
 /// Sink that collects a walk into spans and submits them.
-struct Spans<'t, 'w, 'v, V: Visitor, F, T> {
-    graph: &'w Graph,
+struct Spans<'t, 'w, 'v, F: Frame, V: Visitor<F>, N, T> {
+    graph: &'w Graph<F>,
     steps: u32,
     /// Approximate number of elements of a span.
     size: u64,
-    blocks: Option<Arc<Blocks>>,
+    blocks: Option<Arc<Blocks<F>>>,
     /// Visitor that decides about elements above the subtrees.
     asked: V,
-    span: Span<'w>,
+    span: Span<'w, F>,
     /// [`Seam::before`] of the remaining spans, if known from an earlier walk.
     told: &'w [u128],
     /// Census for ranks that include elements that are not visited.
     census: Option<&'w Census>,
     /// Whether a fractal has begun and not ended.
     is_open: bool,
-    line: Line<'t, 'w, Job<'w, V>>,
+    line: Line<'t, 'w, Job<'w, F, V>>,
     order: Order<'v, T>,
-    fresh: F,
+    fresh: N,
     /// Whether `take` or the work of a span has failed.
     has_failed: bool,
 }
 
-impl<'w, V, F, T> Spans<'_, 'w, '_, V, F, T>
+impl<'w, F, V, N, T> Spans<'_, 'w, '_, F, V, N, T>
 where
-    V: Visitor + Send + 'w,
+    F: Frame,
+    V: Visitor<F> + Send + 'w,
     V::Error: Send + 'w,
-    F: FnMut() -> V,
+    N: FnMut() -> V,
     T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
 {
     fn hand_on(&mut self) -> Result<(), WalkError<V::Error>> {
@@ -439,16 +455,17 @@ where
     }
 }
 
-impl<'w, V, F, T> Sink<'w> for Spans<'_, 'w, '_, V, F, T>
+impl<'w, F, V, N, T> Sink<'w, F> for Spans<'_, 'w, '_, F, V, N, T>
 where
-    V: Visitor + Send + 'w,
+    F: Frame,
+    V: Visitor<F> + Send + 'w,
     V::Error: Send + 'w,
-    F: FnMut() -> V,
+    N: FnMut() -> V,
     T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
 {
     type Error = WalkError<V::Error>;
 
-    fn enter(&mut self, subtree: &Subtree) -> Enter {
+    fn enter(&mut self, subtree: &Subtree<F>) -> Enter {
         self.asked.enter(subtree)
     }
 
@@ -468,7 +485,7 @@ where
         Ok(())
     }
 
-    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error> {
+    fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error> {
         self.make_room()?;
         let (item, size, ranks) = match next {
             Next::Element(found) => (Item::Element(found), 1, [found.index; 2]),
@@ -496,11 +513,11 @@ where
         Ok(())
     }
 
-    fn takes(&self, colony: &Colony<'_>) -> Taken {
+    fn takes(&self, colony: &Colony<'_, F>) -> Taken {
         self.asked.takes(colony)
     }
 
-    fn colony(&mut self, colony: Colony<'w>, taken: Taken) -> Result<(), Self::Error> {
+    fn colony(&mut self, colony: Colony<'w, F>, taken: Taken) -> Result<(), Self::Error> {
         self.make_room()?;
         self.span.push(Item::Colony(colony, taken), 1);
         Ok(())
@@ -522,14 +539,20 @@ struct Whole<V, T> {
     since: u64,
 }
 
-impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Whole<V, T> {
-    fn hand_over(&mut self) -> Result<(), V::Error> {
+impl<V, T> Whole<V, T> {
+    fn hand_over<E>(&mut self) -> Result<(), E>
+    where
+        T: FnMut(&mut V, Seam) -> Result<(), E>,
+    {
         self.since = 0;
         (self.take)(&mut self.visitor, Seam::NONE)
     }
 
     #[inline]
-    fn count(&mut self, elements: u64) -> Result<(), V::Error> {
+    fn count<E>(&mut self, elements: u64) -> Result<(), E>
+    where
+        T: FnMut(&mut V, Seam) -> Result<(), E>,
+    {
         self.since += elements;
         if self.since < WHOLE {
             return Ok(());
@@ -538,7 +561,10 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Whole<V, T> {
     }
 }
 
-impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Whole<V, T> {
+impl<F: Frame, V: Visitor<F>, T> Visitor<F> for Whole<V, T>
+where
+    T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
+{
     type Error = V::Error;
 
     fn takes_runs(&self) -> bool {
@@ -563,26 +589,26 @@ impl<V: Visitor, T: FnMut(&mut V, Seam) -> Result<(), V::Error>> Visitor for Who
     }
 
     #[inline]
-    fn enter(&mut self, subtree: &Subtree) -> Enter {
+    fn enter(&mut self, subtree: &Subtree<F>) -> Enter {
         self.visitor.enter(subtree)
     }
 
     #[inline]
-    fn element(&mut self, element: &Element) -> Result<(), V::Error> {
+    fn element(&mut self, element: &Element<F>) -> Result<(), V::Error> {
         self.visitor.element(element)?;
         self.count(1)
     }
 
-    fn run(&mut self, run: &Run<'_>) -> Result<(), V::Error> {
+    fn run(&mut self, run: &Run<'_, F>) -> Result<(), V::Error> {
         self.visitor.run(run)?;
         self.count(run.count())
     }
 
-    fn takes(&self, colony: &Colony<'_>) -> Taken {
+    fn takes(&self, colony: &Colony<'_, F>) -> Taken {
         self.visitor.takes(colony)
     }
 
-    fn colony(&mut self, colony: &Colony<'_>, taken: Taken) -> Result<(), V::Error> {
+    fn colony(&mut self, colony: &Colony<'_, F>, taken: Taken) -> Result<(), V::Error> {
         self.visitor.colony(colony, taken)?;
         self.count(1)
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::geometry::Frame;
+use crate::geometry::{Frame, Frame2};
 use crate::graph::{Chain, Graph, Instance, Root};
 use crate::instancing::Appearance;
 use crate::rule::Placement;
@@ -10,8 +10,8 @@ use crate::rule::draw::Path;
 
 /// Placement of an element with all that its descendants inherit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing {
-    pub(crate) frame: Frame,
+pub(crate) struct Standing<F: Frame = Frame2> {
+    pub(crate) frame: F,
     /// Length relative to that of the initiator's element from which it descends.
     pub(crate) length: f64,
     /// Position of that element in the initiator.
@@ -21,11 +21,11 @@ pub(crate) struct Standing {
     pub(crate) appearance: Appearance,
 }
 
-impl Standing {
+impl<F: Frame> Standing<F> {
     /// Returns the placement of the initiator.
     pub(crate) fn whole(seed: u64) -> Self {
         Self {
-            frame: Frame::UNIT,
+            frame: F::UNIT,
             length: 1.0,
             root: 0,
             path: Path::of_seed(seed),
@@ -35,7 +35,7 @@ impl Standing {
 
     /// Returns the placement of an instance of the initiator.
     #[inline]
-    pub(crate) fn root(&self, graph: &Graph, instance: &Instance) -> Self {
+    pub(crate) fn root(&self, graph: &Graph<F>, instance: &Instance<F>) -> Self {
         let child = Self {
             length: 1.0,
             root: instance.position,
@@ -59,7 +59,7 @@ impl Standing {
 
     /// Returns the placement of an instance that replaces part of this element.
     #[inline]
-    pub(crate) fn child(&self, graph: &Graph, instance: &Instance) -> Self {
+    pub(crate) fn child(&self, graph: &Graph<F>, instance: &Instance<F>) -> Self {
         Self {
             frame: self.frame.compose(&instance.frame),
             length: self.length * instance.length,
@@ -80,9 +80,9 @@ impl Standing {
 
 /// Chain from which a fractal starts, and its placement.
 #[derive(Clone, Debug)]
-pub(super) struct Start<'g> {
-    pub(super) chain: StartChain<'g>,
-    pub(super) standing: Standing,
+pub(super) struct Start<'g, F: Frame = Frame2> {
+    pub(super) chain: StartChain<'g, F>,
+    pub(super) standing: Standing<F>,
     /// Step in which the fractal is born.
     pub(super) born: u32,
     /// Fractals that it seeded before the growth of this graph: range in [`Roots::sown`](crate::graph::Roots).
@@ -90,20 +90,20 @@ pub(super) struct Start<'g> {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum StartChain<'g> {
+pub(super) enum StartChain<'g, F: Frame = Frame2> {
     /// Initiator, or a fractal seeded before: its instances are roots.
-    Initiator(&'g Chain),
+    Initiator(&'g Chain<F>),
     /// Seed of a fixed production, with the indices of the object and of the seed.
     Fixed {
-        chain: &'g Chain,
+        chain: &'g Chain<F>,
         seed: [usize; 2],
     },
-    Evaluated(Chain),
+    Evaluated(Chain<F>),
 }
 
-impl<'g> Start<'g> {
+impl<'g, F: Frame> Start<'g, F> {
     /// Returns the start of growth by a number of steps.
-    pub(super) fn initiator(graph: &'g Graph, steps: u32, seed: u64) -> Self {
+    pub(super) fn initiator(graph: &'g Graph<F>, steps: u32, seed: u64) -> Self {
         Self {
             chain: StartChain::Initiator(graph.initiator(steps)),
             standing: Standing::whole(seed),
@@ -113,7 +113,7 @@ impl<'g> Start<'g> {
     }
 
     /// Returns the start of a fractal that was seeded before.
-    pub(super) fn sown(graph: &'g Graph, number: usize) -> Self {
+    pub(super) fn sown(graph: &'g Graph<F>, number: usize) -> Self {
         let sown = &graph.roots.sown[number];
         Self {
             chain: StartChain::Initiator(&sown.chain),
@@ -126,7 +126,7 @@ impl<'g> Start<'g> {
 
     /// Returns the first step after `step` in which roots are born, or in which elements that seeded
     /// fractals before were replaced.
-    pub(super) fn next_after(&self, graph: &Graph, step: u32) -> Option<u32> {
+    pub(super) fn next_after(&self, graph: &Graph<F>, step: u32) -> Option<u32> {
         let StartChain::Initiator(chain) = self.chain else {
             return None;
         };
@@ -136,7 +136,7 @@ impl<'g> Start<'g> {
         all.filter(|&next| next > step).min()
     }
 
-    pub(super) fn chain(&self) -> &Chain {
+    pub(super) fn chain(&self) -> &Chain<F> {
         match &self.chain {
             StartChain::Initiator(chain) | StartChain::Fixed { chain, .. } => chain,
             StartChain::Evaluated(chain) => chain,
@@ -145,13 +145,17 @@ impl<'g> Start<'g> {
 }
 
 /// Returns the step in which a root was born, if growth begins with later approximants.
-pub(super) fn birth(graph: &Graph, instance: &Instance) -> Option<u32> {
+pub(super) fn birth<F: Frame>(graph: &Graph<F>, instance: &Instance<F>) -> Option<u32> {
     let root = graph.roots.elements.get(instance.position as usize);
     root.map(|root| root.level)
 }
 
 /// Returns the placement of a part that an element seeds.
-pub(super) fn seed_placement(graph: &Graph, standing: &Standing, placement: Placement) -> Standing {
+pub(super) fn seed_placement<F: Frame>(
+    graph: &Graph<F>,
+    standing: &Standing<F>,
+    placement: Placement,
+) -> Standing<F> {
     if placement != Placement::SeedsAsInitiator {
         return *standing;
     }

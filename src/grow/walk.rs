@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
+use crate::geometry::Frame;
 use crate::graph::{CompileError, Graph, Instance, Object, Replacement};
 
 use super::block::{Blocks, Run};
@@ -61,19 +62,19 @@ pub struct Walked {
 }
 
 /// A fractal whose seeds are being looked for.
-struct Parent<'g> {
-    start: Start<'g>,
+struct Parent<'g, F: Frame> {
+    start: Start<'g, F>,
     /// The approximant whose elements are being replaced, and the walk over it.
     step: u32,
-    descent: Descent<'g>,
+    descent: Descent<'g, F>,
     /// Whether that approximant has an element whose place others take that may seed.
     is_fertile: bool,
     /// Seeds that are still to be walked, the next one last.
-    queue: Vec<Start<'g>>,
+    queue: Vec<Start<'g, F>>,
 }
 
-impl<'g> Parent<'g> {
-    fn new(graph: &'g Graph, start: Start<'g>) -> Self {
+impl<'g, F: Frame> Parent<'g, F> {
+    fn new(graph: &'g Graph<F>, start: Start<'g, F>) -> Self {
         Self {
             step: start.born,
             descent: Descent::new(graph, &start, start.born),
@@ -84,7 +85,7 @@ impl<'g> Parent<'g> {
     }
 
     /// Queues fractals that were seeded earlier by elements of the approximant before those of a root.
-    fn take_sown(&mut self, graph: &'g Graph, root: u32) {
+    fn take_sown(&mut self, graph: &'g Graph<F>, root: u32) {
         while let Some(number) = self.start.sown.clone().next() {
             let sown = &graph.roots.sown[number];
             if sown.born > self.step + 1 || sown.before > root {
@@ -97,7 +98,7 @@ impl<'g> Parent<'g> {
 
     /// Proceeds to the next approximant that may have elements to replace before a number of steps;
     /// returns whether there is one.
-    fn go_on(&mut self, graph: &'g Graph, steps: u32) -> bool {
+    fn go_on(&mut self, graph: &'g Graph<F>, steps: u32) -> bool {
         let next = if self.is_fertile {
             Some(self.step + 1)
         } else {
@@ -114,23 +115,23 @@ impl<'g> Parent<'g> {
 }
 
 /// Receiver of the elements of a walk.
-pub(super) trait Sink<'g> {
+pub(super) trait Sink<'g, F: Frame> {
     type Error: From<CompileError>;
 
     /// As [`Visitor::enter`].
-    fn enter(&mut self, subtree: &Subtree) -> Enter;
+    fn enter(&mut self, subtree: &Subtree<F>) -> Enter;
     /// Returns [`Visitor::ages`].
     fn ages(&self) -> RangeInclusive<u32>;
     /// Begins a fractal that was born in a step.
     fn begin(&mut self, fractal: FractalInfo, born: u32) -> Result<(), Self::Error>;
     /// Receives elements of the fractal, or a block or subtree in their place.
-    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error>;
+    fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error>;
     /// Ends the fractal.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
     /// As [`Visitor::takes`].
-    fn takes(&self, colony: &Colony<'_>) -> Taken;
+    fn takes(&self, colony: &Colony<'_, F>) -> Taken;
     /// Receives a colony in place of the part that is taken of it.
-    fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error>;
+    fn colony(&mut self, colony: Colony<'g, F>, taken: Taken) -> Result<(), Self::Error>;
     /// Counts elements that were visited on the way.
     fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
 }
@@ -148,8 +149,8 @@ pub(super) trait Sink<'g> {
 /// # Panics
 ///
 /// If the graph was compiled for fewer steps.
-pub fn walk<V: Visitor>(
-    graph: &Graph,
+pub fn walk<F: Frame, V: Visitor<F>>(
+    graph: &Graph<F>,
     growth: &Growth<'_>,
     visitor: &mut V,
 ) -> Result<Walked, WalkError<V::Error>> {
@@ -166,10 +167,10 @@ pub fn walk<V: Visitor>(
 }
 
 /// Walks and sends elements to a sink. With a census, ranks count elements that are not visited.
-pub(super) fn send<'g, S: Sink<'g>>(
-    graph: &'g Graph,
+pub(super) fn send<'g, F: Frame, S: Sink<'g, F>>(
+    graph: &'g Graph<F>,
     growth: &Growth<'_>,
-    stop: Stop<'_>,
+    stop: Stop<'_, F>,
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
@@ -185,10 +186,10 @@ pub(super) fn send<'g, S: Sink<'g>>(
 }
 
 /// Walks over a fractal that has been seeded, and over all that it seeds in turn if `is_whole`.
-pub(super) fn walk_over<V: Visitor>(
-    graph: &Graph,
+pub(super) fn walk_over<F: Frame, V: Visitor<F>>(
+    graph: &Graph<F>,
     steps: u32,
-    start: Start<'_>,
+    start: Start<'_, F>,
     is_whole: bool,
     visitor: &mut V,
 ) -> Result<Walked, WalkError<V::Error>> {
@@ -210,16 +211,16 @@ pub(super) fn walk_over<V: Visitor>(
 }
 
 /// Sends the elements of one fractal of the last approximant to a sink.
-fn send_fractal<'g, S: Sink<'g>>(
+fn send_fractal<'g, F: Frame, S: Sink<'g, F>>(
     fractal: FractalInfo,
-    start: &Start<'g>,
-    mut descent: Descent<'g>,
-    stop: Stop<'_>,
+    start: &Start<'g, F>,
+    mut descent: Descent<'g, F>,
+    stop: Stop<'_, F>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
     sink.begin(fractal, start.born)?;
     loop {
-        let enter = |subtree: &Subtree| sink.enter(subtree);
+        let enter = |subtree: &Subtree<F>| sink.enter(subtree);
         let found = descent.next(start, enter, stop)?;
         sink.visit(std::mem::take(&mut descent.visited))?;
         match found {
@@ -232,8 +233,8 @@ fn send_fractal<'g, S: Sink<'g>>(
 
 /// Iterates over the fractals of an approximant, depth-first: every fractal is followed by those that it
 /// seeds.
-pub(super) struct Fractals<'g> {
-    graph: &'g Graph,
+pub(super) struct Fractals<'g, F: Frame> {
+    graph: &'g Graph<F>,
     steps: u32,
     /// Ages of the fractals that are visited.
     ages: RangeInclusive<u32>,
@@ -242,18 +243,18 @@ pub(super) struct Fractals<'g> {
     /// By object, whether they may after its own.
     goes_on: Vec<bool>,
     /// The next fractal, if it is known.
-    next: Option<Start<'g>>,
+    next: Option<Start<'g, F>>,
     /// The fractals whose seeds are being looked for, the innermost one last.
-    parents: Vec<Parent<'g>>,
+    parents: Vec<Parent<'g, F>>,
     count: u64,
 }
 
-impl<'g> Fractals<'g> {
+impl<'g, F: Frame> Fractals<'g, F> {
     pub(super) fn new(
-        graph: &'g Graph,
+        graph: &'g Graph<F>,
         steps: u32,
         ages: RangeInclusive<u32>,
-        first: Start<'g>,
+        first: Start<'g, F>,
     ) -> Self {
         assert!(
             graph.depth().is_none_or(|depth| depth >= steps),
@@ -264,8 +265,8 @@ impl<'g> Fractals<'g> {
         } else {
             Vec::new()
         };
-        let leads = |instance: &Instance| leads_to_seeds[instance.object];
-        let goes_on = |object: &Object| match &object.replacement {
+        let leads = |instance: &Instance<F>| leads_to_seeds[instance.object];
+        let goes_on = |object: &Object<F>| match &object.replacement {
             Replacement::Fixed(production) => production.body.instances.iter().any(leads),
             _ => true,
         };
@@ -284,10 +285,10 @@ impl<'g> Fractals<'g> {
 
     /// Returns the next fractal whose elements are visited, to be [followed](Self::follow) when they have been.
     /// Elements on the way to seeds are shown to `sink`, and colonies that it takes are given to it.
-    pub(super) fn next<S: Sink<'g>>(
+    pub(super) fn next<S: Sink<'g, F>>(
         &mut self,
         sink: &mut S,
-    ) -> Result<Option<Start<'g>>, S::Error> {
+    ) -> Result<Option<Start<'g, F>>, S::Error> {
         loop {
             if let Some(start) = self.next.take() {
                 let taken = self.take_colony(&start, sink)?;
@@ -307,7 +308,7 @@ impl<'g> Fractals<'g> {
                 continue;
             }
             let (graph, leads_to_seeds, step) = (self.graph, &self.leads_to_seeds, parent.step);
-            let enter = |subtree: &Subtree| {
+            let enter = |subtree: &Subtree<F>| {
                 // Roots may not stand yet.
                 if subtree.born <= step && leads_to_seeds[subtree.object] {
                     sink.enter(subtree)
@@ -341,9 +342,9 @@ impl<'g> Fractals<'g> {
     }
 
     /// Gives a sink the part that it takes of a colony, and returns which part that is.
-    fn take_colony<S: Sink<'g>>(
+    fn take_colony<S: Sink<'g, F>>(
         &mut self,
-        start: &Start<'g>,
+        start: &Start<'g, F>,
         sink: &mut S,
     ) -> Result<Taken, S::Error> {
         let Some(colony) = Colony::of(self.graph, start, self.steps) else {
@@ -359,7 +360,7 @@ impl<'g> Fractals<'g> {
     }
 
     /// Numbers a fractal that begins.
-    pub(super) fn number(&mut self, start: &Start<'g>) -> FractalInfo {
+    pub(super) fn number(&mut self, start: &Start<'g, F>) -> FractalInfo {
         let number = self.count;
         self.count += 1;
         FractalInfo {
@@ -370,14 +371,14 @@ impl<'g> Fractals<'g> {
     }
 
     /// Proceeds to the seeds of a fractal whose elements have been visited.
-    pub(super) fn follow(&mut self, start: Start<'g>) {
+    pub(super) fn follow(&mut self, start: Start<'g, F>) {
         if self.graph.seeds && start.born < self.last_birth() {
             self.parents.push(Parent::new(self.graph, start));
         }
     }
 
     /// Returns the age of a fractal in the approximant.
-    fn age(&self, start: &Start<'g>) -> u32 {
+    fn age(&self, start: &Start<'g, F>) -> u32 {
         // Elements that were seeded before may all be gone.
         self.steps.saturating_sub(start.born)
     }
@@ -389,14 +390,13 @@ impl<'g> Fractals<'g> {
 }
 
 /// Returns whether an element of an approximant that is not the last is replaced.
-fn replaces<'g, S: Sink<'g>>(
-    graph: &Graph,
+fn replaces<'g, F: Frame, S: Sink<'g, F>>(
+    graph: &Graph<F>,
     leads_to_seeds: &[bool],
-    found: &Found,
+    found: &Found<F>,
     sink: &mut S,
 ) -> bool {
-    let object = &graph.objects()[found.object];
-    if matches!(object.replacement, Replacement::Kept) {
+    if !graph.is_fertile(found.object) {
         return false;
     }
     let subtree = Subtree {
@@ -408,14 +408,14 @@ fn replaces<'g, S: Sink<'g>>(
 }
 
 /// Visitor with the number of elements that it has seen.
-pub(super) struct Visiting<'g, 'v, V> {
-    graph: &'g Graph,
+pub(super) struct Visiting<'g, 'v, F: Frame, V> {
+    graph: &'g Graph<F>,
     pub(super) visitor: &'v mut V,
     pub(super) seen: u64,
 }
 
-impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
-    pub(super) fn new(graph: &'g Graph, visitor: &'v mut V) -> Self {
+impl<'g, 'v, F: Frame, V: Visitor<F>> Visiting<'g, 'v, F, V> {
+    pub(super) fn new(graph: &'g Graph<F>, visitor: &'v mut V) -> Self {
         Self {
             graph,
             visitor,
@@ -428,14 +428,14 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
     }
 
     #[inline]
-    pub(super) fn element(&mut self, found: &Found) -> Result<(), WalkError<V::Error>> {
+    pub(super) fn element(&mut self, found: &Found<F>) -> Result<(), WalkError<V::Error>> {
         self.seen += 1;
         let element = Element::found(self.graph, found);
         self.visitor.element(&element).map_err(WalkError::Visitor)
     }
 
     #[inline]
-    pub(super) fn run(&mut self, found: &FoundRun<'_>) -> Result<(), WalkError<V::Error>> {
+    pub(super) fn run(&mut self, found: &FoundRun<'_, F>) -> Result<(), WalkError<V::Error>> {
         let run = Run {
             block: found.block,
             object: found.object,
@@ -453,7 +453,7 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
 
     pub(super) fn colony(
         &mut self,
-        colony: &Colony<'_>,
+        colony: &Colony<'_, F>,
         taken: Taken,
     ) -> Result<(), WalkError<V::Error>> {
         self.seen += taken.walked().elements;
@@ -467,16 +467,16 @@ impl<'g, 'v, V: Visitor> Visiting<'g, 'v, V> {
 }
 
 /// Sink that shows elements to a visitor at once.
-struct Direct<'g, 'v, V> {
-    visiting: Visiting<'g, 'v, V>,
+struct Direct<'g, 'v, F: Frame, V> {
+    visiting: Visiting<'g, 'v, F, V>,
     tally: Tally<'v>,
 }
 
-impl<'g, V: Visitor> Sink<'g> for Direct<'_, '_, V> {
+impl<'g, F: Frame, V: Visitor<F>> Sink<'g, F> for Direct<'_, '_, F, V> {
     type Error = WalkError<V::Error>;
 
     #[inline]
-    fn enter(&mut self, subtree: &Subtree) -> Enter {
+    fn enter(&mut self, subtree: &Subtree<F>) -> Enter {
         self.visiting.visitor.enter(subtree)
     }
 
@@ -490,7 +490,7 @@ impl<'g, V: Visitor> Sink<'g> for Direct<'_, '_, V> {
     }
 
     #[inline]
-    fn found(&mut self, next: Next<'_>) -> Result<(), Self::Error> {
+    fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error> {
         match next {
             Next::Element(found) => {
                 self.tally.count(1)?;
@@ -508,11 +508,11 @@ impl<'g, V: Visitor> Sink<'g> for Direct<'_, '_, V> {
         self.visiting.end(joined)
     }
 
-    fn takes(&self, colony: &Colony<'_>) -> Taken {
+    fn takes(&self, colony: &Colony<'_, F>) -> Taken {
         self.visiting.visitor.takes(colony)
     }
 
-    fn colony(&mut self, colony: Colony<'g>, taken: Taken) -> Result<(), Self::Error> {
+    fn colony(&mut self, colony: Colony<'g, F>, taken: Taken) -> Result<(), Self::Error> {
         let Walked { elements, fractals } = taken.walked();
         self.tally.begin(fractals);
         self.tally.count(elements)?;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::geometry::{DVec2, Direction, Frame2};
 use crate::rule::{BaseElement, Piece};
 
 use super::word::number;
@@ -13,7 +13,7 @@ use super::{Action, Compass, LSystem, Word};
 pub struct Placed {
     /// Frame of the element. A line runs from (0, 0) to (1, 0) in it; a polygon's coordinates are those of a
     /// turtle that starts at (0, 0), heading right, where the polygon was opened.
-    pub frame: Frame,
+    pub frame: Frame2,
     /// Whether the element starts at the end of the preceding one, in the same width and colour.
     pub joined: bool,
     /// Index of the symbol that drew the element; of a polygon, the one that closed it.
@@ -245,7 +245,7 @@ impl<'s> Turtle<'s> {
         self.last = Some((width, colour));
         let direction = self.state.direction();
         self.drawing.elements.push(Placed {
-            frame: Frame::between(from, self.state.place, direction),
+            frame: Frame2::between(from, self.state.place, direction),
             joined: self.is_down && alike,
             symbol,
             width,
@@ -266,7 +266,7 @@ impl<'s> Turtle<'s> {
         let State { place, step, .. } = open.state;
         let along = self.compass.direction(open.state.heading) * step;
         let direction = open.state.direction();
-        let frame = Frame::between(place, place + along, direction);
+        let frame = Frame2::between(place, place + along, direction);
         if open.vertices.len() < 3 || step == 0.0 {
             return;
         }

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use crate::geometry::Frame;
+use crate::geometry::Frame2;
 use crate::graph::{Object, Replacement};
 use crate::grow::{Census, Element, FractalInfo, Growth, Kind, WalkError};
 use crate::instancing::Appearance;
@@ -13,7 +13,7 @@ use super::Prepass;
 /// Returns an element of a kind, at an arbitrary place.
 fn element(kind: &Kind, born: u32) -> Element {
     Element {
-        frame: Frame::UNIT.with_direction(kind.direction),
+        frame: Frame2::UNIT.with_direction(kind.direction),
         length: 1.0,
         appearance: Appearance::NONE,
         index: 1,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::geometry::{Bounds, Direction};
-use crate::graph::{Evaluated, Graph, Object, Replacement};
+use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Census, Growth};
 use crate::rule::Placement;
 use crate::style::{ColorBy, ColorProperty, Style};
@@ -172,8 +172,7 @@ impl Standing {
                         }));
                     }
                     Replacement::Evaluated(alternatives) => {
-                        let ([only], Evaluated::Rule(rule)) =
-                            (&alternatives[..], graph.evaluated())
+                        let ([only], Some(rule)) = (&alternatives[..], graph.source().rule())
                         else {
                             return None;
                         };

@@ -1,7 +1,7 @@
 //! Fractals as sets: approximants of other fractals, which are grown during resolution.
 
 use crate::document::{FractalDocument, Setting};
-use crate::geometry::Frame;
+use crate::geometry::Frame2;
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
 
@@ -57,7 +57,7 @@ impl<K> Resolver<K> {
             seed: seed.unwrap_or(Some(0))?.into(),
             ..Growth::steps(steps)
         };
-        let frame = map.map_or(Some(Frame::UNIT), |map| map.map(Frame::from))?;
+        let frame = map.map_or(Some(Frame2::UNIT), |map| map.map(Frame2::from))?;
         let fills = model.metadata().style.fill.is_some();
         let most = MOST_PIECES.saturating_sub(self.pieces);
         let message = match outlines(&graph, &growth, frame, fills, most) {

@@ -5,13 +5,12 @@
 //! evaluated. The initiator has at least one element, and every element that may be fertile has a
 //! generator.
 
-mod base_element;
 pub mod draw;
 mod extent;
 mod generator;
 mod selection;
 
-pub use base_element::{BaseElement, Piece, arc};
+pub use crate::geometry::{BaseElement, Piece, arc};
 pub(crate) use extent::Extent;
 pub(crate) use generator::Origin;
 pub use generator::{ElementContext, Generator, ListedElement, Move, Part, Placement};

@@ -4,7 +4,7 @@ use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
 use crate::expression::Precise;
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::geometry::{DVec2, Direction, Frame2};
 use crate::rule::{BaseElement, Piece};
 
 use super::descent::pixel;
@@ -19,7 +19,7 @@ type Points = Vec<Vector>;
 /// Part of an outline in pixels, as a base element and its frame. An open one runs from end to end of the
 /// frame, which joining requires.
 pub(super) struct Clipped {
-    pub(super) frame: Frame,
+    pub(super) frame: Frame2,
     pub(super) outline: BaseElement,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn clipped(
         let shows = path.comes_near || path.goes_around();
         let outline = BaseElement::new(path.start, path.pieces, true);
         outline.filter(|_| shows).map(|outline| Clipped {
-            frame: Frame::UNIT,
+            frame: Frame2::UNIT,
             outline,
         })
     } else {
@@ -105,7 +105,7 @@ impl Path {
 
     /// Returns the path as an open outline, or `None` if it returns to its start.
     pub(super) fn open(self) -> Option<Clipped> {
-        let frame = Frame::between(self.start, self.last, Direction::Normal);
+        let frame = Frame2::between(self.start, self.last, Direction::Normal);
         let back = frame.map().inverse();
         let pieces = self.pieces.iter().map(|piece| piece.transformed(&back));
         let mut pieces: Vec<Piece> = pieces.collect();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use crate::geometry::{DAffine2, DVec2, Frame, stretch};
+use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Production, Replacement, Seed};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
 
@@ -157,7 +157,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 }
                 Look::Outside => pen = false,
                 Look::Small(map) => {
-                    let frame = Frame::new(map, node.standing.frame.direction());
+                    let frame = Frame2::new(map, node.standing.frame.direction());
                     line.add(Found::of(&node, frame, pen, Drawn::Object));
                     pen = true;
                 }
@@ -215,7 +215,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         }
         let mut path = Path::new(&ends[0], self.half.length());
         path.add(ends.to_vec());
-        Found::of(node, Frame::UNIT, pen, Drawn::Around(path))
+        Found::of(node, Frame2::UNIT, pen, Drawn::Around(path))
     }
 
     fn look(&self, node: &Node) -> Look {

@@ -35,7 +35,7 @@ impl Fixed {
         }
     }
 
-    /// Returns the map of an element; see [`Frame::between`](crate::geometry::Frame::between).
+    /// Returns the map of an element; see [`Frame2::between`](crate::geometry::Frame2::between).
     pub(super) fn between(from: &Vector, to: &Vector, direction: Direction) -> Self {
         let along = [&to[0] - &from[0], &to[1] - &from[1]];
         let across = [-&along[1], along[0].clone()];

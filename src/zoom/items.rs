@@ -1,6 +1,6 @@
 //! State and results of a descent.
 
-use crate::geometry::Frame;
+use crate::geometry::Frame2;
 use crate::graph::{Chain, Root};
 use crate::grow::Standing;
 use crate::rule::BaseElement;
@@ -118,7 +118,7 @@ impl Line {
 /// Root: an instance from which the graph of the window starts.
 pub(super) struct Found {
     pub(super) object: usize,
-    pub(super) frame: Frame,
+    pub(super) frame: Frame2,
     pub(super) root: Root,
     pub(super) joined: bool,
     pub(super) drawn: Drawn,
@@ -135,7 +135,7 @@ pub(super) enum Drawn {
 }
 
 impl Found {
-    pub(super) fn of(node: &Node, frame: Frame, joined: bool, drawn: Drawn) -> Self {
+    pub(super) fn of(node: &Node, frame: Frame2, joined: bool, drawn: Drawn) -> Self {
         let Standing {
             path,
             length,

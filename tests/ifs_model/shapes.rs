@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use kfrac::geometry::{DMat2, DVec2};
+use kfrac::geometry::{DMat2, DVec2, Outline};
 use kfrac::ifs::Shape;
 use kfrac::rule::{BaseElement, arc};
 

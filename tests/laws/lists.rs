@@ -1,7 +1,7 @@
 //! Kaandorp's algorithm (1987, section 2.2) on lists: every fractal of an approximant is held in memory and
 //! replaced as a whole. Slow, and simple enough to be compared with the paper.
 
-use kfrac::geometry::{DAffine2, DVec2, Direction, Frame};
+use kfrac::geometry::{DAffine2, DVec2, Direction, Frame2};
 use kfrac::rule::draw::Path;
 use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
 
@@ -9,11 +9,11 @@ use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
 #[derive(Clone, Debug)]
 pub(crate) struct Item {
     pub listed: ListedElement,
-    pub frame: Frame,
+    pub frame: Frame2,
     pub length: f64,
     pub born: u32,
-    /// Frame of the initiator element that it descends from.
-    root: Frame,
+    /// Frame2 of the initiator element that it descends from.
+    root: Frame2,
     path: Path,
     /// Whether the element is joined to the preceding one (the first to the last), by structure alone.
     pub joined: bool,
@@ -45,7 +45,7 @@ pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
         .iter()
         .zip(0..)
         .map(|(listed, position)| {
-            let frame = Frame::between(points[listed.from], points[listed.to], listed.direction);
+            let frame = Frame2::between(points[listed.from], points[listed.to], listed.direction);
             Item {
                 listed: listed.clone(),
                 frame,
@@ -110,7 +110,7 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
                         if placement == Placement::SeedsAsInitiator {
                             let [origin, _] = item.frame.ends();
                             parent.length = 1.0;
-                            parent.frame = Frame::new(
+                            parent.frame = Frame2::new(
                                 DAffine2::from_mat2_translation(item.root.map().matrix2, origin),
                                 item.root.direction(),
                             );
@@ -155,7 +155,7 @@ fn place(part: &Part, points: &[DVec2], parent: &Item, position: &mut u32, born:
             listed: listed.clone(),
             frame: parent
                 .frame
-                .compose(&Frame::between(from, to, listed.direction)),
+                .compose(&Frame2::between(from, to, listed.direction)),
             length: parent.length * (to - from).length(),
             born,
             root: parent.root,

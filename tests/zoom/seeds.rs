@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use kfrac::document::Document;
-use kfrac::geometry::{DAffine2, DVec2, Frame};
+use kfrac::geometry::{DAffine2, DVec2, Frame2};
 use kfrac::graph::{Graph, Instance, Production, Replacement};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
@@ -49,7 +49,7 @@ impl Ordered {
         };
         walk(graph, growth, &mut ordered).unwrap();
         for (element, _) in &mut ordered.all {
-            element.frame = Frame::from(place).compose(&element.frame);
+            element.frame = Frame2::from(place).compose(&element.frame);
         }
         // Elements well inside the window.
         let middle = graph.middle();

@@ -1,7 +1,7 @@
 //! Blocks of the three components of a rule: initiator, generators and base elements.
 
 use crate::document::RuleDocument;
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::rule::draw::Path;
 use crate::rule::{ElementContext, Rule, Selection};
 
@@ -126,7 +126,7 @@ fn moment(rule: &Rule, generator: usize) -> ElementContext {
 pub(super) fn base_elements(common: &Common<'_>) -> Block {
     let blocks = common.base_elements.iter().map(|base| {
         let mut bounds = Bounds::new(DVec2::ZERO, DVec2::X);
-        base.add_to(&mut bounds, &Frame::UNIT, 0.0);
+        base.add_to(&mut bounds, &Frame2::UNIT, 0.0);
         let unit = (110.0 / bounds.size().x)
             .min(140.0 / bounds.size().y)
             .min(96.0);

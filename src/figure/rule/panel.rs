@@ -1,6 +1,6 @@
 //! Panels: a list of elements in place, the initiator or a generator over the side that it replaces.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame2};
 use crate::rule::{BaseElement, ListedElement, Part};
 
 use super::super::text::Font;
@@ -145,7 +145,7 @@ impl<'a> Panel<'a> {
             return None;
         }
         let [from, to] = drawn.ends;
-        let frame = Frame::between(from, to, drawn.element.direction);
+        let frame = Frame2::between(from, to, drawn.element.direction);
         Some(outline(base).transformed(frame.map()))
     }
 
@@ -159,7 +159,7 @@ impl<'a> Panel<'a> {
             element.ends.iter().for_each(|&end| bounds.add(end));
             let [from, to] = element.ends;
             if self.outline(element).is_some() {
-                let frame = Frame::between(from, to, element.element.direction);
+                let frame = Frame2::between(from, to, element.element.direction);
                 self.base(element.element).add_to(&mut bounds, &frame, 0.0);
             }
         }

@@ -1,7 +1,7 @@
 //! Figures of iterated function systems: the initial set, its images under the maps with their numbers, and
 //! the condensation sets.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
 use crate::rule::{BaseElement, Piece};
@@ -88,7 +88,7 @@ impl<'a> Plan<'a> {
         let initial: Vec<_> = std::iter::once(first).chain(others).collect();
         let mut around = graph.limit_bounds().unwrap_or(Bounds::EMPTY);
         for outline in &initial {
-            outline.add_to(&mut around, &Frame::UNIT, 0.0);
+            outline.add_to(&mut around, &Frame2::UNIT, 0.0);
         }
         let size = around.size();
         let flat = size.min_element() < 0.02 * size.max_element();
@@ -98,12 +98,12 @@ impl<'a> Plan<'a> {
             boxed(&around).unwrap_or_else(|| first.clone())
         };
         let mut bounds = Bounds::EMPTY;
-        shown.add_to(&mut bounds, &Frame::UNIT, 0.0);
+        shown.add_to(&mut bounds, &Frame2::UNIT, 0.0);
         for map in ifs.maps() {
             shown.add_to(&mut bounds, &map.affine.into(), 0.0);
         }
         for set in sets {
-            set.add_to(&mut bounds, &Frame::UNIT, 0.0);
+            set.add_to(&mut bounds, &Frame2::UNIT, 0.0);
         }
         Self {
             ifs,

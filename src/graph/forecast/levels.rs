@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Replacement};
 
 use super::{Count, Forecast, Sums, Tally};
@@ -26,7 +27,7 @@ pub(super) struct Totals {
     work: usize,
 }
 
-impl Forecast<'_> {
+impl<F: Frame> Forecast<'_, F> {
     /// Advances to the next approximant of a time-indexed graph. Returns `false`, without effect, if the
     /// graph is not resolved further.
     pub(super) fn advance_level(&mut self) -> bool {
@@ -56,7 +57,7 @@ impl Forecast<'_> {
 
 impl Totals {
     /// Returns the total of an object whose successors, which have larger numbers, are known.
-    fn of(&mut self, graph: &Graph, number: usize) -> Total {
+    fn of<F: Frame>(&mut self, graph: &Graph<F>, number: usize) -> Total {
         let mut total = Total::default();
         match &graph.objects[number].replacement {
             Replacement::Kept | Replacement::Unresolved => {
@@ -85,7 +86,7 @@ impl Totals {
         total
     }
 
-    fn add_chain(&mut self, graph: &Graph, chain: &Chain, total: &mut Total) {
+    fn add_chain<F: Frame>(&mut self, graph: &Graph<F>, chain: &Chain<F>, total: &mut Total) {
         let mut meets_end = true;
         for (index, instance) in chain.instances.iter().enumerate() {
             let Instance { object, length, .. } = *instance;
@@ -105,9 +106,9 @@ impl Totals {
 
     /// Adds the total of an object at a given length and square of the length. Returns the object of its
     /// first leaf, and whether that may join another.
-    fn add(
+    fn add<F: Frame>(
         &mut self,
-        graph: &Graph,
+        graph: &Graph<F>,
         object: usize,
         [length, square]: [f64; 2],
         total: &mut Total,

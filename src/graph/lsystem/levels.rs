@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame, Homothety};
+use crate::geometry::{DVec2, Frame2};
 use crate::instancing::Thickness;
 use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Piece};
@@ -14,9 +14,7 @@ use super::far::Far;
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, State};
 use super::words::{Words, Written};
-use crate::graph::{
-    Alternative, Chain, Evaluated, Graph, Instance, Object, Production, Replacement,
-};
+use crate::graph::{Alternative, Chain, Graph, Instance, Object, Production, Replacement};
 use crate::rule::Extent;
 
 /// Limit of the number of objects.
@@ -95,7 +93,7 @@ impl Graph {
         let (mut graph, written) = leveller.run(steps)?;
         if !written.is_empty() {
             graph.draws = true;
-            graph.evaluated = Some(Evaluated::Words(Arc::new(Words { effects, written })));
+            graph.source = Some(Arc::new(Words { effects, written }));
         }
         Ok(graph)
     }
@@ -221,7 +219,7 @@ impl Leveller<'_> {
                 (Far::of_length(1.0), Master::Polygon(number))
             }
         };
-        let frame: Frame = part.pose.frame(self.effects.compass, steps, unit);
+        let frame: Frame2 = part.pose.frame(self.effects.compass, steps, unit);
         let (width, sets) = match part.look.width {
             Thickness::Times(width) => (width, false),
             Thickness::Set(width) => (width, true),
@@ -328,36 +326,17 @@ impl Leveller<'_> {
             };
             let palette = &self.effects.system.metadata().style.palette;
             objects.push(Object {
-                base_element,
-                visible: true,
-                origin: None,
-                last_map: None,
-                tint: None,
                 paint: self.has_colours.then(|| palette.entry(key.colour)),
                 thickness,
-                index: 1,
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
+                ..Object::kept(base_element)
             });
         }
         let mut graph = Graph {
-            evaluated: None,
-            base_elements: self.base_elements.into(),
-            origins: 0,
-            objects,
-            initiators,
-            roots: Arc::default(),
             depth: Some(steps),
-            regular: true,
-            counts_index: false,
-            draws: false,
-            seeds: false,
             tints: self.has_colours,
-            widest: None,
-            affine: false,
-            unit: 1.0,
-            middle: DVec2::ZERO,
-            place: Homothety::IDENTITY,
+            ..Graph::of(objects, self.base_elements, initiators)
         };
         graph.find_widths();
         (graph, self.written)

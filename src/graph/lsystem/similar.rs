@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Direction, Frame, Homothety};
+use crate::geometry::{DVec2, Direction, Frame2};
 use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
 use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
@@ -66,7 +66,7 @@ impl Shape {
             };
             let [from, to] = link.ends;
             Some(Instance {
-                frame: Frame::between(from, to, direction),
+                frame: Frame2::between(from, to, direction),
                 length: from.distance(to),
                 joined: link.joined,
                 position: link.position,
@@ -468,40 +468,22 @@ impl Edges {
             let width = f64::from_bits(key.thickness.0);
             let palette = &system.metadata().style.palette;
             made.push(Object {
-                base_element: 0,
-                visible: true,
-                origin: None,
-                last_map: None,
-                tint: None,
                 paint: system.has_colours().then(|| palette.entry(key.colour)),
                 thickness: if key.thickness.1 {
                     Some(Thickness::Set(width))
                 } else {
                     Some(Thickness::Times(width)).filter(|_| width != 1.0)
                 },
-                index: 1,
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
+                ..Object::kept(0)
             });
         }
+        let start = start.chain(self, &objects, 0)?;
         let mut graph = Graph {
-            evaluated: None,
-            base_elements: [BaseElement::line()].into(),
-            origins: 0,
-            objects: made,
-            initiators: vec![start.chain(self, &objects, 0)?],
-            roots: Arc::default(),
-            depth: None,
-            regular: true,
-            counts_index: false,
-            draws: false,
-            seeds: false,
             tints: system.has_colours(),
-            widest: None,
-            affine: false,
-            unit: 1.0,
             middle: DVec2::new(0.5, 0.0),
-            place: Homothety::IDENTITY,
+            ..Graph::of(made, [BaseElement::line()], vec![start])
         };
         graph.find_widths();
         // Unbounded widths require a time-indexed graph.

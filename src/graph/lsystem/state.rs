@@ -1,6 +1,6 @@
 //! States of the turtle relative to an earlier state.
 
-use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame};
+use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame2};
 use crate::instancing::Thickness;
 use crate::lsystem::Compass;
 
@@ -120,7 +120,7 @@ impl Pose {
     }
 
     /// Returns the frame, in multiples of `unit`, of an object at this pose whose length is `steps`.
-    pub(super) fn frame(&self, compass: Compass, steps: Far, unit: Far) -> Frame {
+    pub(super) fn frame(&self, compass: Compass, steps: Far, unit: Far) -> Frame2 {
         let x_axis = self.turned(compass, steps.times(self.scale)).over(unit);
         let (y_axis, direction) = if self.mirrored {
             (-x_axis.perp(), Direction::YReflected)
@@ -129,7 +129,7 @@ impl Pose {
         };
         let matrix = DMat2::from_cols(x_axis, y_axis);
         let map = DAffine2::from_mat2_translation(matrix, self.place.over(unit));
-        Frame::new(map, direction)
+        Frame2::new(map, direction)
     }
 }
 

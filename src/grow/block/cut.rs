@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use crate::geometry::Frame;
 use crate::graph::{Graph, Instance, Replacement};
 
 /// Maximum number of objects of a graph; for larger graphs no ranges are computed.
@@ -36,7 +37,7 @@ pub(super) struct Cuts {
 impl Cuts {
     /// Computes, for every object, the ranges whose expansions have at most `most` elements. Objects whose
     /// instances are not fixed have no ranges; the list is empty unless all maps are similarities.
-    pub(super) fn of(graph: &Graph, most: u64) -> Vec<Self> {
+    pub(super) fn of<F: Frame>(graph: &Graph<F>, most: u64) -> Vec<Self> {
         let knows = graph.objects().len() <= MOST_OBJECTS
             && !graph.is_time_indexed()
             && !graph.counts_index()
@@ -51,7 +52,7 @@ impl Cuts {
             .collect()
     }
 
-    fn of_object(graph: &Graph, object: usize, most: u64) -> Self {
+    fn of_object<F: Frame>(graph: &Graph<F>, object: usize, most: u64) -> Self {
         let mut cuts = Self::default();
         let mut leaves = Leaves {
             fertile: BinaryHeap::new(),
@@ -161,7 +162,7 @@ struct Leaves {
 
 impl Leaves {
     /// Replaces a leaf, and returns whether its instances are fixed and the limit of elements holds.
-    fn replace(&mut self, graph: &Graph, leaf: Leaf, most: u64) -> bool {
+    fn replace<F: Frame>(&mut self, graph: &Graph<F>, leaf: Leaf, most: u64) -> bool {
         let Replacement::Fixed(production) = &graph.objects()[leaf.object].replacement else {
             return false;
         };
@@ -169,10 +170,7 @@ impl Leaves {
         self.count += instances.len() as u64;
         self.count -= 1;
         self.steps = self.steps.max(leaf.steps + 1);
-        let is_fertile = |instance: &&Instance| {
-            let object = &graph.objects()[instance.object];
-            !matches!(object.replacement, Replacement::Kept)
-        };
+        let is_fertile = |instance: &&Instance<F>| graph.is_fertile(instance.object);
         for instance in instances.iter().filter(is_fertile) {
             self.fertile.push(Leaf {
                 ratio: leaf.ratio * instance.length,

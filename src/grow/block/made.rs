@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::geometry::Frame;
-use crate::graph::{CompileError, Graph, Replacement};
+use crate::geometry::{Frame, Frame2, Outline};
+use crate::graph::{CompileError, Graph};
 
 use super::cut::Cuts;
-use super::{Block, Corners, Leaf, LineElement, births, unit};
+use super::{Block, Leaf, LineElement, births, unit};
 use crate::grow::descent::{Descent, Next, Stop};
 use crate::grow::sizes::Sizes;
 use crate::grow::start::Start;
@@ -26,14 +26,17 @@ static NEXT: AtomicU64 = AtomicU64::new(0);
 ///
 /// The set of possible blocks is determined beforehand: the output of a walk, to the last bit, does not
 /// depend on the order in which they are computed.
-pub(in crate::grow) struct Blocks {
+pub(in crate::grow) struct Blocks<F: Frame = Frame2> {
     known: Known,
     /// Whether all maps are similarities and no object changes its appearance. Otherwise blocks hold no lines,
     /// because shear and appearance change stroke widths.
     are_plain: bool,
     /// Blocks by object, direction, and number of steps or range of lengths.
-    made: Vec<[Vec<OnceLock<Option<Block>>>; 2]>,
+    made: Vec<[Slots<F>; 2]>,
 }
+
+/// Blocks of an object in one direction, by number of steps or range of lengths.
+type Slots<F> = Vec<OnceLock<Option<Block<F>>>>;
 
 /// Sizes of all possible blocks.
 enum Known {
@@ -43,10 +46,10 @@ enum Known {
     ByLength(Vec<Cuts>, f64),
 }
 
-impl Blocks {
+impl<F: Frame> Blocks<F> {
     /// Determines the possible blocks of at most `longest` elements. If `shortest` is given, elements below
     /// this length are not replaced.
-    pub(in crate::grow) fn of(graph: &Graph, longest: u64, shortest: Option<f64>) -> Self {
+    pub(in crate::grow) fn of(graph: &Graph<F>, longest: u64, shortest: Option<f64>) -> Self {
         let known = |most: u64| match shortest.filter(|&shortest| shortest > 0.0) {
             None => Known::BySteps(Sizes::fixed(graph, most)),
             Some(shortest) => Known::ByLength(Cuts::of(graph, most), shortest),
@@ -75,11 +78,11 @@ impl Blocks {
     #[inline]
     pub(in crate::grow) fn get(
         &self,
-        graph: &Graph,
+        graph: &Graph<F>,
         object: usize,
         steps: u32,
-        frame: &Frame,
-    ) -> Option<&Block> {
+        frame: &F,
+    ) -> Option<&Block<F>> {
         let reversed = frame.direction().is_reversed();
         let (slot, steps, length) = match &self.known {
             Known::BySteps(sizes) => {
@@ -107,13 +110,13 @@ impl Blocks {
     /// are not replaced.
     fn made(
         &self,
-        graph: &Graph,
+        graph: &Graph<F>,
         object: usize,
         steps: u32,
         length: f64,
         reversed: bool,
-    ) -> Result<Block, CompileError> {
-        let enter = |subtree: &Subtree| {
+    ) -> Result<Block<F>, CompileError> {
+        let enter = |subtree: &Subtree<F>| {
             if subtree.frame.stretch() * length < 1.0 {
                 Enter::Keep
             } else {
@@ -125,7 +128,7 @@ impl Blocks {
         let mut descent = Descent::below(graph, object, steps, unit);
         let mut leaves = Vec::new();
         let mut sticks = Some(Vec::new());
-        let mut corners = Some(Corners::default());
+        let mut corners = Some(F::Corners::default());
         let mut fertile = 0;
         let mut all = 0.0;
         loop {
@@ -139,9 +142,8 @@ impl Blocks {
                 Next::End => break,
             };
             let frame = found.standing.frame;
-            let object = &graph.objects()[found.object];
-            let base_element = &graph.base_elements()[object.base_element];
-            if object.visible && base_element.is_line() && self.are_plain {
+            let drawn = graph.drawn(found.object);
+            if drawn.is_some_and(Outline::is_line) && self.are_plain {
                 sticks.iter_mut().for_each(|sticks| {
                     sticks.push(LineElement {
                         ends: frame.ends(),
@@ -152,11 +154,11 @@ impl Blocks {
             } else {
                 sticks = None;
             }
-            if object.visible {
-                let (start, pieces) = base_element.outline(frame.direction().is_reversed());
-                corners = corners.and_then(|corners| corners.with(start, pieces, frame.map()));
+            if let Some(outline) = drawn {
+                corners = corners
+                    .and_then(|mut all| outline.add_corners(&mut all, &frame).then_some(all));
             }
-            fertile += u64::from(!matches!(object.replacement, Replacement::Kept));
+            fertile += u64::from(graph.is_fertile(found.object));
             all += frame.length();
             leaves.push(Leaf {
                 frame: frame.with_direction(unit * frame.direction()),

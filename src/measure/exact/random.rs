@@ -2,7 +2,7 @@
 //! 1986), or spectral radius 1 of the matrix of these expectations.
 
 use crate::expression::{Dependence, Program};
-use crate::graph::{Alternative, Evaluated, Graph, Replacement};
+use crate::graph::{Alternative, Graph, Replacement};
 use crate::rule::draw::Distribution;
 use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
@@ -37,7 +37,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
                 }
             }
             Replacement::Evaluated(alternatives) => {
-                let Evaluated::Rule(rule) = graph.evaluated() else {
+                let Some(rule) = graph.source().rule() else {
                     return Err("productions are drawn whose effects are not alike");
                 };
                 for (alternative, weight) in weighted(rule, alternatives)? {

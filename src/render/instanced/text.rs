@@ -185,12 +185,12 @@ pub(super) fn name(mut number: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Direction, Frame};
+    use crate::geometry::{Direction, Frame2};
 
     #[test]
     fn maps_are_short_and_precise() {
         let similar = |from: [f64; 2], to: [f64; 2], direction| {
-            transform(Frame::between(from.into(), to.into(), direction).map())
+            transform(Frame2::between(from.into(), to.into(), direction).map())
         };
         let third = 1.0 / 3.0;
         let normal = Direction::Normal;

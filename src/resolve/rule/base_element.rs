@@ -1,7 +1,7 @@
 //! Resolution of base elements.
 
 use crate::document::{BaseElementDocument, Point};
-use crate::geometry::{DVec2, Direction, Frame};
+use crate::geometry::{DVec2, Direction, Frame2};
 use crate::resolve::Resolver;
 
 use super::OfRule;
@@ -59,7 +59,7 @@ impl Resolver<OfRule> {
     }
 
     /// Returns the frame that `from` and `to` define in the outline's own coordinates.
-    fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame> {
+    fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame2> {
         let mut end = |point: &Option<Point>, default: DVec2| match point {
             Some(point) => self.constant_point(point),
             None => Some(default),
@@ -81,6 +81,6 @@ impl Resolver<OfRule> {
                 "they come to lie on (0, 0) and (1, 0)",
             );
         }
-        Some(Frame::between(from, to, Direction::Normal))
+        Some(Frame2::between(from, to, Direction::Normal))
     }
 }

@@ -1,7 +1,7 @@
 //! Base elements: outlines of lines and cubic Bézier curves in the unit frame, their extent and their
 //! area.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
+use super::{Bounds, Corners, Corners2, DAffine2, DVec2, Frame2, Outline};
 
 /// Piece of a base element's outline; it starts where the preceding piece ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,37 +170,8 @@ impl BaseElement {
         std::iter::once(self.start).chain(points)
     }
 
-    /// Returns the support function of the outline: the maximum of x·u over its points x.
-    #[must_use]
-    pub fn support(&self, direction: DVec2) -> f64 {
-        let mut from = self.start.dot(direction);
-        let mut largest = from;
-        for piece in &self.pieces {
-            let end = piece.end().dot(direction);
-            largest = largest.max(end);
-            if let Piece::Cubic(a, b, _) = piece {
-                let values = [from, a.dot(direction), b.dot(direction), end];
-                largest = largest.max(largest_of_cubic(values));
-            }
-            from = end;
-        }
-        largest
-    }
-
-    /// Returns the radius of a disc about `centre` that contains the outline: at least the least such
-    /// radius, at most √2 times that.
-    #[must_use]
-    pub fn radius_about(&self, centre: DVec2) -> f64 {
-        let mut far = DVec2::ZERO;
-        for axis in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
-            let beyond = self.support(axis) - axis.dot(centre);
-            far = far.max(axis.abs() * beyond.abs());
-        }
-        far.length()
-    }
-
     /// Extends `bounds` by the box of the outline placed in a frame, padded by `pad` on every side.
-    pub fn add_to(&self, bounds: &mut Bounds, frame: &Frame, pad: f64) {
+    pub fn add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) {
         let mut from = frame.apply(self.start);
         let mut add = |point: DVec2| {
             bounds.add(point - pad);
@@ -224,6 +195,53 @@ impl BaseElement {
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         self.signed_area
+    }
+}
+
+impl Outline<Frame2> for BaseElement {
+    fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    fn is_line(&self) -> bool {
+        self.is_line()
+    }
+
+    fn ends_meet_frame(&self) -> [bool; 2] {
+        self.ends_meet_frame()
+    }
+
+    fn signed_area(&self) -> f64 {
+        self.signed_area
+    }
+
+    fn support(&self, direction: DVec2) -> f64 {
+        let mut from = self.start.dot(direction);
+        let mut largest = from;
+        for piece in &self.pieces {
+            let end = piece.end().dot(direction);
+            largest = largest.max(end);
+            if let Piece::Cubic(a, b, _) = piece {
+                let values = [from, a.dot(direction), b.dot(direction), end];
+                largest = largest.max(largest_of_cubic(values));
+            }
+            from = end;
+        }
+        largest
+    }
+
+    fn add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) {
+        self.add_to(bounds, frame, pad);
+    }
+
+    fn add_corners(&self, corners: &mut Corners2, frame: &Frame2) -> bool {
+        let (start, pieces) = self.outline(frame.direction().is_reversed());
+        corners.add(frame.apply(start));
+        pieces.iter().all(|piece| {
+            let is_line = matches!(piece, Piece::Line(_));
+            corners.add(frame.apply(piece.end()));
+            is_line
+        })
     }
 }
 

@@ -1,0 +1,80 @@
+//! Convex hulls of subtrees, as far as frames of a kind have them: the interface of bounds.
+
+use crate::geometry::Frame;
+
+use super::{Graph, Instance};
+
+/// Precision of polygons as approximations of the convex hulls.
+#[derive(Clone, Copy)]
+pub struct Fineness {
+    /// Relative distance from the hulls at which iteration stops.
+    pub(super) tolerance: f64,
+    /// Limit of the number of corners that are mapped.
+    pub(super) most_work: usize,
+    /// Number of corners beyond which polygons are thinned more.
+    pub(super) most_corners: usize,
+    /// Length by which a box may fall short, relative to its extent; rounding adds to it in any case.
+    pub(super) spared: f64,
+}
+
+impl Fineness {
+    pub(super) const COARSE: Self = Self {
+        tolerance: 1e-4,
+        most_work: 1 << 20,
+        most_corners: 256,
+        spared: 0.0,
+    };
+
+    pub(super) const FINE: Self = Self {
+        tolerance: 1e-8,
+        most_work: 1 << 22,
+        most_corners: 2048,
+        spared: 1e-10,
+    };
+}
+
+/// What objects draw themselves, for hulls of their subtrees.
+#[derive(Clone, Copy, Debug)]
+pub enum Own<'a> {
+    /// Outlines, with a padding by object.
+    Outlines(&'a [f64]),
+    /// Balls about the middle of the unit frame, with a radius by object.
+    Discs(&'a [f64]),
+}
+
+/// Convex sets that contain the subtrees of objects.
+pub trait Hulls<F: Frame> {
+    /// Returns an upper bound of x·u over the subtree of an object, u being the vector, and a lower bound of
+    /// its maximum in the limit.
+    fn along(&self, object: usize, vector: F::Point) -> [f64; 2];
+
+    /// Returns the radius of a ball about a point that contains the subtree of an object.
+    fn radius(&self, object: usize, centre: F::Point) -> f64;
+
+    /// Returns points whose convex hull approximates the subtree of an object.
+    fn corners(&self, object: usize) -> &[F::Point];
+
+    /// Returns the length by which a box of instances may fall short.
+    fn spared(&self, instances: &[Instance<F>], fineness: Fineness) -> f64;
+}
+
+/// Frames whose graphs are bounded: by ratios of lengths alone, or more closely where the frames of a kind
+/// have hulls of subtrees and bounds of the stretch of products of maps.
+pub trait Bounded: Frame {
+    /// Returns convex sets that contain the subtrees of objects: at every step, or in the limit if `drawn`
+    /// states which objects are drawn there. `None` if there are none.
+    fn hulls(
+        _graph: &Graph<Self>,
+        _own: &Own<'_>,
+        _drawn: Option<&[bool]>,
+        _fineness: Fineness,
+    ) -> Option<Box<dyn Hulls<Self>>> {
+        None
+    }
+
+    /// Returns the sum, over all n, of the largest stretch of products of n maps; `None` if no bound is
+    /// found.
+    fn products(_graph: &Graph<Self>) -> Option<f64> {
+        None
+    }
+}

@@ -1,0 +1,119 @@
+//! Sources of instances that are computed for each element: rules that draw or count, and random L-systems.
+
+use std::fmt::Debug;
+
+use crate::expression::Interval;
+use crate::geometry::{DVec2, Frame, Frame2};
+use crate::rule::draw::Path;
+use crate::rule::{ElementContext, Extent, Part, Rule};
+
+use super::{Alternative, CompileError, Production, Words};
+
+/// Source of instances that are computed for each element.
+pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
+    /// Computes the production that the draws of a path select among alternatives, and overwrites
+    /// `production`.
+    fn evaluate(
+        &self,
+        alternatives: &[Alternative],
+        path: Path,
+        context: &ElementContext,
+        buffers: &mut Buffers<F>,
+        production: &mut Production<F>,
+    ) -> Result<(), CompileError>;
+
+    /// Returns the parts of a generator; empty if all of its elements stay.
+    fn parts(&self, generator: usize) -> &[Part];
+
+    /// Returns bounds of each element of a generator by position, or upper bounds of their power means for a
+    /// finite power (see `Generator::means`).
+    fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent>;
+
+    /// Returns the rule, if a rule of the plane is the source.
+    fn rule(&self) -> Option<&Rule> {
+        None
+    }
+}
+
+/// Buffers that evaluations reuse.
+#[derive(Debug)]
+pub(crate) struct Buffers<F: Frame> {
+    pub(crate) slots: Vec<f64>,
+    pub(crate) points: Vec<F::Point>,
+}
+
+impl<F: Frame> Default for Buffers<F> {
+    fn default() -> Self {
+        Self {
+            slots: Vec::new(),
+            points: Vec::new(),
+        }
+    }
+}
+
+impl Source<Frame2> for Rule {
+    fn evaluate(
+        &self,
+        alternatives: &[Alternative],
+        path: Path,
+        context: &ElementContext,
+        Buffers { slots, points }: &mut Buffers<Frame2>,
+        production: &mut Production,
+    ) -> Result<(), CompileError> {
+        let alternative = if let [only] = alternatives {
+            only
+        } else {
+            let generator = self.selection().select(context, path);
+            alternatives
+                .iter()
+                .find(|alternative| alternative.generator == generator)
+                .unwrap_or_else(|| unreachable!("every candidate has its alternative"))
+        };
+        let generator = &self.generators()[alternative.generator];
+        generator.evaluate(context, path, slots, points);
+        if !points.iter().all(|point: &DVec2| point.is_finite()) {
+            return Err(CompileError::not_finite(generator.name(), context));
+        }
+        production.set(generator.parts(), points, &alternative.objects);
+        Ok(())
+    }
+
+    fn parts(&self, generator: usize) -> &[Part] {
+        self.generators()[generator].parts()
+    }
+
+    fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent> {
+        let generator = &self.generators()[generator];
+        if power.is_infinite() {
+            generator.extents(moments)
+        } else {
+            generator.means(power, moments)
+        }
+    }
+
+    fn rule(&self) -> Option<&Rule> {
+        Some(self)
+    }
+}
+
+impl Source<Frame2> for Words {
+    fn evaluate(
+        &self,
+        alternatives: &[Alternative],
+        path: Path,
+        _: &ElementContext,
+        _: &mut Buffers<Frame2>,
+        production: &mut Production,
+    ) -> Result<(), CompileError> {
+        self.evaluate(alternatives, path, production);
+        Ok(())
+    }
+
+    fn parts(&self, _: usize) -> &[Part] {
+        &[]
+    }
+
+    fn extents(&self, word: usize, _: f64, _: &[Interval; 4]) -> Vec<Extent> {
+        self.extents(word).to_vec()
+    }
+}
