@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 pub use file::{cannot_be_read, open_file};
 

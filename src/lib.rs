@@ -94,9 +94,11 @@ pub mod chaos;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod convert;
+pub mod count;
 pub mod diagnostic;
 mod digraph;
 pub mod document;
+pub mod draws;
 pub mod estimate;
 pub mod export;
 pub mod expression;
@@ -109,6 +111,7 @@ pub mod grow;
 pub mod ifs;
 pub mod import;
 pub mod instancing;
+pub mod kind;
 pub mod lsystem;
 pub mod measure;
 pub mod metadata;
@@ -122,6 +125,7 @@ mod resolve;
 pub mod rule;
 mod saturating;
 pub mod style;
+pub mod written;
 pub mod zoom;
 
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};

@@ -6,7 +6,8 @@ mod lsystem;
 mod place;
 mod rule;
 
-pub use place::OutOfRange;
+pub use crate::graph::OutOfRange;
+pub use crate::kind::Kind;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -21,37 +22,9 @@ use crate::metadata::Metadata;
 use crate::rule::Rule;
 use place::Extent;
 
-/// Declares the kinds of fractals: the name of a kind in files, the folder of its files in libraries, and its noun.
-macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident($model:ty): $name:literal, $folder:literal, $noun:literal;)*) => {
-        /// Kind of a model and of its file.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        #[non_exhaustive]
-        pub enum Kind { $($(#[$doc])* $kind,)* }
-
-        impl Kind {
-            /// All kinds, in the order in which they are listed and in which names are looked up.
-            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$kind),*];
-
-            /// Returns the value of `kind:` in files of the kind.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$kind => $name,)* }
-            }
-
-            /// Returns the name of the folder of such files in a library.
-            #[must_use]
-            pub const fn folder(self) -> &'static str {
-                match self { $(Self::$kind => $folder,)* }
-            }
-
-            /// Returns the noun for such a fractal, for use in messages.
-            #[must_use]
-            pub const fn noun(self) -> &'static str {
-                match self { $(Self::$kind => $noun,)* }
-            }
-        }
-
+/// Declares the models of the kinds.
+macro_rules! models {
+    ($($(#[$doc:meta])* $kind:ident($model:ty);)*) => {
         /// Validated model: immutable, without unparsed text.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
@@ -78,15 +51,15 @@ macro_rules! kinds {
     };
 }
 
-kinds! {
+models! {
     /// Production rule.
-    Rule(Rule): "rule", "rules", "rule";
+    Rule(Rule);
     /// Iterated function system.
-    Ifs(System): "ifs", "ifs", "system";
+    Ifs(System);
     /// Structure of objects that instance each other.
-    Instancing(Instancing): "instancing", "instancing", "structure";
+    Instancing(Instancing);
     /// L-system.
-    LSystem(LSystem): "lsystem", "lsystems", "L-system";
+    LSystem(LSystem);
 }
 
 /// Properties of a model that depend on its kind. Each kind implements them in a file of this module.

@@ -1,6 +1,6 @@
 //! Integers formatted for messages.
 
-use crate::graph::Count;
+use crate::count::Count;
 
 /// Formats an integer with commas between thousands; one of more than 60 digits in scientific notation,
 /// with its first four digits.

@@ -19,9 +19,11 @@ mod set;
 mod unused;
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Place};
-use crate::document::{KindDocument, MetadataDocument, Setting};
+use crate::catalogue::Catalogue;
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
+use crate::document::{Document, KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
 use crate::metadata::Metadata;
 use crate::model::Model;
@@ -31,15 +33,51 @@ pub(crate) use parameters::order as order_of_parameters;
 /// Number of mistakes after which expressions and names are not checked further.
 const MOST_MISTAKES: usize = 1000;
 
-/// Maximum number of steps that a file may propose.
-pub(crate) const MOST_STEPS: u32 = 1_000_000;
+impl Document {
+    /// Reads a file of any kind from a text.
+    ///
+    /// # Errors
+    ///
+    /// Returns all mistakes in the text, its parents and its components.
+    pub fn read(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
+        let mut document = Self::parse(source, catalogue)?;
+        let mut all = std::mem::take(&mut document.warnings);
+        if all.has_errors() {
+            // Mistakes in names and values are reported together with those of syntax.
+            all.extend(resolve(document.kind(), &[]).err().unwrap_or_default());
+            return Err(all.without_repeats());
+        }
+        document.warnings = all.without_repeats();
+        Ok(document)
+    }
+
+    /// Resolves the document with the given parameters and returns the validated model with all
+    /// warnings.
+    ///
+    /// # Errors
+    ///
+    /// Returns all mistakes and warnings if the document or a setting is invalid.
+    pub fn resolve(&self, settings: &[Setting]) -> Result<(Model, Diagnostics), Diagnostics> {
+        let mut all = self.warnings.clone();
+        match resolve(self.kind(), settings) {
+            Ok((model, doubts)) => {
+                all.extend(doubts);
+                Ok((model, all.without_repeats()))
+            }
+            Err(mistakes) => {
+                all.extend(mistakes);
+                Err(all.without_repeats())
+            }
+        }
+    }
+}
 
 /// Validates a document, with parameters set from outside, and returns the model with warnings.
 ///
 /// # Errors
 ///
 /// Returns all mistakes and warnings if there is a mistake.
-pub(crate) fn resolve(
+fn resolve(
     document: &KindDocument,
     settings: &[Setting],
 ) -> Result<(Model, Diagnostics), Diagnostics> {

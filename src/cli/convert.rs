@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::catalogue::Catalogue;
 use crate::convert::{ConvertError, Keeps, Refusal, convert};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, help, output};

@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
+use crate::count::Count;
 use crate::estimate::{Estimator, SizeEstimate, instanced_bytes};
 use crate::geometry::Bounds;
-use crate::graph::{Count, Graph, Level};
+use crate::graph::{Graph, Level};
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
 use crate::metadata::Parameter;

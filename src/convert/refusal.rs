@@ -1,7 +1,7 @@
 //! Reasons why a fractal has no equivalent of another kind.
 
 use crate::graph::NoLimit;
-use crate::model::Kind;
+use crate::kind::Kind;
 
 /// Reason why a kind cannot express a fractal. Maps and elements are numbered from 1 in messages.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

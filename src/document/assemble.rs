@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::catalogue::{Catalogue, Shelf, is_same_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest};
 
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::data;
 use super::merge::{Entries, merge};

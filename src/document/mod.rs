@@ -41,97 +41,17 @@ pub use rule::{
 
 pub use schema::{schema, schema_of_all};
 
+pub use crate::written::{Number, Point, Written};
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Place, Source};
-use crate::expression::{Expression, PARTS};
-use crate::model::Model;
-use crate::resolve;
+use crate::expression::Expression;
 
 use node::Node;
-
-/// A value with its source span.
-#[derive(Clone, Debug)]
-pub struct Written<T> {
-    /// The value.
-    pub value: T,
-    /// Source span of the value.
-    pub place: Place,
-}
-
-/// A number as written: an expression.
-pub type Number = Written<Expression>;
-
-/// A point as written.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// First coordinate, to the right.
-    pub x: Number,
-    /// Second coordinate, upwards.
-    pub y: Number,
-    /// Source span of the point.
-    pub place: Place,
-}
-
-impl Point {
-    /// Returns a placeholder for a point that cannot be read.
-    pub(crate) fn unknown(place: &Place) -> Self {
-        let unknown = || Written {
-            value: Expression::unknown(),
-            place: place.clone(),
-        };
-        Self {
-            x: unknown(),
-            y: unknown(),
-            place: place.clone(),
-        }
-    }
-
-    /// Returns (0, 0) for a point that is left out.
-    pub(crate) fn origin(place: &Place) -> Self {
-        let zero = || Written {
-            value: Expression::number(0.0),
-            place: place.clone(),
-        };
-        Self {
-            x: zero(),
-            y: zero(),
-            place: place.clone(),
-        }
-    }
-
-    /// Returns a complex parameter of the given name as a point.
-    pub(crate) fn named(name: &str, place: &Place) -> Self {
-        let part = |part: &str| Written {
-            value: Expression::parse(&format!("{name}{part}"))
-                .unwrap_or_else(|_| Expression::unknown()),
-            place: place.clone(),
-        };
-        let [x, y] = PARTS.map(part);
-        Self {
-            x,
-            y,
-            place: place.clone(),
-        }
-    }
-
-    /// Returns the name of the complex parameter if the point is written as one.
-    pub(crate) fn name(&self) -> Option<&str> {
-        let names = self.x.value.names();
-        let (name, _) = names.first()?;
-        let name = name.strip_suffix(PARTS[0])?;
-        (self.place.text() == name).then(|| self.place.text())
-    }
-
-    /// Returns whether the expressions of both coordinates are written alike.
-    #[must_use]
-    pub fn is_written_like(&self, other: &Self) -> bool {
-        self.x.value == other.x.value && self.y.value == other.y.value
-    }
-}
 
 /// The content of a file as written, by kind.
 #[derive(Clone, Debug)]
@@ -165,34 +85,30 @@ impl KindDocument {
 pub struct Document {
     node: Node,
     kind: KindDocument,
-    warnings: Diagnostics,
+    pub(crate) warnings: Diagnostics,
 }
 
 impl Document {
-    /// Reads a file of any kind from a text.
+    /// Reads a file without resolving it; its warnings contain all mistakes found so far.
     ///
     /// # Errors
     ///
-    /// Returns all mistakes in the text, its parents and its components.
-    pub fn read(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
-        let mut diagnostics = Diagnostics::default();
-        let assembled = assemble::assemble(source, catalogue, &mut diagnostics);
-        let Some((node, kind, complete)) = assembled else {
-            return Err(diagnostics.without_repeats());
-        };
-        let Some(kind) = read::read(kind, &node, complete, &mut diagnostics) else {
-            return Err(diagnostics.without_repeats());
-        };
-        if diagnostics.has_errors() {
-            // Mistakes in names and values are reported together with those of syntax.
-            diagnostics.extend(resolve::resolve(&kind, &[]).err().unwrap_or_default());
-            return Err(diagnostics.without_repeats());
+    /// Returns all mistakes if the text is no document of any kind.
+    pub(crate) fn parse(source: &Arc<Source>, catalogue: &Catalogue) -> Result<Self, Diagnostics> {
+        let mut warnings = Diagnostics::default();
+        let assembled = assemble::assemble(source, catalogue, &mut warnings);
+        let parsed = assembled.and_then(|(node, kind, complete)| {
+            let kind = read::read(kind, &node, complete, &mut warnings)?;
+            Some((node, kind))
+        });
+        match parsed {
+            Some((node, kind)) => Ok(Self {
+                node,
+                kind,
+                warnings,
+            }),
+            None => Err(warnings.without_repeats()),
         }
-        Ok(Self {
-            node,
-            kind,
-            warnings: diagnostics.without_repeats(),
-        })
     }
 
     /// Returns the content as written.
@@ -231,26 +147,6 @@ impl Document {
     #[must_use]
     pub fn to_yaml(&self) -> String {
         self.node.to_yaml()
-    }
-
-    /// Resolves the document with the given parameters and returns the validated model with all
-    /// warnings.
-    ///
-    /// # Errors
-    ///
-    /// Returns all mistakes and warnings if the document or a setting is invalid.
-    pub fn resolve(&self, settings: &[Setting]) -> Result<(Model, Diagnostics), Diagnostics> {
-        let mut all = self.warnings.clone();
-        match resolve::resolve(&self.kind, settings) {
-            Ok((model, doubts)) => {
-                all.extend(doubts);
-                Ok((model, all.without_repeats()))
-            }
-            Err(mistakes) => {
-                all.extend(mistakes);
-                Err(all.without_repeats())
-            }
-        }
     }
 }
 

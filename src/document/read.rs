@@ -27,7 +27,7 @@ pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 
 use crate::diagnostic::{Diagnostics, Place};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::KindDocument;
 use super::node::Node;

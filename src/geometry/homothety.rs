@@ -112,6 +112,11 @@ impl Homothety {
     }
 }
 
+/// Returns the exponent e of a positive number x: 2^e ≤ x < 2^(e+1).
+pub(crate) fn exponent_of(size: f64) -> i32 {
+    libm::frexp(size).1 - 1
+}
+
 /// Computes A c + b − c in twice the precision of a double, for its large terms cancel.
 fn moved(linear: &DMat2, c: DVec2, b: DVec2) -> DVec2 {
     let rows = linear.transpose();

@@ -25,4 +25,5 @@ pub use homothety::Homothety;
 pub use point::Point;
 
 pub(crate) use frame2::stretch;
+pub(crate) use homothety::exponent_of;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

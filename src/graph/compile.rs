@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::draws::Path;
 use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
 use crate::geometry::DVec2;
-use crate::rule::draw::Path;
 use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};

@@ -2,7 +2,6 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
-use crate::model::OutOfRange;
 use crate::rule::{ElementContext, Rule};
 
 /// Error: a model cannot be compiled or grown.
@@ -85,4 +84,48 @@ impl CompileError {
             None => diagnostic.at(&generator.origin.name),
         }
     }
+}
+
+/// Least and greatest extent of a model: approximants must stay within the range of doubles.
+pub(crate) const EXTENTS: [f64; 2] = [1e-300, 1e300];
+
+/// Limit of the distance from the origin, as a multiple of the extent, beyond which doubles do not
+/// resolve pixels.
+pub(crate) const FARTHEST: f64 = 1e12;
+
+/// Error: a model is beyond the range or the precision of doubles.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutOfRange {
+    /// The model is too large or too small.
+    #[error(
+        "it is {size:.3e} across: what is drawn and measured is from {least:e} to {most:e}; numbers \
+         in other units are right",
+        least = EXTENTS[0],
+        most = EXTENTS[1]
+    )]
+    Size {
+        /// Longer side of the bounding box, approximately, in the model's units.
+        size: f64,
+    },
+    /// The model is too far from the origin.
+    #[error(
+        "it lies {distance:.3e} from the origin, {ratio:.1e} times its extent of {size:.3e}: numbers do not \
+         tell its points apart, and less than {FARTHEST:e} times is right, such as a place at the origin",
+        ratio = distance / size
+    )]
+    Distance {
+        /// Distance from the origin: the larger coordinate, in the model's units.
+        distance: f64,
+        /// Longer side of the bounding box, approximately, in the model's units.
+        size: f64,
+    },
+    /// An approximant leaves the range of doubles.
+    #[error(
+        "by step {step} it becomes larger than the range of numbers, 1.8e308: fewer steps are right"
+    )]
+    Growth {
+        /// Number of steps of the approximant.
+        step: u32,
+    },
 }

@@ -6,10 +6,11 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
+use crate::count::Count;
 use crate::geometry::{Direction, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
-use super::{Alternative, Chain, Count, Graph, Instance, Object, Replacement};
+use super::{Alternative, Chain, Graph, Instance, Object, Replacement};
 
 mod levels;
 

@@ -1,8 +1,9 @@
 //! Check of the number of elements of an approximant against a limit.
 
+use crate::count::Count;
 use crate::geometry::Frame;
 
-use super::{Count, Graph};
+use super::Graph;
 
 /// Error: an approximant has more elements than are allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -23,7 +23,6 @@ mod bounded;
 mod bounds;
 mod compile;
 mod contract;
-mod count;
 mod error;
 mod forecast;
 mod hull;
@@ -44,8 +43,8 @@ mod thickness;
 
 pub use bounded::Bounded;
 pub use bounds::ApproximantBounds;
-pub use count::Count;
-pub use error::CompileError;
+pub use error::{CompileError, OutOfRange};
+pub(crate) use error::{EXTENTS, FARTHEST};
 pub use forecast::{Forecast, Level, Population};
 pub use limit::TooLarge;
 pub use no_limit::NoLimit;
@@ -53,7 +52,6 @@ pub use no_limit::NoLimit;
 pub(crate) use ifs::{filling, outline as base_element};
 pub(crate) use lsystem::Chords;
 use lsystem::Words;
-pub(crate) use place::exponent_of;
 pub(crate) use roots::{Root, Roots, Sown};
 pub(crate) use source::{Buffers, Source};
 

@@ -1,6 +1,6 @@
 //! The homothety between the coordinates of a graph and those of its model.
 
-use crate::geometry::{Bounds, DVec2, Homothety};
+use crate::geometry::{Bounds, DVec2, Homothety, exponent_of};
 use crate::rule::Placement;
 
 use super::{Chain, Graph};
@@ -100,11 +100,6 @@ impl Graph {
         }
         longest
     }
-}
-
-/// Returns the exponent e of a positive number x: 2^e ≤ x < 2^(e+1).
-pub(crate) fn exponent_of(size: f64) -> i32 {
-    libm::frexp(size).1 - 1
 }
 
 #[expect(

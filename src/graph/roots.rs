@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use crate::draws::Path;
 use crate::geometry::{Frame, Frame2};
 use crate::instancing::Appearance;
-use crate::rule::draw::Path;
 
 use super::Chain;
 

@@ -2,9 +2,9 @@
 
 use std::fmt::Debug;
 
+use crate::draws::Path;
 use crate::expression::Interval;
 use crate::geometry::{DVec2, Frame, Frame2};
-use crate::rule::draw::Path;
 use crate::rule::{ElementContext, Extent, Part, Rule};
 
 use super::{Alternative, CompileError, Production, Words};

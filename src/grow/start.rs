@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
+use crate::draws::Path;
 use crate::geometry::{Frame, Frame2};
 use crate::graph::{Chain, Graph, Instance, Root};
 use crate::instancing::Appearance;
 use crate::rule::Placement;
-use crate::rule::draw::Path;
 
 /// Placement of an element with all that its descendants inherit.
 #[derive(Clone, Copy, Debug)]

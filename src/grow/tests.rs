@@ -7,13 +7,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3};
 
+use crate::draws::{Path, pick_by_weight};
 use crate::expression::Interval;
 use crate::geometry::{Bounds, Corners, DVec3, Direction, Frame, Outline};
 use crate::graph::{
     Alternative, Bounded, Buffers, Chain, CompileError, Graph, Instance, Object, Production,
     Replacement, Seed, Source,
 };
-use crate::rule::draw::{Path, pick_by_weight};
 use crate::rule::{ElementContext, Extent, Part, Placement};
 
 use super::{

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use super::Moments;
 use super::moments::square;
 use crate::expression::degrees;
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
-use crate::graph::exponent_of;
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, exponent_of};
 use crate::rule::{BaseElement, Piece, arc};
 
 /// A condensation set or an initial set, in the coordinates of the plane.

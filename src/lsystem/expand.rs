@@ -1,7 +1,7 @@
 //! Words that are read without being stored: where no production has a context, the descendants of a module
 //! depend on its ancestors alone.
 
-use crate::rule::draw::Path;
+use crate::draws::Path;
 
 use super::rewrite::{MOST_WORK, RewriteError, Rewriter};
 use super::word::number;

@@ -1,6 +1,6 @@
 //! Rewriting of words, step by step, within limits of length and work.
 
-use crate::rule::draw::{Path, pick_by_weight};
+use crate::draws::{Path, pick_by_weight};
 
 use crate::readable::grouped;
 

@@ -1,6 +1,6 @@
 //! Words of an L-system in compact form.
 
-use crate::rule::draw::Path;
+use crate::draws::Path;
 
 use super::{LSystem, Module};
 

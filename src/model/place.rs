@@ -10,8 +10,8 @@
 //! In a system and in a structure every map f becomes h⁻¹ f h, and every set its image under h⁻¹. An
 //! L-system starts at the origin and represents lengths of any exponent itself.
 
-use crate::geometry::{Bounds, DVec2, Homothety};
-use crate::graph::{CompileError, Graph, exponent_of};
+use crate::geometry::{Bounds, DVec2, Homothety, exponent_of};
+use crate::graph::{CompileError, EXTENTS, FARTHEST, Graph, OutOfRange};
 use crate::ifs::Map;
 
 use super::Model;
@@ -21,50 +21,6 @@ const ORDINARY: f64 = (1u64 << 20) as f64;
 
 /// Limit of the distance from the origin, as a multiple of the extent, of models that are used unchanged.
 const NEAR: f64 = 1000.0;
-
-/// Limit of the distance from the origin, as a multiple of the extent, beyond which doubles do not
-/// resolve pixels.
-const FARTHEST: f64 = 1e12;
-
-/// Least and greatest extent of a model: approximants must stay within the range of doubles.
-const EXTENTS: [f64; 2] = [1e-300, 1e300];
-
-/// Error: a model is beyond the range or the precision of doubles.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum OutOfRange {
-    /// The model is too large or too small.
-    #[error(
-        "it is {size:.3e} across: what is drawn and measured is from {least:e} to {most:e}; numbers \
-         in other units are right",
-        least = EXTENTS[0],
-        most = EXTENTS[1]
-    )]
-    Size {
-        /// Longer side of the bounding box, approximately, in the model's units.
-        size: f64,
-    },
-    /// The model is too far from the origin.
-    #[error(
-        "it lies {distance:.3e} from the origin, {ratio:.1e} times its extent of {size:.3e}: numbers do not \
-         tell its points apart, and less than {FARTHEST:e} times is right, such as a place at the origin",
-        ratio = distance / size
-    )]
-    Distance {
-        /// Distance from the origin: the larger coordinate, in the model's units.
-        distance: f64,
-        /// Longer side of the bounding box, approximately, in the model's units.
-        size: f64,
-    },
-    /// An approximant leaves the range of doubles.
-    #[error(
-        "by step {step} it becomes larger than the range of numbers, 1.8e308: fewer steps are right"
-    )]
-    Growth {
-        /// Number of steps of the approximant.
-        step: u32,
-    },
-}
 
 /// Estimate of the position and size of a model.
 pub(crate) struct Extent {

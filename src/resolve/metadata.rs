@@ -1,9 +1,9 @@
 //! Resolution of metadata, which files of all kinds have.
 
 use crate::document::{MetadataDocument, Number, Setting};
-use crate::metadata::Metadata;
+use crate::metadata::{MOST_STEPS, Metadata};
 
-use super::{MOST_STEPS, Resolver, numbers, whole_number};
+use super::{Resolver, numbers, whole_number};
 
 impl<K> Resolver<K> {
     /// Resolves the metadata of a file and adds its parameters to the scope of expressions.

@@ -178,8 +178,8 @@ mod tests {
     use super::*;
     use crate::catalogue::{Catalogue, Shelf};
     use crate::document::Document;
+    use crate::draws::Path;
     use crate::geometry::DVec2;
-    use crate::rule::draw::Path;
 
     #[test]
     fn what_is_drawn_keeps_within_its_extents() {

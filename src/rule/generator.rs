@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
-use crate::document::Point;
 use crate::expression::{Dependence, Program, degrees};
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
+use crate::written::Point;
 
-use super::draw::{Path, Variable};
+use crate::draws::{Path, Variable};
 
 /// Values that the expressions of a generator and of a selection see of the element that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]

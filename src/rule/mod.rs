@@ -5,7 +5,6 @@
 //! evaluated. The initiator has at least one element, and every element that may be fertile has a
 //! generator.
 
-pub mod draw;
 mod extent;
 mod generator;
 mod selection;

@@ -2,8 +2,8 @@
 
 use crate::expression::Program;
 
-use super::draw::{Path, pick_by_weight};
 use super::generator::ElementContext;
+use crate::draws::{Path, pick_by_weight};
 
 /// Selection of the generator for a fertile element that does not name its own.
 #[derive(Clone, Debug, PartialEq)]

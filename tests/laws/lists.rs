@@ -2,7 +2,7 @@
 //! replaced as a whole. Slow, and simple enough to be compared with the paper.
 
 use kfrac::geometry::{DAffine2, DVec2, Direction, Frame2};
-use kfrac::rule::draw::Path;
+use kfrac::draws::Path;
 use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
 
 /// An element of a list.

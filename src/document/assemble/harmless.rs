@@ -4,7 +4,7 @@ use crate::catalogue::Shelf;
 use crate::diagnostic::Place;
 use crate::document::merge::Entries;
 use crate::document::node::{Key, Node, Value};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 /// Returns placeholder entries for a missing parent.
 pub(super) fn harmless_parent(place: &Place, kind: Kind) -> Entries {

@@ -10,7 +10,7 @@ use crate::document::ifs::{
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};

@@ -12,7 +12,7 @@ use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
 use crate::document::style::read_colour;
 use crate::document::{Number, Written};
 use crate::expression::Expression;
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};

@@ -7,7 +7,7 @@ use crate::document::reader::Reader;
 use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
 use crate::document::{Number, Written};
 use crate::expression::Expression;
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};

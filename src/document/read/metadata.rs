@@ -7,7 +7,7 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key};
 use crate::document::style::{STYLE, VIEW, read_style, read_view};
 use crate::metadata::Description;
-use crate::resolve::MOST_STEPS;
+use crate::metadata::MOST_STEPS;
 
 use super::parameters::read_params;
 

@@ -5,7 +5,7 @@ use crate::document::node::Node;
 use crate::document::reader::Reader;
 use crate::document::rule::{InitiatorDocument, RuleDocument};
 use crate::document::shape::{Form, Member, Needed, Shape, Way, key};
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::base_element::{BASE_ELEMENT_OF, read_base_element};
 use super::elements::{ELEMENTS, INITIATOR, read_initiator};

@@ -6,8 +6,8 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
 use crate::document::{Number, Point, Written};
 use crate::expression::PARTS;
-use crate::model::Kind;
-use crate::resolve::MOST_STEPS;
+use crate::kind::Kind;
+use crate::metadata::MOST_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;

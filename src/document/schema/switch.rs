@@ -3,7 +3,7 @@
 use crate::catalogue::Shelf;
 use crate::document::read::{DESCRIPTION, GENERATOR, INITIATOR, PARAMS, RULE};
 use crate::document::shape::Shape;
-use crate::model::Kind;
+use crate::kind::Kind;
 
 use super::json::{Object, list};
 

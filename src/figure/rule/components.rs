@@ -1,8 +1,8 @@
 //! Blocks of the three components of a rule: initiator, generators and base elements.
 
 use crate::document::RuleDocument;
+use crate::draws::Path;
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
-use crate::rule::draw::Path;
 use crate::rule::{ElementContext, Rule, Selection};
 
 use super::super::text::Font;

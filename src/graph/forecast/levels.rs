@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::count::Count;
 use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Replacement};
 
-use super::{Count, Forecast, Sums, Tally};
+use super::{Forecast, Sums, Tally};
 
 /// Leaves of the subtree of an object of length 1.
 #[derive(Default)]

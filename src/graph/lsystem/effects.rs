@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::draws::Path;
 use crate::lsystem::{Action, Compass, LSystem};
-use crate::rule::draw::Path;
 
 use super::NotCompiled;
 use super::far::Far;

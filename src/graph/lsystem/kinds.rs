@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::draws::{Path, pick_by_weight};
 use crate::lsystem::{Action, LSystem};
-use crate::rule::draw::{Path, pick_by_weight};
 
 use super::NotCompiled;
 

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::draws::Path;
 use crate::geometry::{DVec2, Frame2};
 use crate::instancing::Thickness;
-use crate::rule::draw::Path;
 use crate::rule::{BaseElement, Piece};
 
 use super::NotCompiled;

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
+use crate::draws::Path;
 use crate::geometry::DVec2;
 use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
-use crate::rule::draw::Path;
 
 use super::NotCompiled;
 use super::effects::{Drawn, Effect, Effects};

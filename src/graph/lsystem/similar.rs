@@ -4,12 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use crate::draws::Path;
 use crate::geometry::{DVec2, Direction, Frame2};
 use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
 use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
-use crate::rule::draw::Path;
 
 use super::NotCompiled;
 use super::effects::Effects;

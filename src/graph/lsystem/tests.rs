@@ -4,10 +4,11 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf};
+use crate::count::Count;
 use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::geometry::{Bounds, DVec2};
-use crate::graph::{Count, Graph};
+use crate::graph::Graph;
 use crate::grow::{Element, FractalInfo, Growth, Visitor, extent, walk};
 use crate::lsystem::LSystem;
 use crate::model::Model;

@@ -1,9 +1,9 @@
 //! L-systems with random productions: the position of a module is found by reading the modules before it,
 //! with the draws of its path.
 
+use crate::draws::Path;
 use crate::graph::{Alternative, Instance, Production};
 use crate::rule::Extent;
-use crate::rule::draw::Path;
 
 use super::effects::Effects;
 use super::far::Far;

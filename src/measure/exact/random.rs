@@ -1,9 +1,9 @@
 //! The expected dimension of rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams
 //! 1986), or spectral radius 1 of the matrix of these expectations.
 
+use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
 use crate::graph::{Alternative, Graph, Replacement};
-use crate::rule::draw::Distribution;
 use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
 use super::spectral::dense_radius;

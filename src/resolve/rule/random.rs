@@ -6,8 +6,8 @@ use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoint
 use crate::expression::{Program, Scope, Type, is_name, is_reserved};
 
 use super::OfRule;
+use crate::draws::{Distribution, Variable};
 use crate::resolve::{Resolver, whole_number};
-use crate::rule::draw::{Distribution, Variable};
 use crate::rule::{ElementContext, Move};
 
 /// Maximum number of moves of a generator: each takes time in every replacement.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::document::{MoveDocument, RuleDocument};
+use crate::draws;
 use crate::expression::Precise;
 use crate::graph::{Graph, Instance};
 use crate::rule::{self, ListedElement, Rule};
@@ -56,7 +57,7 @@ impl<'a> OfRule<'a> {
         let generator = &self.rule.generators()[number];
         let moment = parent.moment.seen(parent.standing);
         let slots = generator.slots(&moment, parent.standing.path);
-        let variables = generator.variables().iter().map(rule::draw::Variable::name);
+        let variables = generator.variables().iter().map(draws::Variable::name);
         let names = rule::ElementContext::NAMES.into_iter().chain(variables);
         let names: Vec<(&str, Precise)> = names.zip(slots.into_iter().map(Precise::of)).collect();
         let mut points: BTreeMap<usize, Vector> = BTreeMap::new();

@@ -1,0 +1,45 @@
+//! The four kinds of models and files.
+
+/// Declares the kinds of fractals: the name of a kind in files, the folder of its files in libraries, and its noun.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident: $name:literal, $folder:literal, $noun:literal;)*) => {
+        /// Kind of a model and of its file.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Kind { $($(#[$doc])* $kind,)* }
+
+        impl Kind {
+            /// All kinds, in the order in which they are listed and in which names are looked up.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$kind),*];
+
+            /// Returns the value of `kind:` in files of the kind.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$kind => $name,)* }
+            }
+
+            /// Returns the name of the folder of such files in a library.
+            #[must_use]
+            pub const fn folder(self) -> &'static str {
+                match self { $(Self::$kind => $folder,)* }
+            }
+
+            /// Returns the noun for such a fractal, for use in messages.
+            #[must_use]
+            pub const fn noun(self) -> &'static str {
+                match self { $(Self::$kind => $noun,)* }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Production rule.
+    Rule: "rule", "rules", "rule";
+    /// Iterated function system.
+    Ifs: "ifs", "ifs", "system";
+    /// Structure of objects that instance each other.
+    Instancing: "instancing", "instancing", "structure";
+    /// L-system.
+    LSystem: "lsystem", "lsystems", "L-system";
+}

@@ -1,0 +1,84 @@
+//! Numbers and points as written in files, with their places.
+
+use crate::diagnostic::Place;
+use crate::expression::{Expression, PARTS};
+
+/// A value with its source span.
+#[derive(Clone, Debug)]
+pub struct Written<T> {
+    /// The value.
+    pub value: T,
+    /// Source span of the value.
+    pub place: Place,
+}
+
+/// A number as written: an expression.
+pub type Number = Written<Expression>;
+
+/// A point as written.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// First coordinate, to the right.
+    pub x: Number,
+    /// Second coordinate, upwards.
+    pub y: Number,
+    /// Source span of the point.
+    pub place: Place,
+}
+
+impl Point {
+    /// Returns a placeholder for a point that cannot be read.
+    pub(crate) fn unknown(place: &Place) -> Self {
+        let unknown = || Written {
+            value: Expression::unknown(),
+            place: place.clone(),
+        };
+        Self {
+            x: unknown(),
+            y: unknown(),
+            place: place.clone(),
+        }
+    }
+
+    /// Returns (0, 0) for a point that is left out.
+    pub(crate) fn origin(place: &Place) -> Self {
+        let zero = || Written {
+            value: Expression::number(0.0),
+            place: place.clone(),
+        };
+        Self {
+            x: zero(),
+            y: zero(),
+            place: place.clone(),
+        }
+    }
+
+    /// Returns a complex parameter of the given name as a point.
+    pub(crate) fn named(name: &str, place: &Place) -> Self {
+        let part = |part: &str| Written {
+            value: Expression::parse(&format!("{name}{part}"))
+                .unwrap_or_else(|_| Expression::unknown()),
+            place: place.clone(),
+        };
+        let [x, y] = PARTS.map(part);
+        Self {
+            x,
+            y,
+            place: place.clone(),
+        }
+    }
+
+    /// Returns the name of the complex parameter if the point is written as one.
+    pub(crate) fn name(&self) -> Option<&str> {
+        let names = self.x.value.names();
+        let (name, _) = names.first()?;
+        let name = name.strip_suffix(PARTS[0])?;
+        (self.place.text() == name).then(|| self.place.text())
+    }
+
+    /// Returns whether the expressions of both coordinates are written alike.
+    #[must_use]
+    pub fn is_written_like(&self, other: &Self) -> bool {
+        self.x.value == other.x.value && self.y.value == other.y.value
+    }
+}
