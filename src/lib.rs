@@ -93,6 +93,7 @@ pub mod catalogue;
 pub mod chaos;
 #[cfg(feature = "cli")]
 pub mod cli;
+mod compile;
 pub mod convert;
 pub mod count;
 pub mod diagnostic;
@@ -102,6 +103,7 @@ pub mod draws;
 pub mod estimate;
 pub mod export;
 pub mod expression;
+pub mod extent;
 mod fast_hash;
 pub mod figure;
 mod fractal;

@@ -7,8 +7,9 @@ mod common;
 use common::{document, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::estimate::Estimator;
+use kfrac::extent::bounding_box;
 use kfrac::graph::Graph;
-use kfrac::grow::{Growth, extent};
+use kfrac::grow::Growth;
 use kfrac::render::{self, Format, Options, Size};
 
 /// Compares the estimates for those steps of a rule that have a number of elements in a range with pictures
@@ -28,7 +29,7 @@ fn hold(name: &str, elements: std::ops::RangeInclusive<u64>, side: u32) -> usize
         let count = forecast.elements().to_u64().unwrap();
         if elements.contains(&count) {
             let growth = Growth::steps(step);
-            let bounds = extent(&graph, &growth).unwrap();
+            let bounds = bounding_box(&graph, &growth).unwrap();
             let estimate = estimator.at(&forecast, &bounds).unwrap();
             let mut svg = Vec::new();
             render::write(&graph, &growth, &options, &mut svg).unwrap();
@@ -84,7 +85,7 @@ fn sizes_of_png_are_estimated() {
         let mut forecast = graph.forecast().unwrap();
         assert!((0..step).all(|_| forecast.advance()));
         let growth = Growth::steps(step);
-        let bounds = extent(&graph, &growth).unwrap();
+        let bounds = bounding_box(&graph, &growth).unwrap();
         let estimator = Estimator::new(&graph, &options);
         let estimate = estimator.at(&forecast, &bounds).unwrap().png_bytes;
         let mut png = Vec::new();
@@ -102,7 +103,7 @@ fn sizes_of_png_are_estimated() {
 fn there_is_no_estimate_of_what_draws_decide() {
     let rule = resolved(&document("random-tree"), &[]);
     let graph = Graph::compile(&rule, 4).unwrap();
-    let bounds = extent(&graph, &Growth::steps(4)).unwrap();
+    let bounds = bounding_box(&graph, &Growth::steps(4)).unwrap();
     let options = Options::of(rule.metadata());
     let estimator = Estimator::new(&graph, &options);
     assert_eq!(estimator.at(&graph.forecast().unwrap(), &bounds), None);

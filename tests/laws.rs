@@ -14,10 +14,11 @@ use std::num::NonZero;
 use std::sync::Arc;
 
 use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::count::Count;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame2};
-use kfrac::graph::{Count, Graph};
+use kfrac::graph::Graph;
 use kfrac::grow::{Element, FractalInfo, Growth, Progress, Visitor, walk};
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;

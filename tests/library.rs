@@ -17,10 +17,11 @@ use std::sync::Arc;
 
 use common::{compiled, document, document_of, grown, resolved};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
+use kfrac::count::Count;
 use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, Format};
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::graph::{Count, Graph};
+use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::measure::similarity_dimension;
 use kfrac::render::{self, Labels, Options, Size};

@@ -24,8 +24,9 @@ use std::collections::BTreeSet;
 use common::{Grown, compiled, document, grown, resolved};
 use data::{Entry, reference};
 use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::count::Count;
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::graph::{Count, Graph};
+use kfrac::graph::Graph;
 use kfrac::grow::{Element, Growth};
 use kfrac::measure::similarity_dimension;
 

@@ -12,10 +12,11 @@ use std::num::NonZero;
 use common::{document, document_of};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::export;
+use kfrac::extent::bounding_box;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
 use kfrac::grow::{
-    Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError, count, extent, walk,
+    Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError, count, walk,
     walk_in_spans,
 };
 use kfrac::model::Model;
@@ -195,7 +196,7 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
     let length = |place: &Place| DVec2::new(place.map[0], place.map[1]).length();
     let length: f64 = elements().map(length).sum();
     assert!((counted.length - length).abs() <= 1e-9 * (1.0 + length));
-    let bounds = extent(graph, growth).unwrap();
+    let bounds = bounding_box(graph, growth).unwrap();
     assert_eq!(counted.bounds.is_empty(), bounds.is_empty());
     if !bounds.is_empty() {
         let far = |a: DVec2, b: DVec2| a.distance(b) / (1.0 + b.length());

@@ -17,11 +17,12 @@ use std::convert::Infallible;
 
 use common::{document, document_of};
 use kfrac::document::Document;
+use kfrac::draws::Path;
+use kfrac::extent::NoLimit;
 use kfrac::geometry::{DAffine2, DVec2, Frame2};
-use kfrac::graph::{Graph, NoLimit, Production, Replacement};
+use kfrac::graph::{Graph, Production, Replacement};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
-use kfrac::rule::draw::Path;
 use kfrac::rule::{ElementContext, Rule};
 use kfrac::zoom::{ZoomError, ZoomOptions, ZoomSource, ZoomWindow, zoom};
 

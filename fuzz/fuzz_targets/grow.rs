@@ -18,8 +18,10 @@ use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::export;
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::graph::{Count, Graph, Level};
-use kfrac::grow::{Growth, WalkError, Walked, extent};
+use kfrac::count::Count;
+use kfrac::graph::{Graph, Level};
+use kfrac::extent::bounding_box;
+use kfrac::grow::{Growth, WalkError, Walked};
 use kfrac::measure::similarity_dimension;
 use kfrac::render::{self, Format, Labels, Options, Size};
 use kfrac::rule::Rule;
@@ -112,7 +114,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
         if let Some(level) = level {
             agree(&level, walked);
         }
-        let extent = extent(&graph, &growth).expect("the walk was complete before");
+        let extent = bounding_box(&graph, &growth).expect("the walk was complete before");
         if let Some(bounds) = bounds {
             near(&bounds, &extent);
         }

@@ -7,9 +7,10 @@ use anyhow::anyhow;
 
 use super::readable::{counted, duration, grouped, rough_bytes};
 use crate::estimate::{Estimator, SizeEstimate};
+use crate::extent::bounding_box;
 use crate::geometry::Bounds;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
-use crate::grow::{Growth, Progress, WalkError, extent};
+use crate::grow::{Growth, Progress, WalkError};
 use crate::model::Model;
 use crate::parallel::all_cores;
 use crate::render::{self, RenderError, Size};
@@ -261,7 +262,7 @@ pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     };
     let walked = || {
         let small = !graph.draws() && graph.check_size(steps, MOST_ELEMENTS).is_ok();
-        let bounds = small.then(|| extent(graph, &growth).ok()).flatten();
+        let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
     };
     graph.bounds(steps).or_else(walked)

@@ -1,6 +1,6 @@
 //! Reasons why a fractal has no equivalent of another kind.
 
-use crate::graph::NoLimit;
+use crate::extent::NoLimit;
 use crate::kind::Kind;
 
 /// Reason why a kind cannot express a fractal. Maps and elements are numbered from 1 in messages.

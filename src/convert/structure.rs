@@ -1,7 +1,8 @@
 //! The common form of all kinds: objects and their instances.
 
+use crate::extent::NoLimit;
 use crate::geometry::DAffine2;
-use crate::graph::{Graph, Instance, NoLimit, Replacement};
+use crate::graph::{Graph, Instance, Replacement};
 use crate::ifs::Ifs;
 use crate::instancing::Tint;
 use crate::rule::BaseElement;

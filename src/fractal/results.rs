@@ -6,9 +6,10 @@ use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::export;
+use crate::extent::bounding_box;
 use crate::geometry::Bounds;
 use crate::graph::{CompileError, Forecast, Graph};
-use crate::grow::{Element, Elements, Growth, WalkError, extent};
+use crate::grow::{Element, Elements, Growth, WalkError};
 use crate::measure::exact::dimensions_of_graph;
 use crate::measure::{BoxCounting, Grid, LimitSet};
 use crate::model::Model;
@@ -187,7 +188,7 @@ impl Fractal {
         let graph = self.graph()?;
         match graph.bounds(steps) {
             Some(bounds) => Ok(bounds),
-            None => Ok(extent(graph, &self.growth(steps))?),
+            None => Ok(bounding_box(graph, &self.growth(steps))?),
         }
     }
 

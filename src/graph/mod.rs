@@ -19,39 +19,19 @@
 //! near](crate::model::Model::compile_normalised) the unit box around the origin: [`Graph::place`] maps them to
 //! the model's.
 
-mod bounded;
-mod bounds;
-mod compile;
-mod contract;
+mod check_size;
+mod edges;
 mod error;
 mod forecast;
-mod hull;
-mod ifs;
-mod instancing;
-mod limit;
 mod lines;
-mod lsystem;
-mod no_limit;
-mod place;
-mod policy;
-mod probable_reach;
-mod reach;
 mod roots;
 mod source;
-mod state;
 mod thickness;
 
-pub use bounded::Bounded;
-pub use bounds::ApproximantBounds;
+pub use check_size::TooLarge;
 pub use error::{CompileError, OutOfRange};
 pub(crate) use error::{EXTENTS, FARTHEST};
 pub use forecast::{Forecast, Level, Population};
-pub use limit::TooLarge;
-pub use no_limit::NoLimit;
-
-pub(crate) use ifs::{filling, outline as base_element};
-pub(crate) use lsystem::Chords;
-use lsystem::Words;
 pub(crate) use roots::{Root, Roots, Sown};
 pub(crate) use source::{Buffers, Source};
 
@@ -286,6 +266,13 @@ impl<F: Frame> Graph<F> {
         self.initiators.len() > 1
     }
 
+    /// Returns the homothety from the coordinates of the graph, its walks and its bounds to those of the
+    /// model. It is the identity for most models.
+    #[must_use]
+    pub fn place(&self) -> &Homothety<F::Point> {
+        &self.place
+    }
+
     /// Returns the base elements to which objects refer.
     #[must_use]
     pub fn base_elements(&self) -> &[F::Outline] {
@@ -438,6 +425,27 @@ impl<F: Frame> Default for Production<F> {
             body: Chain::default(),
             seeds: Vec::new(),
         }
+    }
+}
+
+impl Graph {
+    /// Moves the initiators into the coordinates that a homothety maps to the present ones.
+    pub(crate) fn started_within(mut self, place: &Homothety) -> Self {
+        if place.is_identity() {
+            return self;
+        }
+        let within = |chain: &mut Chain| {
+            for instance in &mut chain.instances {
+                instance.frame = instance.frame.preimage(place);
+                instance.length = instance.frame.length();
+            }
+        };
+        self.initiators.iter_mut().for_each(within);
+        self.place = Homothety::new(
+            self.place.exponent() + place.exponent(),
+            self.place.point(place.point(DVec2::ZERO)),
+        );
+        self
     }
 }
 

@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::{DVec2, Frame, Frame2};
 use crate::rule::{ElementContext, Extent, Part, Rule};
 
-use super::{Alternative, CompileError, Production, Words};
+use super::{Alternative, CompileError, Production};
 
 /// Source of instances that are computed for each element.
 pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
@@ -93,27 +93,5 @@ impl Source<Frame2> for Rule {
 
     fn rule(&self) -> Option<&Rule> {
         Some(self)
-    }
-}
-
-impl Source<Frame2> for Words {
-    fn evaluate(
-        &self,
-        alternatives: &[Alternative],
-        path: Path,
-        _: &ElementContext,
-        _: &mut Buffers<Frame2>,
-        production: &mut Production,
-    ) -> Result<(), CompileError> {
-        self.evaluate(alternatives, path, production);
-        Ok(())
-    }
-
-    fn parts(&self, _: usize) -> &[Part] {
-        &[]
-    }
-
-    fn extents(&self, word: usize, _: f64, _: &[Interval; 4]) -> Vec<Extent> {
-        self.extents(word).to_vec()
     }
 }

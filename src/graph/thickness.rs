@@ -8,7 +8,7 @@ use super::{Graph, Replacement};
 impl<F: Frame> Graph<F> {
     /// Computes the largest factor of stroke widths, if any object changes them; it is infinite if an
     /// object leads back to itself with a larger width.
-    pub(super) fn find_widths(&mut self) {
+    pub(crate) fn find_widths(&mut self) {
         if !{ &self.objects }
             .iter()
             .any(|object| object.thickness.is_some())

@@ -18,10 +18,8 @@ mod count;
 mod descent;
 mod elements;
 mod evaluator;
-mod extent;
 mod outlines;
 mod progress;
-mod search;
 mod sizes;
 mod spans;
 mod start;
@@ -35,10 +33,8 @@ pub use block::{LineElement, Run};
 pub use colony::{Colony, Taken};
 pub use count::{Counted, count};
 pub use elements::Elements;
-pub use extent::extent;
 pub(crate) use outlines::{OutlineError, outlines};
 pub use progress::Progress;
-pub(crate) use search::{Reaches, search};
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
@@ -47,7 +43,7 @@ pub(crate) use census::{Census, Kind};
 pub(crate) use colony::{ColonyKind, ColonyKinds};
 pub(crate) use evaluator::{Evaluator, ReplacementContext};
 pub(crate) use spans::{Division, Ranks, walk_with};
-pub(crate) use start::Standing;
+pub(crate) use start::{Standing, seed_placement};
 
 use std::ops::{Range, RangeInclusive};
 

@@ -151,7 +151,7 @@ pub(super) fn birth<F: Frame>(graph: &Graph<F>, instance: &Instance<F>) -> Optio
 }
 
 /// Returns the placement of a part that an element seeds.
-pub(super) fn seed_placement<F: Frame>(
+pub(crate) fn seed_placement<F: Frame>(
     graph: &Graph<F>,
     standing: &Standing<F>,
     placement: Placement,

@@ -337,7 +337,7 @@ fn a_sponge_is_bounded() {
         let growth = Growth::steps(steps);
         let counted = count(&graph, &growth, NonZero::new(2).unwrap()).unwrap();
         assert!(is_near(counted.bounds), "{steps}");
-        assert!(is_near(extent(&graph, &growth).unwrap()), "{steps}");
+        assert!(is_near(bounding_box(&graph, &growth).unwrap()), "{steps}");
     }
     let reaches = graph.reaches(|object| graph.outline_radius(object));
     let radius = 3f64.sqrt() / 2.0;
@@ -469,7 +469,7 @@ fn draws_in_space_hang_on_the_path() {
     parents.dedup();
     assert_eq!(parents.len(), coarse.len());
     assert!(graph.reaches(|_| 1.0)[0] < 2.0);
-    let searched = extent(&graph, &growth(3, 1)).unwrap();
+    let searched = bounding_box(&graph, &growth(3, 1)).unwrap();
     let counted = count(&graph, &growth(3, 1), NonZero::new(1).unwrap()).unwrap();
     assert_eq!(searched, counted.bounds);
 }

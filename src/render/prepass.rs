@@ -5,11 +5,12 @@ use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::Arc;
 
+use crate::extent::{Reaches, search};
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
-    self, Census, Element, Enter, FractalInfo, Growth, Reaches, Seam, Subtree, Visitor, WalkError,
-    search, walk_in_spans,
+    self, Census, Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError,
+    walk_in_spans,
 };
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 

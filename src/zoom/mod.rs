@@ -54,8 +54,9 @@ pub(crate) use nearest::distance;
 use std::sync::atomic::AtomicBool;
 
 use crate::document::{Document, Setting};
+use crate::extent::NoLimit;
 use crate::geometry::DVec2;
-use crate::graph::{CompileError, Graph, NoLimit, Object};
+use crate::graph::{CompileError, Graph, Object};
 use crate::model::Model;
 use crate::saturating::whole;
 

@@ -6,8 +6,9 @@ use std::sync::atomic::AtomicBool;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
+use kfrac::extent::bounding_box;
 use kfrac::graph::Graph;
-use kfrac::grow::{Growth, WalkError, extent};
+use kfrac::grow::{Growth, WalkError};
 
 use super::hostile::{kfrac, refused};
 
@@ -237,7 +238,7 @@ fn a_walk_that_finds_nothing_can_be_cancelled() {
     let graph = graph_of(text, 41);
     let cancel = AtomicBool::new(true);
     let growth = Growth::steps(41).cancel(Some(&cancel));
-    assert_eq!(extent(&graph, &growth), Err(WalkError::Cancelled));
+    assert_eq!(bounding_box(&graph, &growth), Err(WalkError::Cancelled));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Rules with random functions: the reference fixes the facts that do not depend on draws.
 
+use kfrac::count::Count;
 use kfrac::document::Setting;
-use kfrac::graph::Count;
 use kfrac::grow::Growth;
 
 use crate::common::{compiled, document, grown, resolved};

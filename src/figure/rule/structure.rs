@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::compile::{filling, outline as base_element};
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::graph::{Graph, base_element, filling};
+use crate::graph::Graph;
 use crate::instancing::{Instance, Instancing, Master};
 use crate::render::Paint;
 

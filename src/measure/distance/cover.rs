@@ -1,9 +1,10 @@
 //! Covers of a set by points: every point of the set is within a radius of one of them, and each of them is
 //! within the radius of the set.
 
+use crate::extent::{NoLimit, bounding_box};
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
-use crate::graph::{Graph, NoLimit, Replacement};
-use crate::grow::{Element, FractalInfo, Growth, Visitor, WalkError, extent, walk};
+use crate::graph::{Graph, Replacement};
+use crate::grow::{Element, FractalInfo, Growth, Visitor, WalkError, walk};
 
 use super::region::{Region, TooMany, radius_of};
 use super::squares::Squares;
@@ -57,15 +58,17 @@ impl<'a> Subject<'a> {
                 graph.check_limit_set()?;
                 graph.limit_bounds().unwrap_or_else(|| discs(graph))
             }
-            Subset::Approximant(growth) => extent(graph, growth).map_err(|error| match error {
-                WalkError::TooManyElements { limit } => {
-                    NoCover::Walk(WalkError::TooManyElements { limit })
-                }
-                WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
-                WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
-                WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
-                WalkError::Visitor(never) => match never {},
-            })?,
+            Subset::Approximant(growth) => {
+                bounding_box(graph, growth).map_err(|error| match error {
+                    WalkError::TooManyElements { limit } => {
+                        NoCover::Walk(WalkError::TooManyElements { limit })
+                    }
+                    WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
+                    WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
+                    WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
+                    WalkError::Visitor(never) => match never {},
+                })?
+            }
         };
         if bounds.is_empty() {
             return Err(NoCover::Nothing);

@@ -1,6 +1,7 @@
 //! Maps of an L-system that rewrites edges.
 
-use crate::graph::{Chords, Instance};
+use crate::compile::Chords;
+use crate::graph::Instance;
 use crate::lsystem::LSystem;
 use crate::zoom::fixed::Fixed;
 

@@ -1,6 +1,8 @@
 //! Reasons why a graph does not determine a limit set.
 
-use super::{Bounded, Graph};
+use crate::graph::Graph;
+
+use super::Bounded;
 
 /// Reason why a graph does not determine a limit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -13,7 +13,7 @@ use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
-use super::{Graph, Instance, Object, Replacement};
+use crate::graph::{Graph, Instance, Object, Replacement};
 
 /// Limit of the number of states at one level.
 const MOST_STATES: usize = 20_000;

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Production, Replacement};
 
-use super::evaluator::{Evaluator, ReplacementContext};
-use super::start::{Standing, seed_placement};
-use super::{Enter, Growth, Subtree};
+use crate::grow::{
+    Enter, Evaluator, Growth, ReplacementContext, Standing, Subtree, seed_placement,
+};
 
 /// Maximum number of replacements; beyond it the search is abandoned.
 const MOST_WORK: usize = 1 << 18;

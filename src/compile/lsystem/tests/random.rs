@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 
+use crate::compile::lsystem::effects::Effects;
 use crate::graph::Graph;
-use crate::graph::lsystem::effects::Effects;
 
 use super::{assert_same, assert_told, system};
 

@@ -7,7 +7,7 @@ use crate::ifs::Shrinking;
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::contract::Products;
 use super::policy::{farthest, followed, rightmost};
-use super::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance, Replacement};
 
 /// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-14;

@@ -10,7 +10,7 @@ use crate::geometry::DVec2;
 use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use super::{Alternative, CompileError, Graph, Object, Production, Replacement};
+use crate::graph::{Alternative, CompileError, Graph, Object, Production, Replacement};
 
 /// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
 const MOST_OBJECTS: usize = 200_000;

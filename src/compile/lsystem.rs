@@ -21,7 +21,6 @@ mod state;
 mod words;
 
 pub(crate) use similar::Chords;
-pub(crate) use words::Words;
 
 use std::collections::BTreeMap;
 
@@ -32,7 +31,7 @@ use crate::lsystem::{LSystem, Placed, RewriteError, Turtle};
 use crate::rule::BaseElement;
 
 use self::effects::Effects;
-use super::{Chain, CompileError, Graph, Instance, Object};
+use crate::graph::{Chain, CompileError, Graph, Instance, Object};
 
 impl Graph {
     /// Compiles an L-system for a number of steps: by edge rewriting, otherwise to objects by module and

@@ -1,8 +1,7 @@
 //! Convex hulls of subtrees, as far as frames of a kind have them: the interface of bounds.
 
 use crate::geometry::Frame;
-
-use super::{Graph, Instance};
+use crate::graph::{Graph, Instance};
 
 /// Precision of polygons as approximations of the convex hulls.
 #[derive(Clone, Copy)]
@@ -18,7 +17,7 @@ pub struct Fineness {
 }
 
 impl Fineness {
-    pub(super) const COARSE: Self = Self {
+    pub(crate) const COARSE: Self = Self {
         tolerance: 1e-4,
         most_work: 1 << 20,
         most_corners: 256,

@@ -3,9 +3,11 @@
 use std::convert::Infallible;
 
 use crate::geometry::{Bounds, Frame, Frame2, Outline};
-use crate::graph::{Bounded, Graph};
+use crate::graph::Graph;
 
-use super::{Element, Enter, FractalInfo, Growth, Reaches, Visitor, WalkError, search, walk};
+use crate::grow::{Element, Enter, FractalInfo, Growth, Visitor, WalkError, walk};
+
+use super::{Bounded, Reaches, search};
 
 #[cfg(test)]
 mod tests;
@@ -18,7 +20,7 @@ mod tests;
 /// # Errors
 ///
 /// Returns an error if the walk ends early.
-pub fn extent<F: Bounded>(
+pub fn bounding_box<F: Bounded>(
     graph: &Graph<F>,
     growth: &Growth<'_>,
 ) -> Result<Bounds<F::Point>, WalkError<Infallible>> {

@@ -2,8 +2,10 @@
 //! with the draws of its path.
 
 use crate::draws::Path;
-use crate::graph::{Alternative, Instance, Production};
-use crate::rule::Extent;
+use crate::expression::Interval;
+use crate::geometry::Frame2;
+use crate::graph::{Alternative, Buffers, CompileError, Instance, Production, Source};
+use crate::rule::{ElementContext, Extent, Part};
 
 use super::effects::Effects;
 use super::far::Far;
@@ -26,20 +28,20 @@ pub(super) struct Written {
 /// Words of an L-system by kind and number of steps left, with the effects that are required to read
 /// them.
 #[derive(Debug)]
-pub(crate) struct Words {
+pub(super) struct Words {
     pub(super) effects: Effects,
     pub(super) written: Vec<Written>,
 }
 
 impl Words {
     /// Returns bounds on the drawings of a word's modules.
-    pub(crate) fn extents(&self, word: usize) -> &[Extent] {
+    fn extents(&self, word: usize) -> &[Extent] {
         &self.written[word].extents
     }
 
     /// Overwrites a production with the word that the draws of a path select among `words`, interpreted
     /// with the draws of the path.
-    pub(crate) fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Production) {
+    fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Production) {
         production.seeds.clear();
         production.body.instances.clear();
         production.body.meets_frame = [false; 2];
@@ -73,5 +75,27 @@ impl Words {
             });
         }
         production.body.meets_frame = reader.meets();
+    }
+}
+
+impl Source<Frame2> for Words {
+    fn evaluate(
+        &self,
+        alternatives: &[Alternative],
+        path: Path,
+        _: &ElementContext,
+        _: &mut Buffers<Frame2>,
+        production: &mut Production,
+    ) -> Result<(), CompileError> {
+        self.evaluate(alternatives, path, production);
+        Ok(())
+    }
+
+    fn parts(&self, _: usize) -> &[Part] {
+        &[]
+    }
+
+    fn extents(&self, word: usize, _: f64, _: &[Interval; 4]) -> Vec<Extent> {
+        self.extents(word).to_vec()
     }
 }

@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 
 use super::bounded::Bounded;
-use super::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance, Replacement};
 
 /// Bound on the stretch of products of maps: with weights u of the objects, the product over n instances
 /// that leads from an object c to an object o whose subtree contains it stretches at most by N(n) u(o) /

@@ -7,9 +7,10 @@ use crate::catalogue::{Catalogue, Shelf};
 use crate::count::Count;
 use crate::diagnostic::Source;
 use crate::document::Document;
+use crate::extent::bounding_box;
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
-use crate::grow::{Element, FractalInfo, Growth, Visitor, extent, walk};
+use crate::grow::{Element, FractalInfo, Growth, Visitor, walk};
 use crate::lsystem::LSystem;
 use crate::model::Model;
 use crate::style::Colour;
@@ -287,7 +288,7 @@ fn assert_told(graph: &Graph, steps: u32) {
         seed: 1,
         ..Growth::steps(steps)
     };
-    let told = [graph.bounds(steps), extent(graph, &growth).ok()];
+    let told = [graph.bounds(steps), bounding_box(graph, &growth).ok()];
     assert!(told[0].is_some() || graph.draws());
     for told in told.into_iter().flatten() {
         let off = (told.min() - all.min()).length() + (told.max() - all.max()).length();

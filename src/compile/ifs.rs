@@ -6,9 +6,9 @@ use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::ifs::{Ifs, Shape, System};
 use crate::rule::{BaseElement, Piece};
 
-use super::bounded::{Bounded, Fineness, Own};
 use super::instancing::instance;
-use super::{Chain, Graph, Object, Production, Replacement};
+use crate::extent::{Bounded, Fineness, Own};
+use crate::graph::{Chain, Graph, Object, Production, Replacement};
 
 /// Limit of the number of instances in a graph whose objects record the last map.
 const MOST_INSTANCES: usize = 4_000_000;

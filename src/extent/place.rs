@@ -1,9 +1,8 @@
-//! The homothety between the coordinates of a graph and those of its model.
+//! Units of graphs whose approximants outgrow their initiators.
 
 use crate::geometry::{Bounds, DVec2, Homothety, exponent_of};
+use crate::graph::Graph;
 use crate::rule::Placement;
-
-use super::{Chain, Graph};
 
 /// Growth, as an exponent of 2, up to which coordinates keep their units.
 const TALL: f64 = 64.0;
@@ -13,32 +12,6 @@ const TALL: f64 = 64.0;
 const MOST_GROWTH: f64 = 1010.0;
 
 impl Graph {
-    /// Returns the homothety from the coordinates of the graph, its walks and its bounds to those of the
-    /// model. It is the identity for most models.
-    #[must_use]
-    pub fn place(&self) -> &Homothety {
-        &self.place
-    }
-
-    /// Moves the initiators into the coordinates that a homothety maps to the present ones.
-    pub(crate) fn started_within(mut self, place: &Homothety) -> Self {
-        if place.is_identity() {
-            return self;
-        }
-        let within = |chain: &mut Chain| {
-            for instance in &mut chain.instances {
-                instance.frame = instance.frame.preimage(place);
-                instance.length = instance.frame.length();
-            }
-        };
-        self.initiators.iter_mut().for_each(within);
-        self.place = Homothety::new(
-            self.place.exponent() + place.exponent(),
-            self.place.point(place.point(DVec2::ZERO)),
-        );
-        self
-    }
-
     /// Scales the graph to the extent of an approximant that is much larger than the initiator, because
     /// generators have parts longer than the element that they replace; `None` if the approximant leaves
     /// the range of doubles.

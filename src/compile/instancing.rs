@@ -9,7 +9,7 @@ use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
 
 use super::ifs::{filling, outline};
-use super::{Chain, Graph, Instance, Object, Production, Replacement};
+use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
 
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MOST_BOXES: usize = 256;

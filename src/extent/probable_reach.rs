@@ -2,7 +2,7 @@
 
 use crate::geometry::Frame;
 
-use super::{Graph, Object, Replacement};
+use crate::graph::{Graph, Object, Replacement};
 
 /// Exponents of the moments that are tried.
 const POWERS: [f64; 5] = [8.0, 16.0, 24.0, 36.0, 54.0];

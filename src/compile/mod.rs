@@ -1,0 +1,10 @@
+//! Compilation of the models of all kinds to graphs.
+
+mod ifs;
+mod instancing;
+mod lsystem;
+mod rule;
+mod state;
+
+pub(crate) use ifs::{filling, outline};
+pub(crate) use lsystem::Chords;

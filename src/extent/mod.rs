@@ -1,0 +1,26 @@
+//! How far things reach: boxes, hulls and radii of subtrees, contraction of maps, and limit sets, computed from
+//! the graph alone or by a search.
+//!
+//! Support functions along the axes yield the box of an approximant or of the limit set, exact to rounding;
+//! radii of balls about subtrees decide what a walk may leave out; polygons tighten both in the plane, where
+//! maps contract little or only in products. Where random draws are unbounded, radii hold for all but
+//! improbable draws. A [search](bounding_box()) finds the box of an approximant whose productions are computed
+//! for each element.
+
+mod bounded;
+mod bounding_box;
+mod bounds;
+mod contract;
+mod hull;
+mod limit;
+mod place;
+mod policy;
+mod probable_reach;
+mod reach;
+mod search;
+
+pub use bounded::{Bounded, Fineness, Hulls, Own};
+pub use bounding_box::bounding_box;
+pub use bounds::ApproximantBounds;
+pub use limit::NoLimit;
+pub(crate) use search::{Reaches, search};

@@ -1,0 +1,199 @@
+//! Edges of a graph: the objects that may take an object's place, and what follows from them alone.
+
+use std::collections::BTreeMap;
+
+use crate::expression::Interval;
+use crate::geometry::{Frame, Point};
+use crate::rule::Placement;
+
+use super::{Graph, Instance, Replacement};
+
+/// Object in the place of another one, or seeded by it.
+pub(crate) struct Edge {
+    pub(crate) object: usize,
+    /// Largest distance of its middle from the middle of the parent's frame, as a multiple of the
+    /// parent's length.
+    pub(crate) away: f64,
+    /// Largest length, as a multiple of the parent's.
+    pub(crate) length: f64,
+}
+
+impl<F: Frame> Graph<F> {
+    /// Returns, for every object, the objects that may take its place or that it may seed, including all
+    /// random alternatives, with upper bounds of their lengths as multiples of its length.
+    pub(crate) fn ratios(&self) -> Vec<Vec<(usize, f64)>> {
+        let of = |edges: Vec<Edge>| {
+            edges
+                .iter()
+                .map(|edge| (edge.object, edge.length))
+                .collect()
+        };
+        self.edges(f64::INFINITY).into_iter().map(of).collect()
+    }
+
+    /// Returns the edges to the possible children of every object: with upper bounds of distance and
+    /// length or, for a finite power, with upper bounds of their power means (see `Generator::means`).
+    pub(crate) fn edges(&self, power: f64) -> Vec<Vec<Edge>> {
+        let mut extents = BTreeMap::new();
+        let edges = |object: usize| {
+            let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
+                let edge = |(_, instance): (_, &Instance<F>)| Edge {
+                    object: instance.object,
+                    away: (instance.frame.apply(self.middle) - self.middle).length(),
+                    length: instance.length,
+                };
+                return self.children(object).map(edge).collect();
+            };
+            let mut edges = Vec::new();
+            for alternative in alternatives.iter() {
+                let generator = alternative.generator;
+                let extents = extents
+                    .entry(generator)
+                    .or_insert_with(|| self.source().extents(generator, power, &self.moments()));
+                let drawn = alternative.objects.iter().zip(extents);
+                edges.extend(drawn.map(|(&object, extent)| Edge {
+                    object,
+                    away: extent.away,
+                    length: extent.length,
+                }));
+            }
+            edges
+        };
+        (0..self.objects.len()).map(edges).collect()
+    }
+
+    /// Returns the ranges of all values that expressions see of an element.
+    fn moments(&self) -> [Interval; 4] {
+        let time = Interval::new(0.0, self.depth.map_or(f64::INFINITY, f64::from));
+        let index = Interval::new(1.0, f64::INFINITY);
+        let length = Interval::new(0.0, f64::INFINITY);
+        [index, time, time, length]
+    }
+
+    /// Returns, for every object, whether it leads to seeds that are placed as the initiator. The subtree
+    /// of such an object does not shrink with the object.
+    #[must_use]
+    pub fn resets(&self) -> Vec<bool> {
+        self.leading_to(|object| self.places_as_initiator(object))
+    }
+
+    /// Returns, for every object, whether it leads to seeds.
+    pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
+        self.leading_to(|object| match &self.objects[object].replacement {
+            Replacement::Fixed(production) => !production.seeds.is_empty(),
+            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
+                let parts = self.parts(alternative);
+                parts.iter().any(|part| part.placement.seeds())
+            }),
+            Replacement::Kept => false,
+            Replacement::Unresolved => true,
+        })
+    }
+
+    /// Returns, for every object, whether it is of a kind or may lead to an object of the kind.
+    pub(crate) fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
+        let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();
+        let mut changes = leading.contains(&true);
+        while changes {
+            changes = false;
+            for object in (0..leading.len()).rev() {
+                if !leading[object] && self.successors(object).any(|child| leading[child]) {
+                    leading[object] = true;
+                    changes = true;
+                }
+            }
+        }
+        leading
+    }
+
+    /// Iterates over the fixed instances that take an object's place or that it seeds.
+    pub(crate) fn children(
+        &self,
+        object: usize,
+    ) -> impl Iterator<Item = (Placement, &Instance<F>)> {
+        let production = match &self.objects[object].replacement {
+            Replacement::Fixed(production) => Some(production),
+            _ => None,
+        };
+        production
+            .into_iter()
+            .flat_map(|production| production.placed_instances())
+    }
+
+    /// Iterates over all instances of fixed productions, with their placements.
+    pub(crate) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
+        (0..self.objects.len()).flat_map(|object| self.children(object))
+    }
+
+    /// Returns the largest ratio of a fertile instance.
+    pub(crate) fn longest_ratio(&self) -> f64 {
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let fertile = self
+            .instances()
+            .filter(|(_, instance)| !kept(instance.object));
+        fertile
+            .map(|(_, instance)| instance.length)
+            .fold(0.0, f64::max)
+    }
+
+    /// Iterates over the objects that may take an object's place or that it may seed.
+    fn successors(&self, object: usize) -> impl Iterator<Item = usize> {
+        let alternatives = match &self.objects[object].replacement {
+            Replacement::Evaluated(alternatives) => Some(alternatives),
+            _ => None,
+        };
+        let drawn = alternatives.into_iter().flat_map(|all| all.iter());
+        let fixed = self.children(object).map(|(_, instance)| instance.object);
+        fixed.chain(drawn.flat_map(|alternative| alternative.objects.iter().copied()))
+    }
+
+    fn places_as_initiator(&self, object: usize) -> bool {
+        match &self.objects[object].replacement {
+            Replacement::Fixed(production) => production
+                .seeds
+                .iter()
+                .any(|seed| seed.placement == Placement::SeedsAsInitiator),
+            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
+                let mut parts = self.parts(alternative).iter();
+                parts.any(|part| part.placement == Placement::SeedsAsInitiator)
+            }),
+            Replacement::Kept | Replacement::Unresolved => false,
+        }
+    }
+
+    /// Returns the largest ratio of edges to objects that may be fertile.
+    pub(crate) fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
+        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
+        let fertile = edges.iter().flatten().filter(|edge| !kept(edge.object));
+        fertile.map(|edge| edge.length).fold(0.0, f64::max)
+    }
+
+    /// Returns the common length of all fertile elements of the initiator, and the common ratio of all
+    /// fertile instances, provided that each exists, that the graph is plain and that growth begins in
+    /// step 0: reaching a given length then takes a fixed number of steps.
+    #[must_use]
+    pub fn even_lengths(&self) -> Option<[f64; 2]> {
+        if !self.is_plain() || !self.is_similar() || self.is_time_indexed() {
+            return None;
+        }
+        if !self.roots.elements.is_empty() || self.resets().contains(&true) {
+            return None;
+        }
+        let fertile = |instance: &&Instance<F>| {
+            !matches!(self.objects[instance.object].replacement, Replacement::Kept)
+        };
+        let start = self.initiator(0).instances.iter().filter(fertile);
+        let later = self.instances().map(|(_, instance)| instance);
+        let start = one_length(start)?;
+        Some([start * self.unit, one_length(later.filter(fertile))?])
+    }
+}
+
+/// Returns the common length of all instances, if there is one.
+fn one_length<'g, F: Frame>(mut instances: impl Iterator<Item = &'g Instance<F>>) -> Option<f64> {
+    // Rounding makes equal sides slightly unequal.
+    const ROUNDING: f64 = 1e-12;
+    let length = instances.next()?.length;
+    let same = |instance: &Instance<F>| (instance.length - length).abs() <= ROUNDING * length;
+    instances.all(same).then_some(length)
+}
