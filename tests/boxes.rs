@@ -14,9 +14,8 @@ use std::num::NonZero;
 
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::measure::{
-    Bits, BoxCounting, Estimate, Generalised, Grid, LimitSet, LimitSetError, Masses,
-};
+use kfrac::extent::NoLimit;
+use kfrac::measure::{Bits, BoxCounting, Estimate, Generalised, Grid, LimitSet, Masses};
 
 fn number(number: usize) -> NonZero<usize> {
     NonZero::new(number).unwrap()
@@ -133,7 +132,7 @@ fn a_uniform_set_is_not_lacunar_and_a_gasket_is() {
     assert!(gasket.is_sorted_by(|a, b| a.value >= b.value), "{gasket:?}");
 }
 
-fn limit(name: &str) -> Result<LimitSet, LimitSetError> {
+fn limit(name: &str) -> Result<LimitSet, NoLimit> {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     let (model, _) = Document::read(&source, &catalogue)
@@ -233,6 +232,6 @@ fn maps_that_are_no_similarities_are_as_long_as_their_product() {
 
 #[test]
 fn what_has_no_limit_set_says_so() {
-    assert_eq!(limit("random-tree").unwrap_err(), LimitSetError::NotFixed);
-    assert_eq!(limit("snow-crystal").unwrap_err(), LimitSetError::Endless);
+    assert_eq!(limit("random-tree").unwrap_err(), NoLimit::Draws);
+    assert_eq!(limit("snow-crystal").unwrap_err(), NoLimit::Endless);
 }

@@ -77,7 +77,7 @@ fn all_of_the_library_keeps_its_limit_set() {
                 Ok(document) => document,
                 Err(ConvertError::Refused(refusal)) => {
                     let is_limit = matches!(refusal, Refusal::NoLimit(_));
-                    assert_eq!(is_limit, graph.check_limit_set().is_err(), "{name}");
+                    assert_eq!(is_limit, graph.limit().is_err(), "{name}");
                     continue;
                 }
                 Err(error) => panic!("{name} to {to:?}: {error}"),

@@ -91,7 +91,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     // A time-indexed structure has no limit set, but is finite after its steps.
     let ends = graph.is_time_indexed() && graph.is_plain() && to == Kind::Instancing;
     if !ends {
-        graph.check_limit_set().map_err(Refusal::from)?;
+        graph.limit().map_err(Refusal::from)?;
     }
     if let (Model::Ifs(system), Keeps::Approximants) = (model, keeps)
         && system.ifs().initial().is_some_and(|set| set.count() > 1)

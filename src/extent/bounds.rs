@@ -222,11 +222,10 @@ impl<F: Bounded> Graph<F> {
         let mut constant = (0..self.objects.len()).map(shape).fold(0.0, f64::max);
         for (_, instance) in self.instances() {
             let shift = instance.frame.origin().length();
-            let kept = matches!(self.objects[instance.object].replacement, Replacement::Kept);
-            let own = if kept {
-                instance.length * shape(instance.object)
-            } else {
+            let own = if self.is_fertile(instance.object) {
                 0.0
+            } else {
+                instance.length * shape(instance.object)
             };
             constant = constant.max(shift + own);
         }
@@ -248,9 +247,9 @@ impl<F: Bounded> Graph<F> {
             }
             _ => false,
         };
-        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let ends = |object: usize| {
-            kept(object) || matches!(self.objects[object].replacement, Replacement::Unresolved)
+            !self.is_fertile(object)
+                || matches!(self.objects[object].replacement, Replacement::Unresolved)
         };
         let drawn = |object: usize, set: &[bool]| {
             self.objects[object].visible && (ends(object) || leads(object, set))

@@ -3,7 +3,7 @@
 use crate::geometry::Point;
 
 use super::bounded::Bounded;
-use crate::graph::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance};
 
 /// Bound on the stretch of products of maps: with weights u of the objects, the product over n instances
 /// that leads from an object c to an object o whose subtree contains it stretches at most by N(n) u(o) /
@@ -60,41 +60,46 @@ impl<F: Bounded> Graph<F> {
 
     /// Finds weights such that no instance stretches by more than λ u(o) / u(c), λ < 1. These exist if
     /// every cycle contracts although single maps expand, as in structures whose objects are drawn to
-    /// different scales: the weights are the largest products of stretches over λ along any path (Bellman
-    /// 1958).
+    /// different scales.
     fn products_by_weights(&self) -> Option<Products> {
         const FACTORS: [f64; 8] = [0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999];
+        /// Limit of weights beyond which a cycle is taken not to contract.
+        const MOST: f64 = 1e100;
+        FACTORS.into_iter().find_map(|factor| {
+            let weights = self.weights(factor, MOST)?;
+            let sum = 1.0 / (1.0 - factor);
+            Some(Products { sum, weights })
+        })
+    }
+
+    /// Returns, for every object, the largest product of stretches over a factor along any path of fertile
+    /// instances, at least 1 (Bellman 1958). `None` if a product grows along a cycle, or beyond `most`.
+    pub(super) fn weights(&self, factor: f64, most: f64) -> Option<Vec<f64>> {
         let count = self.objects.len();
-        let weights = |factor: f64| {
-            let mut weights = vec![1.0f64; count];
-            for _ in 0..=count {
-                let mut changes = false;
-                for object in (0..count).rev() {
-                    let grown = self
-                        .fertile(object)
-                        .map(|instance| instance.length / factor * weights[instance.object]);
-                    let most = grown.fold(weights[object], f64::max);
-                    changes |= most > weights[object];
-                    weights[object] = most;
-                }
-                if !changes {
-                    let sum = 1.0 / (1.0 - factor);
-                    return Some(Products { sum, weights });
-                }
-                if weights.iter().any(|weight| *weight > 1e100) {
-                    break;
-                }
+        let mut weights = vec![1.0f64; count];
+        for _ in 0..=count {
+            let mut changes = false;
+            for object in (0..count).rev() {
+                let grown = self
+                    .fertile(object)
+                    .map(|instance| instance.length / factor * weights[instance.object]);
+                let largest = grown.fold(weights[object], f64::max);
+                changes |= largest > weights[object];
+                weights[object] = largest;
             }
-            None
-        };
-        FACTORS.into_iter().find_map(weights)
+            if !changes {
+                return Some(weights);
+            }
+            if weights.iter().any(|weight| *weight > most) {
+                return None;
+            }
+        }
+        None
     }
 
     /// Iterates over the fertile instances of an object.
     fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance<F>> {
         let children = self.children(object).map(|(_, instance)| instance);
-        children.filter(|instance| {
-            !matches!(self.objects[instance.object].replacement, Replacement::Kept)
-        })
+        children.filter(|instance| self.is_fertile(instance.object))
     }
 }

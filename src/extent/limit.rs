@@ -1,5 +1,6 @@
-//! Reasons why a graph does not determine a limit set.
+//! The limit set of a graph, or the reason why there is none.
 
+use crate::geometry::{Bounds, Frame, Frame2};
 use crate::graph::Graph;
 
 use super::Bounded;
@@ -12,10 +13,10 @@ pub enum NoLimit {
     #[error("numbers are drawn in it at random, so it has no one limit set")]
     Draws,
     /// The replacement of an element depends on the number of elements before it.
-    #[error("what becomes of its elements hangs on their index, which no map tells")]
+    #[error("the replacement of its elements depends on their index, which no map determines")]
     CountsIndex,
     /// The graph is resolved for a limited number of steps only.
-    #[error("what replaces an element changes from step to step without end")]
+    #[error("the replacement of its elements changes from step to step without end")]
     Endless,
     /// Seeds are placed as the initiator.
     #[error("it has no limit set: its seeds are placed as the initiator, so nothing shrinks")]
@@ -23,24 +24,50 @@ pub enum NoLimit {
     /// Elements do not shrink.
     #[error("it has no limit set: its elements do not shrink")]
     DoesNotShrink,
+    /// No element is replaced infinitely often.
+    #[error("nothing stays fertile")]
+    NothingFertile,
     /// The limit set is empty.
     #[error("nothing of it is drawn in the limit")]
     Empty,
 }
 
-impl<F: Bounded> Graph<F> {
-    /// Checks that the graph determines the limit set: that of the approximants as drawn, which contains
-    /// infertile visible elements.
+/// The limit set of a graph: that of the approximants as drawn, which contains infertile visible elements.
+#[derive(Clone, Debug)]
+pub struct Limit<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
+    /// Whether the subtree of each object is drawn in the limit.
+    drawn: Vec<bool>,
+}
+
+impl<F: Bounded> Limit<'_, F> {
+    /// Returns the bounding box; `None` if the graph does not determine it (see
+    /// [`limit_bounds`](Graph::limit_bounds)).
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds<F::Point>> {
+        self.graph.limit_bounds()
+    }
+
+    /// Returns, for every object, whether its subtree is drawn in the limit.
+    #[must_use]
+    pub fn drawn(&self) -> &[bool] {
+        &self.drawn
+    }
+}
+
+impl<F: Frame> Graph<F> {
+    /// Checks that the replacements are a finite number of lists of fixed maps, composed with their parents'.
     ///
     /// # Errors
     ///
-    /// The reason why it does not.
-    pub fn check_limit_set(&self) -> Result<(), NoLimit> {
-        if self.draws() {
-            return Err(NoLimit::Draws);
-        }
+    /// The reason why they are not.
+    pub(crate) fn check_maps(&self) -> Result<(), NoLimit> {
         if !self.is_regular() || !self.is_plain() {
-            return Err(NoLimit::CountsIndex);
+            return Err(if self.draws() {
+                NoLimit::Draws
+            } else {
+                NoLimit::CountsIndex
+            });
         }
         if self.depth().is_some() {
             return Err(NoLimit::Endless);
@@ -48,14 +75,29 @@ impl<F: Bounded> Graph<F> {
         if self.resets().contains(&true) {
             return Err(NoLimit::Resets);
         }
+        Ok(())
+    }
+}
+
+impl<F: Bounded> Graph<F> {
+    /// Returns the limit set: that of the approximants as drawn, which contains infertile visible elements.
+    ///
+    /// # Errors
+    ///
+    /// The reason why the graph determines none.
+    pub fn limit(&self) -> Result<Limit<'_, F>, NoLimit> {
+        if self.draws() {
+            return Err(NoLimit::Draws);
+        }
+        self.check_maps()?;
         if !self.contracts() {
             return Err(NoLimit::DoesNotShrink);
         }
-        let alive = self.alive(true);
+        let drawn = self.alive(true);
         let mut initiator = self.initiator(0).instances.iter();
-        if !initiator.any(|instance| alive[instance.object]) {
+        if !initiator.any(|instance| drawn[instance.object]) {
             return Err(NoLimit::Empty);
         }
-        Ok(())
+        Ok(Limit { graph: self, drawn })
     }
 }

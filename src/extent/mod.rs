@@ -22,5 +22,5 @@ mod search;
 pub use bounded::{Bounded, Fineness, Hulls, Own};
 pub use bounding_box::bounding_box;
 pub use bounds::ApproximantBounds;
-pub use limit::NoLimit;
+pub use limit::{Limit, NoLimit};
 pub(crate) use search::{Reaches, search};

@@ -30,13 +30,12 @@ impl<F: Bounded> Graph<F> {
     pub fn reaches(&self, own: impl Fn(&Object<F>) -> f64) -> Vec<f64> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let edges = self.edges(f64::INFINITY);
-        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let ratio = self.longest_edge(&edges);
         let spread = edges.iter().flatten().map(|edge| {
-            if kept(edge.object) {
-                edge.away + edge.length * own[edge.object]
-            } else {
+            if self.is_fertile(edge.object) {
                 edge.away
+            } else {
+                edge.away + edge.length * own[edge.object]
             }
         });
         let spread = spread.chain(own.iter().copied()).fold(0.0, f64::max);
@@ -113,26 +112,8 @@ impl<F: Bounded> Graph<F> {
         if self.affine {
             return self.contracts();
         }
-        // The longest paths (Bellman 1958) grow without end if and only if there is such a cycle.
-        let mut longest = vec![1.0; self.objects.len()];
-        for _ in 0..=longest.len() {
-            let mut grows = false;
-            for object in 0..longest.len() {
-                for (_, instance) in self.children(object) {
-                    let fertile =
-                        !matches!(self.objects[instance.object].replacement, Replacement::Kept);
-                    let length = longest[object] * instance.length * SLACK;
-                    if fertile && length > longest[instance.object] {
-                        longest[instance.object] = length;
-                        grows = true;
-                    }
-                }
-            }
-            if !grows {
-                return true;
-            }
-        }
-        false
+        // The longest paths grow without end if and only if there is such a cycle.
+        self.weights(SLACK.recip(), f64::INFINITY).is_some()
     }
 }
 

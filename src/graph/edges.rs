@@ -127,10 +127,9 @@ impl<F: Frame> Graph<F> {
 
     /// Returns the largest ratio of a fertile instance.
     pub(crate) fn longest_ratio(&self) -> f64 {
-        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
         let fertile = self
             .instances()
-            .filter(|(_, instance)| !kept(instance.object));
+            .filter(|(_, instance)| self.is_fertile(instance.object));
         fertile
             .map(|(_, instance)| instance.length)
             .fold(0.0, f64::max)
@@ -163,8 +162,10 @@ impl<F: Frame> Graph<F> {
 
     /// Returns the largest ratio of edges to objects that may be fertile.
     pub(crate) fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
-        let kept = |object: usize| matches!(self.objects[object].replacement, Replacement::Kept);
-        let fertile = edges.iter().flatten().filter(|edge| !kept(edge.object));
+        let fertile = edges
+            .iter()
+            .flatten()
+            .filter(|edge| self.is_fertile(edge.object));
         fertile.map(|edge| edge.length).fold(0.0, f64::max)
     }
 
@@ -179,9 +180,7 @@ impl<F: Frame> Graph<F> {
         if !self.roots.elements.is_empty() || self.resets().contains(&true) {
             return None;
         }
-        let fertile = |instance: &&Instance<F>| {
-            !matches!(self.objects[instance.object].replacement, Replacement::Kept)
-        };
+        let fertile = |instance: &&Instance<F>| self.is_fertile(instance.object);
         let start = self.initiator(0).instances.iter().filter(fertile);
         let later = self.instances().map(|(_, instance)| instance);
         let start = one_length(start)?;

@@ -330,7 +330,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
     pub fn level(&self) -> Level {
         let plain = self.is_plain;
         let all = || self.standing.iter();
-        let fertile = all().filter(|(object, _)| self.is_fertile(**object));
+        let fertile = all().filter(|(object, _)| self.graph.is_fertile(**object));
         let bulge = |(&object, tally): (&usize, &Tally)| {
             let number = self.graph.objects[object].base_element;
             tally.sums.signed * self.areas[number]
@@ -367,10 +367,6 @@ impl<'g, F: Frame> Forecast<'g, F> {
         self.is_plain.then_some(populations)
     }
 
-    fn is_fertile(&self, object: usize) -> bool {
-        !matches!(self.graph.objects[object].replacement, Replacement::Kept)
-    }
-
     /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
     /// requires.
     fn is_resolved(&self) -> bool {
@@ -389,7 +385,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
         let mut first = BTreeMap::new();
         let mut standing: BTreeMap<usize, Tally> = BTreeMap::new();
         for (number, tally) in std::mem::take(&mut self.standing) {
-            let number = if self.is_fertile(number) {
+            let number = if self.graph.is_fertile(number) {
                 *first
                     .entry(self.graph.objects[number].behaviour)
                     .or_insert(number)
@@ -470,7 +466,8 @@ impl<'g, F: Frame> Forecast<'g, F> {
         for (index, instance) in chain.instances.iter().enumerate() {
             let is_first = index == 0;
             let joins = !is_first && instance.joined;
-            let other = self.is_fertile(before.object) != self.is_fertile(instance.object);
+            let other =
+                self.graph.is_fertile(before.object) != self.graph.is_fertile(instance.object);
             if libm::log2(instance.length / before.length).abs() > SAME_LENGTH {
                 let longer = instance.length.max(before.length);
                 self.new_lengths[0] += count;

@@ -307,7 +307,8 @@ impl<F: Frame> Graph<F> {
 
     /// Returns whether an object may be replaced, unlike one that is [kept](Replacement::Kept).
     #[inline]
-    pub(crate) fn is_fertile(&self, object: usize) -> bool {
+    #[must_use]
+    pub fn is_fertile(&self, object: usize) -> bool {
         !matches!(self.objects[object].replacement, Replacement::Kept)
     }
 

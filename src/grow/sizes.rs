@@ -83,8 +83,7 @@ impl Sizes {
             let next: Vec<_> = objects.iter().map(count).collect();
             let mut grows = false;
             for (object, &count) in next.iter().enumerate() {
-                let is_kept = matches!(objects[object].replacement, Replacement::Kept);
-                if !is_kept && counts[object].len() == steps && count <= most {
+                if graph.is_fertile(object) && counts[object].len() == steps && count <= most {
                     counts[object].push(count);
                     grows = true;
                 }
@@ -115,9 +114,15 @@ impl Sizes {
         // Children with the number of classes by which they are shorter. Infertile children count as one
         // element at any length.
         let shorter = |(object, ratio): (usize, f64)| {
-            let kept = matches!(graph.objects()[object].replacement, Replacement::Kept);
             let classes = whole(ROUNDING - classes(ratio));
-            (object, if kept { usize::MAX } else { classes })
+            (
+                object,
+                if graph.is_fertile(object) {
+                    classes
+                } else {
+                    usize::MAX
+                },
+            )
         };
         let ratios = graph.ratios().into_iter().zip(graph.resets());
         let children: Vec<Option<Vec<_>>> = ratios
@@ -231,7 +236,6 @@ mod tests {
     use super::Sizes;
     use crate::catalogue::Catalogue;
     use crate::document::Document;
-    use crate::graph::Replacement;
 
     /// In this rule, branches turn at full length in one step and shrink in the next.
     #[test]
@@ -241,8 +245,8 @@ mod tests {
         let document = Document::read(&source, &catalogue).unwrap();
         let graph = document.resolve(&[]).unwrap().0.compile(60).unwrap();
         let sizes = Sizes::most(&graph, 4096).down_to(&graph, 0.01, 4096);
-        for (number, object) in graph.objects().iter().enumerate() {
-            if !matches!(object.replacement, Replacement::Kept) {
+        for number in 0..graph.objects().len() {
+            if graph.is_fertile(number) {
                 let size = sizes.cut(number, 60, 0.012);
                 assert!(size.is_some(), "{number}");
             }

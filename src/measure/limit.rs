@@ -6,6 +6,7 @@ mod moments;
 
 use std::num::NonZero;
 
+use crate::extent::NoLimit;
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::Placement;
@@ -15,27 +16,6 @@ use super::cover::{Grid, Scale, least};
 
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
-
-/// Reason why a graph has no limit set that can be walked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LimitSetError {
-    /// Maps are drawn by chance, or depend on an index that has to be counted.
-    #[error("its maps are not fixed: they depend on draws or on indices")]
-    NotFixed,
-    /// New objects arise at every step, without end.
-    #[error("what replaces an element changes from step to step without end")]
-    Endless,
-    /// Seeds are placed as the initiator.
-    #[error("there is no limit set: seeds are placed as the initiator")]
-    Resets,
-    /// The maps of a cycle do not contract.
-    #[error("there is no limit set: what is replaced does not shrink")]
-    DoesNotShrink,
-    /// No object is replaced infinitely often.
-    #[error("there is no limit set: nothing stays fertile")]
-    NothingFertile,
-}
 
 /// The limit set of a graph's fertile elements: the attractor.
 ///
@@ -134,18 +114,10 @@ impl LimitSet {
     /// # Errors
     ///
     /// Returns an error if there is no limit set, or if the graph does not determine it.
-    pub fn of(graph: &Graph) -> Result<Self, LimitSetError> {
-        if !graph.is_plain() || !graph.is_regular() {
-            return Err(LimitSetError::NotFixed);
-        }
-        if graph.depth().is_some() {
-            return Err(LimitSetError::Endless);
-        }
-        if graph.resets().contains(&true) {
-            return Err(LimitSetError::Resets);
-        }
+    pub fn of(graph: &Graph) -> Result<Self, NoLimit> {
+        graph.check_maps()?;
         if !graph.shrinks() {
-            return Err(LimitSetError::DoesNotShrink);
+            return Err(NoLimit::DoesNotShrink);
         }
         let lasting = lasting(graph);
         let kept = |instance: &&Instance| lasting[instance.object];
@@ -155,7 +127,7 @@ impl LimitSet {
         let start = graph.initiator(0).instances.iter();
         let start: Vec<_> = start.filter(kept).map(placed).collect();
         if start.is_empty() {
-            return Err(LimitSetError::NothingFertile);
+            return Err(NoLimit::NothingFertile);
         }
         Ok(Self::of_copies(children, start))
     }

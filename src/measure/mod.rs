@@ -47,7 +47,7 @@ pub use box_counting::{BoxCounting, Boxes, Window};
 pub use cover::{Grid, Scale};
 pub use distance::{Distance, NoCover, Precision, Subject, Subset, TooMany, hausdorff};
 pub use grown::{GrownPoints, grown};
-pub use limit::{Cascade, LimitSet, LimitSetError};
+pub use limit::{Cascade, LimitSet};
 pub use mass::{FINENESS, Lacunarity, Masses};
 pub use points::{NoExtent, Points, counts};
 pub use raster::raster_scales;

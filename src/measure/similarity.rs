@@ -5,8 +5,8 @@
 use std::collections::BTreeSet;
 
 use crate::digraph::components;
-use crate::graph::{Graph, Instance, Replacement};
-use crate::rule::Placement;
+use crate::extent::NoLimit;
+use crate::graph::{Graph, Object};
 
 use super::perron::{beside_one, crossing, perron};
 
@@ -20,10 +20,10 @@ pub struct Similarity {
 }
 
 impl Similarity {
-    fn none(note: &str) -> Self {
+    fn none(note: &dyn std::fmt::Display) -> Self {
         Self {
             value: None,
-            note: Some(note.into()),
+            note: Some(note.to_string()),
         }
     }
 }
@@ -35,32 +35,22 @@ impl Similarity {
 #[must_use]
 pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if graph.draws() {
-        return Similarity::none("the ratios may depend on draws");
+        return Similarity::none(&NoLimit::Draws);
     }
-    if !graph.is_regular() {
-        return Similarity::none("the rule is irregular");
-    }
-    if !graph.is_plain() {
-        return Similarity::none("the ratios depend on the index");
-    }
-    if graph.depth().is_some() {
-        return Similarity::none("what replaces an element changes from step to step without end");
+    if let Err(reason) = graph.check_maps() {
+        return Similarity::none(&reason);
     }
     if !graph.is_similar() {
-        return Similarity::none("the maps are no similarities");
+        return Similarity::none(&"the maps are no similarities");
     }
-    let edges = edges(graph);
-    let Some(edges) = edges else {
-        return Similarity::none("there is no limit set: seeds are placed as the initiator");
-    };
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
-    let parts = parts(graph.behaviours().count(), &edges);
+    let parts = parts(graph.behaviours().count(), &edges(graph));
     // Where nothing stays fertile, maps need not contract.
     if parts.is_empty() {
-        return Similarity::none("nothing stays fertile");
+        return Similarity::none(&NoLimit::NothingFertile);
     }
     if !graph.contracts() {
-        return Similarity::none("there is no limit set: what is replaced does not shrink");
+        return Similarity::none(&NoLimit::DoesNotShrink);
     }
     let parts = parts.into_iter().map(Part::contracted);
     let value = parts.map(|part| part.dimension()).fold(0.0, f64::max);
@@ -91,32 +81,20 @@ struct Edge {
 }
 
 /// Returns the fertile instances of fertile objects as edges between behaviours: objects of one behaviour are
-/// replaced alike. Returns `None` if one of them is a reset (seeds placed as the initiator).
-fn edges(graph: &Graph) -> Option<Vec<Edge>> {
-    let mut edges = Vec::new();
-    let fertile = |object: usize| !matches!(graph.objects()[object].replacement, Replacement::Kept);
-    for object in graph.behaviours() {
-        let Replacement::Fixed(production) = &object.replacement else {
-            continue;
-        };
-        let mut add = |instance: &Instance| {
-            if fertile(instance.object) {
-                edges.push(Edge {
-                    from: object.behaviour,
-                    to: graph.objects()[instance.object].behaviour,
-                    ratio: instance.length,
-                });
-            }
-        };
-        production.body.instances.iter().for_each(&mut add);
-        for seed in &production.seeds {
-            if seed.placement == Placement::SeedsAsInitiator {
-                return None;
-            }
-            seed.chain.instances.iter().for_each(&mut add);
-        }
-    }
-    Some(edges)
+/// replaced alike.
+fn edges(graph: &Graph) -> Vec<Edge> {
+    let of = |(number, object): (usize, &Object)| {
+        let children = graph.children(number).map(|(_, instance)| instance);
+        let fertile = children.filter(|instance| graph.is_fertile(instance.object));
+        let from = object.behaviour;
+        let edges = fertile.map(move |instance| Edge {
+            from,
+            to: graph.objects()[instance.object].behaviour,
+            ratio: instance.length,
+        });
+        edges.collect::<Vec<_>>()
+    };
+    graph.behaviours_by_number().flat_map(of).collect()
 }
 
 /// A strongly connected part of the graph: objects that reach each other.

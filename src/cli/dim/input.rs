@@ -8,13 +8,13 @@ use anyhow::{Context, anyhow};
 
 use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
+use crate::extent::NoLimit;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::import::{Channel, Raster, TableError, read_points};
 use crate::measure::exact::{Spectrum, dimensions_of_graph};
 use crate::measure::{
-    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, LimitSetError, Masses,
-    Points, grown,
+    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, Masses, Points, grown,
 };
 use crate::model::Model;
 
@@ -155,7 +155,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
     };
     let set = match LimitSet::of(&graph) {
         Ok(set) => set,
-        Err(LimitSetError::NotFixed | LimitSetError::Endless) => {
+        Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless) => {
             return of_growth(arguments, &graph, steps, measured);
         }
         Err(error) => return Ok(measured.without(&error)),

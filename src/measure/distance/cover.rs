@@ -55,8 +55,8 @@ impl<'a> Subject<'a> {
     pub fn new(graph: &'a Graph, set: Subset<'a>) -> Result<Self, NoCover> {
         let bounds = match &set {
             Subset::Limit => {
-                graph.check_limit_set()?;
-                graph.limit_bounds().unwrap_or_else(|| discs(graph))
+                let limit = graph.limit()?;
+                limit.bounds().unwrap_or_else(|| discs(graph))
             }
             Subset::Approximant(growth) => {
                 bounding_box(graph, growth).map_err(|error| match error {

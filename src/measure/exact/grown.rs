@@ -1,5 +1,6 @@
 //! Exact dimensions of the limit of a graph.
 
+use crate::extent::NoLimit;
 use crate::graph::{Graph, Replacement};
 use crate::measure::similarity_dimension;
 
@@ -39,7 +40,7 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensi
     let dimensions = system.and_then(|system| dimensions_within(&system, effort));
     let Some(dimensions) = dimensions else {
         let reason = similarity_dimension(graph).note;
-        let reason = reason.unwrap_or_else(|| "there is no limit set: maps do not shrink".into());
+        let reason = reason.unwrap_or_else(|| NoLimit::DoesNotShrink.to_string());
         return GraphDimensions {
             dimensions: None,
             drawn: None,

@@ -3,6 +3,7 @@
 
 use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
+use crate::extent::NoLimit;
 use crate::graph::{Alternative, Graph, Replacement};
 use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
@@ -21,16 +22,16 @@ struct Ratio {
 
 /// Returns the dimension of a random rule, for almost all seeds if copies do not overlap, or the reason why
 /// it is not known.
-pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
+pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, String> {
     let mut ratios = Vec::new();
     for object in graph.behaviours() {
         match &object.replacement {
             Replacement::Kept => {}
-            Replacement::Unresolved => return Err("what replaces an element changes without end"),
+            Replacement::Unresolved => return Err(NoLimit::Endless.to_string()),
             Replacement::Fixed(production) => {
                 for (placement, instance) in production.placed_instances() {
                     if placement == Placement::SeedsAsInitiator {
-                        return Err("seeds are placed as the initiator");
+                        return Err(NoLimit::Resets.to_string());
                     }
                     let place = [object.behaviour, instance.object];
                     push(&mut ratios, graph, place, instance.length, 1.0);
@@ -38,7 +39,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
             }
             Replacement::Evaluated(alternatives) => {
                 let Some(rule) = graph.source().rule() else {
-                    return Err("productions are drawn whose effects are not alike");
+                    return Err("productions are drawn whose effects are not alike".into());
                 };
                 for (alternative, weight) in weighted(rule, alternatives)? {
                     let from = object.behaviour;
@@ -48,7 +49,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
         }
     }
     if ratios.iter().any(|ratio| ratio.ratio >= 1.0) {
-        return Err("a generator may not shrink");
+        return Err(NoLimit::DoesNotShrink.to_string());
     }
     let size = graph.behaviours().count();
     let radius = |dimension: f64| {
@@ -60,7 +61,7 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, &'static str> {
         dense_radius(matrix, size)
     };
     if radius(0.0) <= 1.0 {
-        return Err("what is fertile does not multiply");
+        return Err("what is fertile does not multiply".into());
     }
     let (mut low, mut high) = (0.0, 1.0);
     while radius(high) > 1.0 {
@@ -95,12 +96,12 @@ fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, w
 fn weighted<'a>(
     rule: &Rule,
     alternatives: &'a [Alternative],
-) -> Result<Vec<(&'a Alternative, f64)>, &'static str> {
+) -> Result<Vec<(&'a Alternative, f64)>, String> {
     if let [only] = alternatives {
         return Ok(vec![(only, 1.0)]);
     }
     let Selection::AtRandom(entries) = rule.selection() else {
-        return Err("generators are selected by more than draws");
+        return Err("generators are selected by more than draws".into());
     };
     let total: f64 = entries.iter().map(|(weight, _)| weight).sum();
     let weight = |alternative: &Alternative| -> f64 {
@@ -119,7 +120,7 @@ fn push_draws(
     rule: &Rule,
     from: usize,
     (alternative, weight): (&Alternative, f64),
-) -> Result<(), &'static str> {
+) -> Result<(), String> {
     let generator = &rule.generators()[alternative.generator];
     let moments = [
         ElementContext::INDEX,
@@ -132,7 +133,7 @@ fn push_draws(
         slots.any(|&slot| program.dependence(slot) != Dependence::None)
     };
     if generator.programs().any(depends) {
-        return Err("ratios depend on more than draws");
+        return Err("ratios depend on more than draws".into());
     }
     let moment = ElementContext {
         index: 1.0,
@@ -151,17 +152,14 @@ fn push_draws(
         }
         let mut parts = generator.parts().iter();
         if parts.any(|part| part.placement == Placement::SeedsAsInitiator) {
-            return Err("seeds are placed as the initiator");
+            return Err(NoLimit::Resets.to_string());
         }
     }
     Ok(())
 }
 
 /// Returns the nodes of all variables by slot, with weights: a product of quadratures.
-fn draws(
-    generator: &Generator,
-    moment: &ElementContext,
-) -> Result<Vec<(Vec<f64>, f64)>, &'static str> {
+fn draws(generator: &Generator, moment: &ElementContext) -> Result<Vec<(Vec<f64>, f64)>, String> {
     let mut draws = vec![(moment.slots().to_vec(), 1.0)];
     for variable in generator.variables() {
         let mut next = Vec::new();
@@ -172,7 +170,7 @@ fn draws(
                 next.push((slots, weight * share));
             }
             if next.len() > MOST_DRAWS {
-                return Err("too many numbers are drawn to integrate over");
+                return Err("too many numbers are drawn to integrate over".into());
             }
         }
         draws = next;
