@@ -2,81 +2,13 @@
 
 use crate::geometry::{Direction, Frame, Frame2, Outline};
 use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
-use crate::instancing::Appearance;
 
-use super::block::{Block, Blocks};
+use super::block::Blocks;
 use super::census::Census;
 use super::evaluator::{Evaluator, ReplacementContext};
-use super::sizes::Sizes;
+use super::found::{Found, FoundRun, FoundSubtree, Next, Stop};
 use super::start::{Standing, Start, StartChain, birth, seed_placement};
 use super::{Enter, Subtree};
-
-/// Element that a descent has reached.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found<F: Frame = Frame2> {
-    pub(super) standing: Standing<F>,
-    pub(super) object: usize,
-    /// Step of its birth.
-    pub(super) level: u32,
-    pub(super) joined: bool,
-    /// Rank at its level; 0 unless ranks are counted.
-    pub(super) rank: u64,
-    /// Rank in its fractal, from 1; for an element that is replaced, the rank of its first descendant.
-    pub(super) index: u128,
-}
-
-/// Block that a descent has reached in place of its elements.
-pub(super) struct FoundRun<'b, F: Frame> {
-    pub(super) block: &'b Block<F>,
-    pub(super) object: usize,
-    pub(super) frame: F,
-    pub(super) length: f64,
-    pub(super) appearance: Appearance,
-    /// Step of birth of the object that the block replaces.
-    pub(super) level: u32,
-    /// Whether the preceding element ends where the object starts.
-    pub(super) joined: bool,
-    /// Rank of the first element.
-    pub(super) index: u128,
-}
-
-/// Element that a descent has reached and whose subtree it leaves to another descent.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FoundSubtree<F: Frame> {
-    /// Root of the subtree; `joined` is whether the preceding element ends where it starts.
-    pub(super) root: Found<F>,
-    /// Upper bound of its number of descendants.
-    pub(super) size: u64,
-    /// Whether its end point is also that of every replaced ancestor of which it is the last part.
-    pub(super) meets_end: bool,
-    /// Rank of its last descendant, if a census is available.
-    pub(super) last: u128,
-}
-
-/// Next position of a descent.
-pub(super) enum Next<'b, F: Frame> {
-    /// Element of the approximant.
-    Element(Found<F>),
-    /// Consecutive elements, if the descent stops at blocks.
-    Run(FoundRun<'b, F>),
-    /// Element to be replaced, if the descent stops at subtrees. The descent assumes that its last
-    /// descendant reaches its end point.
-    Subtree(FoundSubtree<F>),
-    /// Many elements were replaced since the last result: an opportunity to stop.
-    Pause,
-    /// End of the fractal.
-    End,
-}
-
-/// Condition under which a descent does not replace an element.
-#[derive(Clone, Copy)]
-pub(super) enum Stop<'b, F: Frame> {
-    Nowhere,
-    /// The element is replaced by a block.
-    AtBlocks(&'b Blocks<F>),
-    /// The number of descendants is known to be small.
-    AtSubtrees(&'b Sizes),
-}
 
 /// Number of visits between two opportunities to stop.
 pub(super) const PATIENCE: u64 = 1 << 12;

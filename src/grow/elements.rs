@@ -7,10 +7,12 @@ use crate::geometry::{Frame, Frame2};
 use crate::graph::Graph;
 
 use super::colony::{Colony, Taken};
-use super::descent::{Descent, Found, Next, Stop};
+use super::descent::Descent;
+use super::found::{Found, Next, Stop};
+use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
-use super::walk::{Fractals, Sink};
+use super::walk::Sink;
 use super::{Element, Enter, FractalInfo, Growth, Subtree, WalkError};
 
 impl<F: Frame> Element<F> {

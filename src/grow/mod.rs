@@ -18,13 +18,17 @@ mod count;
 mod descent;
 mod elements;
 mod evaluator;
+mod found;
+mod fractals;
 mod outlines;
 mod progress;
 mod sizes;
+mod span;
 mod spans;
 mod start;
 mod tally;
 mod walk;
+mod whole;
 
 #[cfg(test)]
 mod tests;

@@ -17,18 +17,18 @@ use crate::parallel::{Line, Team, with_team};
 use super::block::{Blocks, MOST_LEAVES};
 use super::census::Census;
 use super::colony::{Colony, Taken};
-use super::descent::{Descent, Found, FoundSubtree, Next, Stop};
+use super::descent::Descent;
+use super::found::{Found, Next, Stop};
 use super::sizes::Sizes;
+use super::span::{Item, Position, Span};
 use super::start::Start;
 use super::tally::Tally;
 use super::walk::{Sink, Visiting, send};
-use super::{Element, Enter, FractalInfo, Growth, Run, Subtree, Visitor, WalkError, Walked, walk};
+use super::whole::Whole;
+use super::{Enter, FractalInfo, Growth, Subtree, Visitor, WalkError, Walked, walk};
 
 /// Number of visits after which a span without elements is submitted, so that the walk can be stopped.
 const LONG: u64 = 1 << 16;
-
-/// Number of elements after which a visitor of the whole walk is taken.
-const WHOLE: u64 = 1 << 12;
 
 /// Properties of a span that depend on the preceding spans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub struct Seam {
 
 impl Seam {
     /// Seam that changes nothing.
-    const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         before: 0,
         joined: true,
     };
@@ -177,71 +177,6 @@ where
         (order.take)(&mut spans.asked, Seam::NONE).map_err(WalkError::Visitor)?;
     }
     Ok(spans.order.tally.finish())
-}
-
-/// Item of a span.
-enum Item<'w, F: Frame> {
-    /// Beginning of a fractal, with the step of its birth.
-    Begin(FractalInfo, u32),
-    Element(Found<F>),
-    Subtree(FoundSubtree<F>),
-    /// Part of a colony that the visitor takes.
-    Colony(Colony<'w, F>, Taken),
-    /// End of the fractal; the flag holds only if the preceding element ends where its subtree does.
-    End(bool),
-}
-
-/// Limit of a span.
-#[derive(Clone, Copy, Default)]
-struct Position {
-    fractal: FractalInfo,
-    /// Step in which the fractal was born.
-    born: u32,
-    /// Number of its elements before the limit, if known; otherwise 0.
-    before: u128,
-}
-
-/// Consecutive part of a walk.
-struct Span<'w, F: Frame> {
-    from: Position,
-    /// Position where it ends.
-    to: Position,
-    items: Vec<Item<'w, F>>,
-    /// Upper bound of its number of elements, plus 1 for each subtree and each fractal that begins.
-    size: u64,
-    /// Number of visits above its subtrees.
-    visited: u64,
-}
-
-impl<F: Frame> Default for Span<'_, F> {
-    fn default() -> Self {
-        Self {
-            from: Position::default(),
-            to: Position::default(),
-            items: Vec::new(),
-            size: 0,
-            visited: 0,
-        }
-    }
-}
-
-impl<'w, F: Frame> Span<'w, F> {
-    /// Restarts at the end of another span.
-    fn follow(&mut self, other: &Self) {
-        self.items.clear();
-        (self.from, self.to) = (other.to, other.to);
-        (self.size, self.visited) = (0, 0);
-    }
-
-    fn push(&mut self, item: Item<'w, F>, size: u64) {
-        self.items.push(item);
-        self.size += size;
-    }
-
-    /// Returns whether the span begins within a fractal.
-    fn goes_on(&self) -> bool {
-        !matches!(self.items.first(), Some(Item::Begin(..) | Item::Colony(..)))
-    }
 }
 
 /// Span with its visitor.
@@ -529,91 +464,5 @@ where
             return self.hand_on();
         }
         Ok(())
-    }
-}
-
-/// Visitor of a whole walk that passes its visitor to `take` repeatedly.
-struct Whole<V, T> {
-    visitor: V,
-    take: T,
-    since: u64,
-}
-
-impl<V, T> Whole<V, T> {
-    fn hand_over<E>(&mut self) -> Result<(), E>
-    where
-        T: FnMut(&mut V, Seam) -> Result<(), E>,
-    {
-        self.since = 0;
-        (self.take)(&mut self.visitor, Seam::NONE)
-    }
-
-    #[inline]
-    fn count<E>(&mut self, elements: u64) -> Result<(), E>
-    where
-        T: FnMut(&mut V, Seam) -> Result<(), E>,
-    {
-        self.since += elements;
-        if self.since < WHOLE {
-            return Ok(());
-        }
-        self.hand_over()
-    }
-}
-
-impl<F: Frame, V: Visitor<F>, T> Visitor<F> for Whole<V, T>
-where
-    T: FnMut(&mut V, Seam) -> Result<(), V::Error>,
-{
-    type Error = V::Error;
-
-    fn takes_runs(&self) -> bool {
-        self.visitor.takes_runs()
-    }
-
-    fn longest_run(&self) -> u64 {
-        self.visitor.longest_run()
-    }
-
-    fn cuts(&self) -> Option<f64> {
-        self.visitor.cuts()
-    }
-
-    fn ages(&self) -> RangeInclusive<u32> {
-        self.visitor.ages()
-    }
-
-    fn begin(&mut self, fractal: FractalInfo) -> Result<(), V::Error> {
-        self.visitor.begin(fractal)?;
-        self.count(1)
-    }
-
-    #[inline]
-    fn enter(&mut self, subtree: &Subtree<F>) -> Enter {
-        self.visitor.enter(subtree)
-    }
-
-    #[inline]
-    fn element(&mut self, element: &Element<F>) -> Result<(), V::Error> {
-        self.visitor.element(element)?;
-        self.count(1)
-    }
-
-    fn run(&mut self, run: &Run<'_, F>) -> Result<(), V::Error> {
-        self.visitor.run(run)?;
-        self.count(run.count())
-    }
-
-    fn takes(&self, colony: &Colony<'_, F>) -> Taken {
-        self.visitor.takes(colony)
-    }
-
-    fn colony(&mut self, colony: &Colony<'_, F>, taken: Taken) -> Result<(), V::Error> {
-        self.visitor.colony(colony, taken)?;
-        self.count(1)
-    }
-
-    fn end(&mut self, joined: bool) -> Result<(), V::Error> {
-        self.visitor.end(joined)
     }
 }

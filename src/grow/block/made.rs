@@ -8,7 +8,8 @@ use crate::graph::{CompileError, Graph};
 
 use super::cut::Cuts;
 use super::{Block, Leaf, LineElement, births, unit};
-use crate::grow::descent::{Descent, Next, Stop};
+use crate::grow::descent::Descent;
+use crate::grow::found::{Next, Stop};
 use crate::grow::sizes::Sizes;
 use crate::grow::start::Start;
 use crate::grow::{Enter, Subtree};
