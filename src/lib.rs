@@ -53,9 +53,10 @@
 //!     │  resolve    names looked up, expressions compiled, everything checked
 //!     ▼
 //!  model            a rule, a system of maps, a structure of objects or an L-system, validated
-//!     │  graph      dependence on age and index becomes more objects
+//!     │  compile    dependence on age and index becomes more objects
 //!     ▼
-//!  Graph            objects that instance each other: forecast, bounds
+//!  Graph            objects that instance each other: forecast
+//!     ├── extent    boxes, hulls, radii and limit sets, with nothing drawn
 //!     ├── measure   dimensions, exact and by boxes; distances
 //!     ├── convert   the same set as a file of another kind
 //!     │  grow       a depth-first walk, shared between threads
@@ -65,6 +66,12 @@
 //!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables: CSV, JSON
 //! ```
+//!
+//! Graphs, walks, forecasts, bounds and draws are generic over the [`Frame`](geometry::Frame) of an element; the
+//! frame of the plane, with lines and curves as outlines, is the default. All models of today are of the plane.
+//!
+//! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
+//! written](written), [`draws`], [`count`]s, [`kind`]s and [`metadata`]. No room imports one above it.
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
 //! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
