@@ -4,13 +4,8 @@
 //! `tests/bad` holds a file for each mistake and, beside it, the expected diagnostics. With `KFRAC_BLESS=1`
 //! the diagnostics are written instead of compared.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "bad_input/costly.rs"]
 mod costly;
-#[path = "bad_input/hostile.rs"]
 mod hostile;
-#[path = "bad_input/mutations.rs"]
 mod mutations;
 
 use std::fs;

@@ -1,11 +1,8 @@
 //! Pictures that are drawn in bands are equal to those drawn in one piece.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::num::NonZero;
 
+use crate::common;
 use kfrac::figure::sheet::{self, Cell};
 use kfrac::graph::Graph;
 use kfrac::grow::{Growth, Progress};

@@ -1,13 +1,7 @@
 //! Box counting: known dimensions are measured, and sets that cannot be measured are refused.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "boxes/bad.rs"]
 mod bad;
-mod common;
-#[path = "boxes/laws.rs"]
 mod laws;
-#[path = "boxes/pictures.rs"]
 mod pictures;
 
 use std::num::NonZero;

@@ -1,13 +1,9 @@
 //! Fractals built in code are equal to those written in files.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "build/random.rs"]
 mod random;
-#[path = "build/systems.rs"]
 mod systems;
 
+use crate::common;
 use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};

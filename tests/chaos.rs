@@ -1,7 +1,5 @@
 //! The chaos game: its measure and its points, which depend on nothing but the seed.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it unwraps nothing")]
-
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
 

@@ -1,7 +1,5 @@
 //! The command-line program from a user's point of view.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;

@@ -1,12 +1,8 @@
 //! Distances between fractals, against known values and against brute force.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::process::{Command, Output};
 
-use common::{compiled, document, document_of, grown, resolved};
+use crate::common::{compiled, document, document_of, grown, resolved};
 use kfrac::geometry::DVec2;
 use kfrac::graph::{Graph, Replacement};
 use kfrac::grow::Growth;

@@ -1,12 +1,8 @@
 //! Conversions between kinds, against the originals.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::document_of;
+use crate::common::document_of;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::convert::{ConvertError, Keeps, Refusal, convert};
 use kfrac::document::Document;

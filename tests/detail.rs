@@ -1,17 +1,12 @@
 //! Pictures to a detail: everything visible is drawn, and little of the invisible is grown.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "laws/rules.rs"]
-mod rules;
-
 use std::convert::Infallible;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use common::{compiled, document, document_of, resolved};
+use crate::common::{self, compiled, document, document_of, resolved};
+use crate::laws::rules::{self, Features};
 use kfrac::document::Document;
 use kfrac::geometry::DVec2;
 use kfrac::graph::Graph;
@@ -20,7 +15,6 @@ use kfrac::render::{self, Detail, Format, NoDetail, Options, Picture, RenderErro
 use kfrac::rule::Rule;
 use kfrac::style::{ColorBy, View};
 use proptest::prelude::*;
-use rules::Features;
 
 fn library(name: &str) -> Arc<Rule> {
     resolved(&document(name), &[])

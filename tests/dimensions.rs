@@ -1,9 +1,6 @@
 //! Similarity dimensions of graphs with several objects, against values derived by hand.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
+use crate::common;
 use kfrac::measure::{Similarity, similarity_dimension};
 
 fn dimension(text: &str) -> Similarity {

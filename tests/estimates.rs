@@ -1,10 +1,6 @@
 //! Estimates of file sizes before drawing, against the files that are drawn.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
-use common::{document, resolved};
+use crate::common::{document, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::estimate::Estimator;
 use kfrac::extent::bounding_box;

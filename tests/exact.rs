@@ -1,17 +1,11 @@
 //! Exact dimensions by neighbour maps, against published values and against counts.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "exact/laws.rs"]
 mod laws;
-#[path = "exact/library.rs"]
 mod library;
-#[path = "exact/spectrum.rs"]
 mod spectrum;
-#[path = "exact/systems.rs"]
 mod systems;
 
+use crate::common;
 use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::measure::exact::{Dimensions, GraphDirectedSystem, dimensions};
 

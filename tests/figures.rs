@@ -1,12 +1,8 @@
 //! Figures of production rules, systems and structures: their content and its legibility.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "figures/svg.rs"]
 mod svg;
 
-use common::{document, document_of, resolved};
+use crate::common::{document, document_of, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::figure::rule::{self, Options};

@@ -1,7 +1,5 @@
 //! The pictures of the gallery equal those that its commands make.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

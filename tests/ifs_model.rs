@@ -1,20 +1,11 @@
 //! The model of iterated function systems, against the reference, closed forms and brute force.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "ifs_model/contraction.rs"]
 mod contraction;
-#[path = "ifs_model/interpolation.rs"]
 mod interpolation;
-#[path = "ifs_model/measure.rs"]
 mod measure;
-#[path = "ifs_model/mistakes.rs"]
 mod mistakes;
-#[path = "ifs_model/reference.rs"]
 mod reference;
-#[path = "ifs_model/shapes.rs"]
 mod shapes;
-#[path = "ifs_model/walk.rs"]
 mod walk;
 
 use kfrac::geometry::{DAffine2, DMat2, DVec2};

@@ -1,20 +1,14 @@
 //! SVGs of nested instances show the pictures of plain SVGs.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "instanced/command_line.rs"]
 mod command_line;
-mod common;
-#[path = "instanced/maps.rs"]
 mod maps;
-#[path = "instanced/picture.rs"]
 mod picture;
-#[path = "instanced/refusals.rs"]
 mod refusals;
 
 use std::collections::BTreeSet;
 use std::num::NonZero;
 
+use crate::common;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::graph::Graph;

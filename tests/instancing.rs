@@ -1,10 +1,6 @@
 //! Structures of objects that instance each other, against a naive expansion and against systems.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
-use common::{document, document_of, grown};
+use crate::common::{document, document_of, grown};
 use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;

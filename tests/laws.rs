@@ -1,13 +1,8 @@
 //! Laws that hold for every rule, tested on random ones.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "laws/lists.rs"]
 mod lists;
-#[path = "laws/places.rs"]
 mod places;
-#[path = "laws/rules.rs"]
-mod rules;
+pub(crate) mod rules;
 
 use std::convert::Infallible;
 use std::num::NonZero;

@@ -1,13 +1,7 @@
 //! Every file of the library is loaded, grown, drawn and compared with its published dimension.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "library/lsystems.rs"]
 mod lsystems;
-#[path = "library/picture.rs"]
 mod picture;
-#[path = "library/structures.rs"]
 mod structures;
 
 use std::collections::BTreeSet;
@@ -15,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use common::{compiled, document, document_of, grown, resolved};
+use crate::common::{self, compiled, document, document_of, grown, resolved};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::count::Count;
 use kfrac::document::node::{Node, Value};

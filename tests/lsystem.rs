@@ -1,22 +1,14 @@
 //! L-systems: words by published derivations, and drawings of the turtle.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "lsystem/contexts.rs"]
 mod contexts;
-#[path = "lsystem/laws.rs"]
 mod laws;
-#[path = "lsystem/looks.rs"]
 mod looks;
-#[path = "lsystem/rules.rs"]
 mod rules;
-#[path = "lsystem/turtle.rs"]
 mod turtle;
 
 use std::sync::Arc;
 
-use common::document_of;
+use crate::common::{self, document_of};
 use kfrac::lsystem::{LSystem, RewriteError};
 use kfrac::model::Model;
 

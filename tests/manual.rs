@@ -1,7 +1,5 @@
 //! Help, manual pages and completions.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,9 +1,6 @@
 //! SVG path data of small rules, to the letter.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
+use crate::common;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Options, Size};

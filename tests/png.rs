@@ -1,12 +1,8 @@
 //! PNG and SVG show the same picture: resvg renders the SVG, which is compared with kfrac's PNG.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::sync::Arc;
 
-use common::{compiled, document, document_of, resolved};
+use crate::common::{compiled, document, document_of, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::grow::Growth;
 use kfrac::render::{self, Format, Labels, Options, PngEncoding, Size};

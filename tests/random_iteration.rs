@@ -1,8 +1,6 @@
 //! Random iteration of all systems of the library, against deterministic iteration and the exact moments; and
 //! on the command line.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

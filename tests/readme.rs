@@ -3,8 +3,6 @@
 //! A block that begins with ```` ```yaml ```` alone is a whole rule. One that begins with ```` ```yaml
 //! fragment ```` is a part of one and is skipped.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
 use std::convert::Infallible;
 
 use kfrac::catalogue::Catalogue;

@@ -1,27 +1,17 @@
 //! Every rule of the reference: counts, lengths, bounds, areas and sequences of turns are compared with it;
 //! and the walk is compared with a second engine that is independent of graphs.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "reference/closed_forms.rs"]
 mod closed_forms;
-mod common;
-#[path = "reference/data.rs"]
 mod data;
-#[path = "reference/draws.rs"]
 mod draws;
-#[path = "reference/invented.rs"]
 mod invented;
-#[path = "reference/naive.rs"]
 mod naive;
-#[path = "reference/structure.rs"]
 mod structure;
-#[path = "reference/turns.rs"]
 mod turns;
 
 use std::collections::BTreeSet;
 
-use common::{Grown, compiled, document, grown, resolved};
+use crate::common::{self, Grown, compiled, document, grown, resolved};
 use data::{Entry, reference};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::count::Count;

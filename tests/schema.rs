@@ -1,15 +1,10 @@
 //! The schemas for editors, compared with files and with the reader by an independent validator.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[allow(dead_code, reason = "this test needs one kind of rules")]
-#[path = "laws/rules.rs"]
-mod rules;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
+use crate::laws::rules;
 use jsonschema::Validator;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::{Diagnostics, Source};

@@ -1,14 +1,10 @@
 //! Sheets: approximants side by side, and the command that draws them.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
+use crate::common::{compiled, document, resolved};
 use assert_cmd::Command;
-use common::{compiled, document, resolved};
 use kfrac::figure::sheet::{self, Cell};
 use kfrac::grow::Growth;
 use kfrac::render::{Options, Size};

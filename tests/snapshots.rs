@@ -1,10 +1,6 @@
 //! Snapshots of a few pictures, byte by byte: every change is to be reviewed.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
-use common::{compiled, document, resolved};
+use crate::common::{compiled, document, resolved};
 use kfrac::grow::Growth;
 use kfrac::render::{self, Labels, Options, Size};
 

@@ -1,9 +1,6 @@
 //! Unusual names, folders, devices and pipes.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "surroundings/disk.rs"]
 mod disk;
 
 use std::ffi::{OsStr, OsString};

@@ -1,23 +1,16 @@
 //! Iterated function systems from the file to the elements, against the reference's maps, fixed points and
 //! dimensions, and against images computed here without a graph.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "systems/boxes.rs"]
 mod boxes;
-#[path = "systems/cells.rs"]
 mod cells;
-#[path = "systems/fractals.rs"]
 mod fractals;
-#[path = "common/random_systems.rs"]
-mod random_systems;
-#[path = "systems/same.rs"]
 mod same;
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
+use crate::common::random_systems;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;

@@ -1,9 +1,6 @@
 //! The program on a terminal.
 
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "terminal/signals.rs"]
 mod signals;
 
 use std::ffi::OsString;

@@ -1,15 +1,10 @@
 //! Many threads give the results of one, to the last bit.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "laws/rules.rs"]
-mod rules;
-
 use std::convert::Infallible;
 use std::num::NonZero;
 
-use common::{document, document_of};
+use crate::common::{document, document_of};
+use crate::laws::rules::{self, Features};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::export;
 use kfrac::extent::bounding_box;
@@ -23,7 +18,6 @@ use kfrac::model::Model;
 use kfrac::render::{self, Options, Size};
 use kfrac::style::ColorBy;
 use proptest::prelude::*;
-use rules::Features;
 
 const THREADS: [usize; 4] = [1, 2, 3, 8];
 

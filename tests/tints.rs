@@ -1,12 +1,8 @@
 //! Tints of structures: pictures agree with the equations of Hart 1992, section 5.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
 use std::num::NonZero;
 
-use common::{document, document_of};
+use crate::common::{document, document_of};
 use kfrac::grow::Growth;
 use kfrac::model::Model;
 use kfrac::render::{self, Format, Options, Size};

@@ -1,20 +1,14 @@
 //! Vector graphics in SVG, PDF and DXF, pictures and plots, and tables, as other programs read them.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-#[path = "vectors/paper.rs"]
 mod paper;
-#[path = "vectors/plots.rs"]
 mod plots;
-#[path = "vectors/readers.rs"]
 mod readers;
-#[path = "vectors/tables.rs"]
 mod tables;
 
 use std::num::NonZero;
 use std::sync::Arc;
 
+use crate::common;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Format, Options, Picture, Size, Unit};

@@ -1,10 +1,6 @@
 //! Windows are details of the whole picture.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-mod common;
-
-use common::{compiled, document, resolved};
+use crate::common::{compiled, document, resolved};
 use kfrac::grow::Growth;
 use kfrac::render::{self, Detail, Format, Options, Size};
 use kfrac::style::{ColorBy, View};

@@ -1,21 +1,14 @@
 //! Unlimited zooms: windows agree with exact arithmetic, at any depth.
 
-#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
-
-#[path = "zoom/command_line.rs"]
 mod command_line;
-mod common;
-#[path = "zoom/lattice.rs"]
 mod lattice;
-#[path = "zoom/pictures.rs"]
 mod pictures;
-#[path = "zoom/seeds.rs"]
 mod seeds;
 
 use std::collections::HashMap;
 use std::convert::Infallible;
 
-use common::{document, document_of};
+use crate::common::{self, document, document_of};
 use kfrac::document::Document;
 use kfrac::draws::Path;
 use kfrac::extent::NoLimit;

@@ -11,7 +11,7 @@ use proptest::collection::vec;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL};
 use proptest::prelude::*;
 
-use crate::common;
+use super::common;
 
 /// A number or expression, of which one in thirty is arbitrary text or an arbitrary number.
 fn number() -> impl Strategy<Value = Number> {

@@ -1,6 +1,6 @@
 //! Helpers shared by several test files.
 
-#![allow(dead_code, reason = "each test file uses its share")]
+pub(crate) mod random_systems;
 
 use std::convert::Infallible;
 use std::path::Path;

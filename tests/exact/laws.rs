@@ -6,7 +6,7 @@ use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::measure::exact::Overlap;
 use proptest::prelude::*;
 
-use crate::{line, near, of, similarity};
+use super::{line, near, of, similarity};
 
 /// Returns the numbers of distinct sums Σ d_k 3^k with n digits, for n = 0, 1, ….
 fn distinct_sums(digits: &BTreeSet<i64>, generations: usize) -> Vec<usize> {

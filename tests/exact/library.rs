@@ -4,7 +4,7 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::graph::Graph;
 use kfrac::measure::exact::{GraphDimensions, Overlap, dimensions_of_graph};
 
-use crate::{common, near};
+use super::{common, near};
 
 fn grown(graph: &Graph) -> GraphDimensions {
     dimensions_of_graph(graph)

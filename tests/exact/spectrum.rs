@@ -7,7 +7,7 @@ use kfrac::ifs::{Definition, Edge, Ifs, Map};
 use kfrac::measure::exact::{Spectrum, dimensions_of_graph};
 use kfrac::measure::{Cascade, Generalised};
 
-use crate::{common, line, near, similarity};
+use super::{common, line, near, similarity};
 
 const ORDERS: [f64; 8] = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
 

@@ -5,7 +5,7 @@ use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::measure::exact::{Equation, GraphDirectedSystem, Overlap, dimensions};
 use serde::Deserialize;
 
-use crate::{line, near, of, similarity};
+use super::{line, near, of, similarity};
 
 /// A system of the reference, computed independently of kfrac.
 #[derive(Deserialize)]

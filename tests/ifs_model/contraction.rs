@@ -4,7 +4,7 @@ use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Contraction, Ifs, Map, Verdict};
 use proptest::prelude::*;
 
-use crate::{definition, digraph, edges, map, matrix, recurrent, system};
+use super::{definition, digraph, edges, map, matrix, recurrent, system};
 
 fn linear(matrices: &[DMat2]) -> Vec<Map> {
     let maps = matrices

@@ -6,7 +6,7 @@ use kfrac::ifs::{
 };
 use proptest::prelude::*;
 
-use crate::{assert_near, system};
+use super::{assert_near, system};
 
 const CLASSIC: [[f64; 2]; 4] = [[0.0, 0.0], [30.0, 50.0], [60.0, 40.0], [100.0, 10.0]];
 const TENT: [[f64; 2]; 3] = [[0.0, 0.0], [0.5, 0.5], [1.0, 0.0]];

@@ -4,7 +4,7 @@ use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Choice, Condensation, Definition, Ifs, Map, Moments, Shape, complex, toward};
 use proptest::prelude::*;
 
-use crate::{
+use super::{
     assert_near, assert_near_matrix, definition, digraph, edges, map, matrix, recurrent, system,
 };
 

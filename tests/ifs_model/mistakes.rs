@@ -3,7 +3,7 @@
 use kfrac::geometry::DVec2;
 use kfrac::ifs::{Condensation, Definition, Edge, Ifs, IfsError, Map, Shape, WeightOwner};
 
-use crate::{definition, edges, map};
+use super::{definition, edges, map};
 
 fn half() -> Map {
     map(0.5, 0.0, 0.0, 0.5, [0.0, 0.0])

@@ -3,7 +3,7 @@
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::{Map, about, axes, complex, complex_conjugate, toward};
 
-use crate::{assert_near, map, system};
+use super::{assert_near, map, system};
 
 #[track_caller]
 fn assert_fixed(maps: Vec<Map>, expected: &[[f64; 2]]) {
@@ -84,7 +84,7 @@ fn scaled_and_turned_axes() {
         ],
     ];
     for (map, expected) in maps.iter().zip(&expected) {
-        crate::assert_near_matrix(map.matrix2, DMat2::from_cols_array(expected), 1e-15);
+        super::assert_near_matrix(map.matrix2, DMat2::from_cols_array(expected), 1e-15);
     }
     let expected = [
         [80.44435205275157, 287.71017486665966],

@@ -6,7 +6,7 @@ use kfrac::geometry::{DMat2, DVec2, Outline};
 use kfrac::ifs::Shape;
 use kfrac::rule::{BaseElement, arc};
 
-use crate::{assert_near, assert_near_matrix};
+use super::{assert_near, assert_near_matrix};
 
 #[track_caller]
 fn assert_moments(shape: &Shape, mean: [f64; 2], [xx, xy, yy]: [f64; 3], tolerance: f64) {

@@ -3,7 +3,7 @@
 use kfrac::geometry::DVec2;
 use kfrac::ifs::{Choice, Condensation, Definition, Ifs, Map, Shape};
 
-use crate::{definition, edges, map, recurrent, system};
+use super::{definition, edges, map, recurrent, system};
 
 fn halves(count: usize) -> Vec<Map> {
     (0..count)

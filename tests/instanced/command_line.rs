@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common;
+use super::common;
 
 /// Returns status and standard error of `kfrac grow --svg instanced`.
 fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {

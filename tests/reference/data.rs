@@ -9,7 +9,7 @@ use kfrac::graph::Graph;
 use kfrac::rule::Rule;
 use serde::Deserialize;
 
-use crate::common;
+use super::common;
 
 /// The whole reference.
 #[derive(Deserialize)]

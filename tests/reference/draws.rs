@@ -4,9 +4,9 @@ use kfrac::count::Count;
 use kfrac::document::Setting;
 use kfrac::grow::Growth;
 
-use crate::common::{compiled, document, grown, resolved};
-use crate::data::reference;
-use crate::{compare, elements};
+use super::common::{compiled, document, grown, resolved};
+use super::data::reference;
+use super::{compare, elements};
 
 #[test]
 fn the_random_tree_has_the_counts_of_the_reference_whatever_is_drawn() {

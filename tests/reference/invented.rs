@@ -3,9 +3,9 @@
 
 use kfrac::grow::Growth;
 
-use crate::common::{compiled, document_of, grown, resolved};
-use crate::compare;
-use crate::data::Entry;
+use super::common::{compiled, document_of, grown, resolved};
+use super::compare;
+use super::data::Entry;
 
 const RULE: &str = "
 initiator: [[0, 0], {to: [1, 1], direction: 3}, {to: [2, 0], direction: 2}]

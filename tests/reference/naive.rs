@@ -1,7 +1,7 @@
 //! A second engine, after Kaandorp's algorithm: lists of elements are replaced step by step, without a graph.
 //! It uses the data of the reference and no code of kfrac.
 
-use crate::data::{Entry, Listed};
+use super::data::{Entry, Listed};
 
 /// A point as a complex number.
 pub(crate) type Point = [f64; 2];

@@ -6,9 +6,9 @@ use kfrac::geometry::DVec2;
 use kfrac::graph::{Chain, Graph, Production, Replacement};
 use kfrac::grow::Growth;
 
-use crate::common::grown;
-use crate::data::{Entry, Listed, reference};
-use crate::{CLOSE, deepest};
+use super::common::grown;
+use super::data::{Entry, Listed, reference};
+use super::{CLOSE, deepest};
 
 fn is_like(graph: &Graph, chain: &Chain, listed: &[&Listed]) -> bool {
     chain.instances.len() == listed.len()

@@ -2,9 +2,9 @@
 
 use kfrac::grow::Growth;
 
-use crate::common::grown;
-use crate::data::reference;
-use crate::elements;
+use super::common::grown;
+use super::data::reference;
+use super::elements;
 
 /// Returns for each element of the path, except the first, whether the path turns left there.
 fn left_turns(id: &str, steps: u32) -> Vec<bool> {

@@ -4,7 +4,7 @@ use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::ifs::{Definition, Ifs, Map};
 
-use crate::system;
+use super::system;
 
 /// A generator of pseudorandom numbers from −1 to 1, by a linear congruence.
 struct Numbers(u64);

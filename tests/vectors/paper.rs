@@ -5,8 +5,8 @@ use std::num::NonZero;
 use kfrac::render::{Format, Size, Unit};
 use kfrac::style::{Cap, ColorBy, Colour, Join, Width};
 
-use crate::readers::{operators, read};
-use crate::{Read, bounds, draw, library, total};
+use super::readers::{operators, read};
+use super::{Read, bounds, draw, library, total};
 
 #[test]
 fn a_pdf_has_the_paths_of_the_svg() {
@@ -125,7 +125,7 @@ fn sizes_are_what_is_asked_for() {
 #[test]
 fn the_command_line_has_millimetres() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |arguments: &[&str]| crate::common::said(folder.path(), arguments);
+    let run = |arguments: &[&str]| super::common::said(folder.path(), arguments);
     let plot = ["grow", "koch", "--steps", "3", "--plot", "--size", "200mm"];
     let (code, said) = run(&[&plot[..], &["--stroke-width", "0.3mm", "--margin", "10mm"]].concat());
     assert_eq!(code, Some(0), "{said}");

@@ -8,8 +8,8 @@ use kfrac::grow::Growth;
 use kfrac::render::{Format, Options, Pens, Size};
 use kfrac::style::{ColorBy, Colour};
 
-use crate::readers::read;
-use crate::{Read, bounds, common, draw, length, library, plot, total, written};
+use super::readers::read;
+use super::{Read, bounds, common, draw, length, library, plot, total, written};
 
 const FORMATS: [Format; 3] = [Format::Svg, Format::Pdf, Format::Dxf];
 

@@ -4,7 +4,7 @@ use kfrac::render::Format;
 use resvg::tiny_skia::{PathSegment, Point};
 use resvg::usvg;
 
-use crate::Read;
+use super::Read;
 
 /// Length of a CSS pixel in millimetres.
 const PIXEL: f64 = 25.4 / 96.0;

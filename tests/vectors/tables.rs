@@ -6,7 +6,7 @@ use kfrac::export::{self, Format};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 
-use crate::library;
+use super::library;
 
 #[test]
 fn both_tables_say_the_same() {

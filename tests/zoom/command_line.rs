@@ -1,6 +1,6 @@
 //! `--zoom` and `--at` on the command line.
 
-use crate::common;
+use super::common;
 
 /// Returns status and standard error of `kfrac grow`.
 fn said(arguments: &[&str]) -> (Option<i32>, String) {
