@@ -8,6 +8,9 @@ mod appearance;
 
 pub use appearance::{Appearance, Thickness};
 
+use std::sync::Arc;
+
+use crate::expression::{Affine, Program};
 use crate::geometry::{DAffine2, Homothety};
 use crate::ifs::Shape;
 use crate::metadata::Metadata;
@@ -34,8 +37,10 @@ pub struct Object {
     pub map: DAffine2,
     /// Instances of which the object is the union.
     pub instances: Vec<Instance>,
-    /// Source: the number of an object of the file, and its level.
-    pub(crate) origin: (usize, Option<f64>),
+    /// Maps whose product is `map`, as written, for the slots of the object.
+    pub(crate) transforms: Arc<[Affine<Program>]>,
+    /// Slots of the programs of the object and of its instances: its level, if it has one.
+    pub(crate) slots: Vec<f64>,
 }
 
 /// Instance of an object or of a shape.
@@ -47,6 +52,8 @@ pub struct Instance {
     pub master: Master,
     /// Tint of the instance and of its contents.
     pub tint: Option<Tint>,
+    /// Maps whose product is `map`, as written, for the slots of the object that contains the instance.
+    pub(crate) transforms: Arc<[Affine<Program>]>,
 }
 
 /// Object or shape of which an instance is a copy.

@@ -1,5 +1,6 @@
 //! Metadata that files of all kinds have beside their mathematics.
 
+use crate::expression::Program;
 use crate::style::{Style, View};
 
 /// Maximum number of steps that a file may propose.
@@ -54,6 +55,8 @@ pub struct Metadata {
     pub description: Description,
     /// Parameters with their values.
     pub parameters: Vec<Parameter>,
+    /// Values of the parameters as written, each after those on which it depends.
+    pub(crate) numbers: Vec<Program>,
     /// Number of steps that the file proposes.
     pub steps: Option<u32>,
     /// Published similarity dimension.

@@ -28,8 +28,6 @@ use crate::expression::Scope;
 use crate::metadata::Metadata;
 use crate::model::Model;
 
-pub(crate) use parameters::order as order_of_parameters;
-
 /// Number of mistakes after which expressions and names are not checked further.
 const MOST_MISTAKES: usize = 1000;
 

@@ -17,36 +17,23 @@ use kfrac::graph::{Graph, Production, Replacement};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::rule::{ElementContext, Rule};
-use kfrac::zoom::{ZoomError, ZoomOptions, ZoomSource, ZoomWindow, zoom};
+use kfrac::zoom::{ZoomError, ZoomOptions, ZoomWindow, zoom};
 
 /// Side of the picture, in pixels.
 const SIDE: u32 = 512;
 /// Length of the unit frame at a zoom of 1, in pixels.
 const SCALE: f64 = 512.0;
 
+fn library(name: &str) -> Model {
+    model(&document(name))
+}
+
+fn read(text: &str) -> Model {
+    model(&document_of(text))
+}
+
 fn model(document: &Document) -> Model {
     document.resolve(&[]).unwrap().0
-}
-
-fn library(name: &str) -> (Document, Model) {
-    let document = document(name);
-    let model = model(&document);
-    (document, model)
-}
-
-fn read(text: &str) -> (Document, Model) {
-    let document = document_of(text);
-    let model = model(&document);
-    (document, model)
-}
-
-fn source((document, model): &(Document, Model)) -> ZoomSource<'_> {
-    ZoomSource {
-        document,
-        settings: &[],
-        model,
-        omitted: &[],
-    }
 }
 
 fn window(factor: &str, at: &str) -> ZoomWindow {
@@ -139,10 +126,9 @@ impl Visitor for Seen {
 }
 
 /// Returns the elements in the window, in pixels from its middle.
-fn zoomed(of: &(Document, Model), graph: &Graph, window: &ZoomWindow, seed: u64) -> Seen {
-    let source = source(of);
+fn zoomed(of: &Model, graph: &Graph, window: &ZoomWindow, seed: u64) -> Seen {
     let growth = ZoomOptions::default().seed(seed);
-    let found = zoom(&source, graph, &growth, window).unwrap();
+    let found = zoom(of, graph, &growth, window).unwrap();
     let growth =
         kfrac::grow::Growth::steps(graph.depth().unwrap_or(found.deepest + 200)).seed(seed);
     Seen::of(&found.graph, &growth, DAffine2::IDENTITY, SHORTEST)
@@ -239,7 +225,7 @@ fn fixed_points_look_the_same_at_any_depth() {
         ("mirrored", read(mirrored), 0, "3", 3),
     ];
     for (name, rule, child, ratio, first) in cases {
-        let graph = rule.1.compile(64).unwrap();
+        let graph = rule.compile(64).unwrap();
         let root = &graph.initiator(0).instances[0];
         let production = production(&graph, root.object);
         let linear = production.body.instances[child].frame.map().matrix2;
@@ -294,6 +280,12 @@ const AGES: &str = "initiator: segment\ngenerators:\n  \
 const PLACES: &str = "initiator: segment\ngenerator:\n  \
                       [[0, 0], ['if(i % 3 == 1, 1/3, 1/5)', '1/(3 + i % 3)'], {to: [3/5, '(i % 3)/7'], direction: 3}, [1, 0]]\n";
 
+/// A structure in which one set, a fractal, stands for several instances, before those of an object.
+const SETS: &str = "kind: instancing\nobjects:\n  A:\n    \
+                    - {fractal: cantor, steps: 2, map: {scale: 1/9, shift: [1/3, 1/5]}}\n    \
+                    - {object: A, scale: 1/3}\n    \
+                    - {object: A, scale: 1/3, rotate: 20, translate: [2/3, 0]}\nscene: [A]\n";
+
 /// A zoom within the range of doubles shows the elements that plain growing shows there, with births, lengths
 /// and directions.
 #[test]
@@ -317,13 +309,15 @@ fn shallow_zooms_are_windows_of_the_whole() {
         ("gasket-recursive", vec![0, 0, 1]),
         ("ages", vec![0, 1, 0]),
         ("places", vec![0, 1, 0, 2]),
+        ("sets", vec![0, 4, 5]),
     ] {
         let rule = match name {
             "ages" => read(AGES),
             "places" => read(PLACES),
+            "sets" => read(SETS),
             _ => library(name),
         };
-        let graph = rule.1.compile(200).unwrap();
+        let graph = rule.compile(200).unwrap();
         let p = point(&graph, &way);
         let repeated: Vec<_> = way[1..].iter().map(ToString::to_string).collect();
         let at = format!("{}.({})", way[0], repeated.join("."));
@@ -355,11 +349,11 @@ fn shallow_zooms_of_random_rules_are_windows_of_the_whole() {
                 b: {elements: [[0, 0], [1/3, -1/4], {to: [1, 0], direction: 2}]}\n\
                 select: {at_random: {a: 2, b: 1}}\n";
     let rule = read(text);
-    let graph = rule.1.compile(64).unwrap();
+    let graph = rule.compile(64).unwrap();
     for seed in 0..4 {
         for (at, way) in [("0.(0)", vec![0; 70]), ("0.1.(1)", vec![1; 70])] {
             let way: Vec<u32> = std::iter::once(0).chain(way).collect();
-            let p = random_point(rule.1.rule().unwrap(), seed, &way);
+            let p = random_point(rule.rule().unwrap(), seed, &way);
             for factor in ["3e1", "1e4", "1e7"] {
                 let scale = SCALE * factor.parse::<f64>().unwrap();
                 let seen = zoomed(&rule, &graph, &window(factor, at), seed);
@@ -421,10 +415,9 @@ fn exact_overlaps_are_met_once() {
     let rule = read(&format!(
         "kind: ifs\nmaps:\n{maps}{maps}{maps}initial: {{polygon: [[0, 0], [1, 0], [1, 1]]}}\n"
     ));
-    let graph = rule.1.compile(1).unwrap();
-    let source = source(&rule);
+    let graph = rule.compile(1).unwrap();
     let found = zoom(
-        &source,
+        &rule,
         &graph,
         &ZoomOptions::default(),
         &window("1e200", "0.(4.2)"),
@@ -436,16 +429,9 @@ fn exact_overlaps_are_met_once() {
 
 #[test]
 fn what_has_no_point_is_refused() {
-    let said = |rule: &(Document, Model), factor: &str, at: &str| -> ZoomError {
-        let graph = rule.1.compile(64).unwrap();
-        let source = source(rule);
-        zoom(
-            &source,
-            &graph,
-            &ZoomOptions::default(),
-            &window(factor, at),
-        )
-        .unwrap_err()
+    let said = |rule: &Model, factor: &str, at: &str| -> ZoomError {
+        let graph = rule.compile(64).unwrap();
+        zoom(rule, &graph, &ZoomOptions::default(), &window(factor, at)).unwrap_err()
     };
     let koch = library("koch");
     let error = said(&koch, "10", "0.1.(4)");

@@ -89,6 +89,7 @@ impl Graph {
             map: DAffine2::IDENTITY,
             master: Master::Object(number),
             tint: None,
+            transforms: Arc::default(),
         });
         let alone = Instancing {
             scene: scene.collect(),

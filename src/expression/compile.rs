@@ -15,13 +15,16 @@ pub(super) fn compile(expression: &Expression, result: Type, scope: &Scope) -> C
     let mut compiler = Compiler {
         scope,
         ops: Vec::new(),
+        unfolded: Vec::new(),
     };
     compiler.emit(expression)?;
-    Program::new(compiler.ops).ok_or_else(|| {
+    let program = Program::new(compiler.ops, compiler.unfolded);
+    if program.depth() > STACK {
         let message = format!("this needs more than {STACK} intermediate values");
         let hint = "write the longest part of it first";
-        ExpressionError::new(expression.range(), message).hint(hint)
-    })
+        return Err(ExpressionError::new(expression.range(), message).hint(hint));
+    }
+    Ok(program)
 }
 
 impl Expression {
@@ -83,6 +86,8 @@ struct Compiler<'s> {
     scope: &'s Scope,
     /// The program so far. A constant part of it is a single operation.
     ops: Vec<Op>,
+    /// The program so far, without folding.
+    unfolded: Vec<Op>,
 }
 
 impl Compiler<'_> {
@@ -90,20 +95,24 @@ impl Compiler<'_> {
     fn emit(&mut self, expression: &Expression) -> Checked {
         let range = expression.range();
         match &expression.node {
-            Node::Number(value) => self.constant(*value, range),
-            Node::Truth(value) => self.constant(if *value { 1.0 } else { 0.0 }, range),
+            Node::Number(value) => {
+                self.unfolded.push(Op::Constant(*value));
+                self.constant(*value, range)
+            }
+            Node::Truth(value) => {
+                let value = if *value { 1.0 } else { 0.0 };
+                self.unfolded.push(Op::Constant(value));
+                self.constant(value, range)
+            }
             Node::Name(name) => match self.scope.get(name) {
-                Some(Named::Constant(value)) => self.constant(value, range),
-                Some(Named::Slot(slot)) => {
-                    self.ops.push(Op::Slot(slot));
-                    Ok(())
+                Some(Named::Constant(value, written)) => {
+                    self.unfolded.push(written);
+                    self.constant(value, range)
                 }
+                Some(Named::Slot(slot)) => self.slot(slot),
                 None => Err(self.scope.unknown(name, range)),
             },
-            Node::Unknown => {
-                self.ops.push(Op::Slot(UNKNOWN));
-                Ok(())
-            }
+            Node::Unknown => self.slot(UNKNOWN),
             Node::Prefix(operation, operand) => self.one(*operation, operand, expression),
             Node::Infix(operation, operands) => {
                 let [left, right] = &**operands;
@@ -134,6 +143,7 @@ impl Compiler<'_> {
     fn one(&mut self, operation: One, operand: &Expression, whole: &Expression) -> Checked {
         let start = self.ops.len();
         self.emit(operand)?;
+        self.unfolded.push(Op::One(operation));
         match (operation, &self.ops[start..]) {
             (_, &[Op::Constant(x)]) => {
                 let value = operation.apply(x);
@@ -192,6 +202,7 @@ impl Compiler<'_> {
         middle: usize,
         range: &Range<usize>,
     ) -> Checked {
+        self.unfolded.push(Op::Two(operation));
         match (operation, &self.ops[start..middle], &self.ops[middle..]) {
             (_, &[Op::Constant(a)], &[Op::Constant(b)]) => {
                 let value = operation.apply(a, b);
@@ -223,16 +234,24 @@ impl Compiler<'_> {
         then: &Expression,
         otherwise: &Expression,
     ) -> Checked {
-        let start = self.ops.len();
+        let (start, written) = (self.ops.len(), self.unfolded.len());
         self.emit(condition)?;
         // As with `and`: `if(n == 0, 1, 1/n)` is valid for n = 0.
         if let &[Op::Constant(value)] = &self.ops[start..] {
             self.ops.truncate(start);
+            self.unfolded.truncate(written);
             return self.emit(if value == 0.0 { otherwise } else { then });
         }
         self.emit(then)?;
         self.emit(otherwise)?;
         self.ops.push(Op::Select);
+        self.unfolded.push(Op::Select);
+        Ok(())
+    }
+
+    fn slot(&mut self, slot: usize) -> Checked {
+        self.ops.push(Op::Slot(slot));
+        self.unfolded.push(Op::Slot(slot));
         Ok(())
     }
 

@@ -3,8 +3,8 @@
 use std::ops::{Add, Mul, Sub};
 
 use super::degrees;
-use super::operator::{One, Two, modulo};
-use super::program::{Op, Program};
+use super::operator::{One, Two};
+use super::program::{Arithmetic, Evaluation, Program};
 
 /// The closed interval from `low` to `high`, either of which may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -284,35 +284,40 @@ impl Program {
     /// narrower the slots are.
     #[must_use]
     pub fn range(&self, slots: &[Interval]) -> Interval {
-        let read = |slot: usize| slots.get(slot).copied().unwrap_or(Interval::ALL);
-        let mut stack: Vec<Interval> = Vec::new();
-        let pop = |stack: &mut Vec<Interval>| stack.pop().unwrap_or(Interval::ALL);
-        for op in self.ops() {
-            let value = match *op {
-                Op::Constant(value) => Interval::point(value),
-                Op::Slot(slot) => read(slot),
-                Op::SlotModulo(slot, divisor) => match read(slot).as_point() {
-                    Some(value) => Interval::point(modulo(value, f64::from(divisor))),
-                    None => Interval::new(0.0, f64::from(divisor)),
-                },
-                Op::One(operation) => operation.range(pop(&mut stack)),
-                Op::Two(operation) => {
-                    let b = pop(&mut stack);
-                    operation.range(pop(&mut stack), b)
-                }
-                Op::Select => {
-                    let otherwise = pop(&mut stack);
-                    let then = pop(&mut stack);
-                    match pop(&mut stack).truth() {
-                        Some(true) => then,
-                        Some(false) => otherwise,
-                        None => then.or(otherwise),
-                    }
-                }
-            };
-            stack.push(value);
+        self.evaluate(&mut Intervals, slots)
+    }
+}
+
+/// Arithmetic of intervals.
+struct Intervals;
+
+impl Arithmetic for Intervals {
+    type Number = Interval;
+
+    fn decimal(&mut self, value: f64) -> Interval {
+        Interval::point(value)
+    }
+
+    fn one(&mut self, operation: One, x: &Interval) -> Interval {
+        operation.range(*x)
+    }
+
+    fn two(&mut self, operation: Two, a: &Interval, b: &Interval) -> Interval {
+        operation.range(*a, *b)
+    }
+}
+
+impl Evaluation for Intervals {
+    fn unknown(&mut self) -> Interval {
+        Interval::ALL
+    }
+
+    fn select(&mut self, condition: &Interval, [then, otherwise]: [&Interval; 2]) -> Interval {
+        match condition.truth() {
+            Some(true) => *then,
+            Some(false) => *otherwise,
+            None => then.or(*otherwise),
         }
-        pop(&mut stack)
     }
 }
 

@@ -14,6 +14,7 @@
 //! Guarantees: for any text, no function of this module panics or overflows the stack; a program reads
 //! only the slots of its scope; an expression has the same value, bit for bit, on every machine.
 
+mod affine;
 mod circle;
 mod compile;
 pub(crate) mod degrees;
@@ -33,9 +34,11 @@ mod tests;
 
 use std::ops::Range;
 
+pub(crate) use affine::Affine;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision};
+pub(crate) use program::{Arithmetic, Doubles, Evaluation, Symbols};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 

@@ -16,7 +16,7 @@ pub(super) const ATOM: u8 = 9;
 
 /// A unary operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum One {
+pub(crate) enum One {
     Negate,
     Not,
     Sqrt,
@@ -95,7 +95,7 @@ impl One {
 
 /// A binary operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Two {
+pub(crate) enum Two {
     Or,
     And,
     Less,

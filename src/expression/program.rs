@@ -1,23 +1,40 @@
-//! Compiled expressions.
+//! Compiled expressions, and their evaluation in doubles, intervals and long numbers.
 
-use super::operator::{One, Two, modulo};
-use super::scope::UNKNOWN;
+use std::sync::Arc;
+
+use super::operator::{One, Two};
+use super::scope::{Constant, UNKNOWN};
 
 /// Maximum number of values on the stack of a program.
 pub(super) const STACK: usize = 64;
 
-/// A compiled expression, as a postfix program. Evaluation does not allocate.
-#[derive(Clone, Debug, PartialEq)]
+/// A compiled expression, as a postfix program. Evaluation in doubles does not allocate.
+///
+/// Programs are compared by their operations in doubles: `1/2` and `0.5` are equal.
+#[derive(Clone, Debug)]
 pub struct Program {
     ops: Vec<Op>,
-    /// Maximum number of values on the stack, from 1 to [`STACK`].
+    /// Maximum number of values on the stack, at least 1.
     depth: usize,
+    /// Operations with constants as written, which long numbers require, if they differ from `ops`.
+    unfolded: Option<Arc<[Op]>>,
+}
+
+impl PartialEq for Program {
+    fn eq(&self, other: &Self) -> bool {
+        self.ops == other.ops
+    }
 }
 
 /// An operation of a program, which replaces its operands on the stack by its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Op {
+    /// A number as written, or the result of folding.
     Constant(f64),
+    /// A constant of the language; folded in `ops`.
+    Named(Constant),
+    /// A parameter, by its index in [`Metadata::numbers`](crate::metadata::Metadata); folded in `ops`.
+    Parameter(usize),
     Slot(usize),
     /// `slot % divisor`, a separate operation so that [`Program::dependence`] can recognize it.
     SlotModulo(usize, u32),
@@ -25,6 +42,129 @@ pub(super) enum Op {
     Two(Two),
     /// Of a condition, a and b: a if the condition holds, else b.
     Select,
+}
+
+/// Numbers with the operations of expressions.
+pub(crate) trait Arithmetic {
+    /// A number.
+    type Number: Clone;
+
+    /// Returns the shortest decimal that reads as a double.
+    fn decimal(&mut self, value: f64) -> Self::Number;
+
+    /// Applies an operation.
+    fn one(&mut self, operation: One, x: &Self::Number) -> Self::Number;
+
+    /// Applies an operation.
+    fn two(&mut self, operation: Two, a: &Self::Number, b: &Self::Number) -> Self::Number;
+
+    /// Returns a number with the opposite sign.
+    fn negate(&mut self, x: &Self::Number) -> Self::Number {
+        self.one(One::Negate, x)
+    }
+
+    /// Returns the cosine and the sine of an angle in degrees.
+    fn turn(&mut self, angle: &Self::Number) -> [Self::Number; 2] {
+        [One::Cos, One::Sin].map(|function| self.one(function, angle))
+    }
+
+    /// Returns a sum.
+    fn add(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
+        self.two(Two::Add, a, b)
+    }
+
+    /// Returns a difference.
+    fn subtract(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
+        self.two(Two::Subtract, a, b)
+    }
+
+    /// Returns a product.
+    fn multiply(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
+        self.two(Two::Multiply, a, b)
+    }
+
+    /// Returns a quotient.
+    fn divide(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
+        self.two(Two::Divide, a, b)
+    }
+}
+
+/// Arithmetic in which programs are evaluated.
+pub(crate) trait Evaluation: Arithmetic {
+    /// Whether constants are evaluated as written, not as folded to doubles.
+    const UNFOLDED: bool = false;
+
+    /// Returns the value of a slot that is missing.
+    fn unknown(&mut self) -> Self::Number;
+
+    /// Returns a constant of the language.
+    fn named(&mut self, constant: Constant) -> Self::Number {
+        self.decimal(constant.value())
+    }
+
+    /// Returns a parameter, which occurs in unfolded programs only.
+    fn parameter(&mut self, _number: usize) -> Self::Number {
+        self.unknown()
+    }
+
+    /// Returns one of two numbers, depending on a condition.
+    fn select(&mut self, condition: &Self::Number, branches: [&Self::Number; 2]) -> Self::Number;
+}
+
+/// Arithmetic of doubles.
+pub(crate) struct Doubles;
+
+impl Arithmetic for Doubles {
+    type Number = f64;
+
+    #[inline]
+    fn decimal(&mut self, value: f64) -> f64 {
+        value
+    }
+
+    #[inline]
+    fn one(&mut self, operation: One, x: &f64) -> f64 {
+        operation.apply(*x)
+    }
+
+    #[inline]
+    fn two(&mut self, operation: Two, a: &f64, b: &f64) -> f64 {
+        operation.apply(*a, *b)
+    }
+}
+
+impl Evaluation for Doubles {
+    #[inline]
+    fn unknown(&mut self) -> f64 {
+        f64::NAN
+    }
+
+    #[inline]
+    fn select(&mut self, condition: &f64, [then, otherwise]: [&f64; 2]) -> f64 {
+        if *condition == 0.0 { *otherwise } else { *then }
+    }
+}
+
+/// Arithmetic of programs: an operation makes the program that applies it.
+pub(crate) struct Symbols;
+
+impl Arithmetic for Symbols {
+    type Number = Program;
+
+    fn decimal(&mut self, value: f64) -> Program {
+        Program::constant(value)
+    }
+
+    fn one(&mut self, operation: One, x: &Program) -> Program {
+        let folded = x.as_constant().map(|x| operation.apply(x));
+        Program::join(&[x], Op::One(operation), folded)
+    }
+
+    fn two(&mut self, operation: Two, a: &Program, b: &Program) -> Program {
+        let values = a.as_constant().zip(b.as_constant());
+        let folded = values.map(|(a, b)| operation.apply(a, b));
+        Program::join(&[a, b], Op::Two(operation), folded)
+    }
 }
 
 /// Dependence of the value of a [`Program`] on a slot.
@@ -39,38 +179,59 @@ pub enum Dependence {
 }
 
 impl Program {
-    /// Creates a program with a constant value.
+    /// Creates a program with a constant value: in long numbers, the shortest decimal that reads as it.
     #[must_use]
     pub fn constant(value: f64) -> Self {
-        Self {
-            ops: vec![Op::Constant(value)],
-            depth: 1,
-        }
+        Self::of(Op::Constant(value))
     }
 
     /// Creates the placeholder for an invalid program, whose value is unknown.
     #[must_use]
     pub fn unknown() -> Self {
+        Self::of(Op::Slot(UNKNOWN))
+    }
+
+    fn of(op: Op) -> Self {
         Self {
-            ops: vec![Op::Slot(UNKNOWN)],
+            ops: vec![op],
             depth: 1,
+            unfolded: None,
         }
     }
 
-    /// Creates a program from operations that leave one value. Returns `None` if they need more than
-    /// [`STACK`] values on the stack.
-    pub(super) fn new(ops: Vec<Op>) -> Option<Self> {
-        let (mut held, mut depth) = (0_usize, 0);
-        for op in &ops {
-            match op {
-                Op::Constant(_) | Op::Slot(_) | Op::SlotModulo(..) => held += 1,
-                Op::One(_) => {}
-                Op::Two(_) => held -= 1,
-                Op::Select => held -= 2,
-            }
-            depth = depth.max(held);
+    /// Creates a program from operations that leave one value, folded and as written.
+    pub(super) fn new(ops: Vec<Op>, unfolded: Vec<Op>) -> Self {
+        let depth = depth(&ops);
+        let unfolded = (unfolded != ops).then(|| unfolded.into());
+        Self {
+            ops,
+            depth,
+            unfolded,
         }
-        (depth <= STACK).then_some(Self { ops, depth })
+    }
+
+    /// Returns the maximum number of values on the stack.
+    pub(super) fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// Returns the operations as written.
+    fn unfolded(&self) -> &[Op] {
+        self.unfolded.as_deref().unwrap_or(&self.ops)
+    }
+
+    /// Creates the program that applies an operation to the values of programs, with its value if that is
+    /// constant.
+    fn join(operands: &[&Self], op: Op, folded: Option<f64>) -> Self {
+        let joined = |all: fn(&Self) -> &[Op]| {
+            let ops = operands.iter().flat_map(|it| all(it)).copied();
+            ops.chain([op]).collect::<Vec<_>>()
+        };
+        let ops = match folded {
+            Some(value) => vec![Op::Constant(value)],
+            None => joined(|it| &it.ops),
+        };
+        Self::new(ops, joined(Self::unfolded))
     }
 
     /// Returns the value if the program is a constant.
@@ -90,9 +251,21 @@ impl Program {
         match self.ops.as_slice() {
             [Op::Constant(value)] => *value,
             // Clearing a large stack would take longer than most programs.
-            _ if self.depth <= 8 => self.run::<8>(slots),
-            _ => self.run::<STACK>(slots),
+            ops if self.depth <= 8 => run(ops, &mut Doubles, slots, &mut [0.0; 8]),
+            ops if self.depth <= STACK => run(ops, &mut Doubles, slots, &mut [0.0; STACK]),
+            ops => run(ops, &mut Doubles, slots, &mut vec![0.0; self.depth]),
         }
+    }
+
+    /// Evaluates the program for slots of an arithmetic.
+    pub(crate) fn evaluate<A: Evaluation>(&self, of: &mut A, slots: &[A::Number]) -> A::Number {
+        let ops = if A::UNFOLDED {
+            self.unfolded()
+        } else {
+            &self.ops
+        };
+        let mut stack = vec![of.unknown(); depth(ops)];
+        run(ops, of, slots, &mut stack)
     }
 
     /// Returns whether the condition holds for the given slots.
@@ -114,46 +287,71 @@ impl Program {
                 _ => dependence,
             })
     }
+}
 
-    /// Returns the operations, in postfix order.
-    pub(super) fn ops(&self) -> &[Op] {
-        &self.ops
-    }
-
-    fn run<const N: usize>(&self, slots: &[f64]) -> f64 {
-        let mut stack = [0.0; N];
-        let mut below = 0;
-        // The top of the stack is kept apart; the array has the values below it and an unused first
-        // value.
-        let mut top = 0.0;
-        for op in &self.ops {
-            let pushed = match *op {
-                Op::Constant(value) => value,
-                Op::Slot(slot) => read(slots, slot),
-                Op::SlotModulo(slot, divisor) => modulo(read(slots, slot), f64::from(divisor)),
-                Op::One(operation) => {
-                    top = operation.apply(top);
-                    continue;
-                }
-                Op::Two(operation) => {
-                    below -= 1;
-                    top = operation.apply(stack[below], top);
-                    continue;
-                }
-                Op::Select => {
-                    below -= 2;
-                    if stack[below] != 0.0 {
-                        top = stack[below + 1];
-                    }
-                    continue;
-                }
-            };
-            stack[below] = top;
-            below += 1;
-            top = pushed;
+/// Returns the maximum number of values on the stack of operations, at least 1.
+fn depth(ops: &[Op]) -> usize {
+    let (mut held, mut depth) = (0_usize, 1);
+    for op in ops {
+        match op {
+            Op::One(_) => {}
+            Op::Two(_) => held -= 1,
+            Op::Select => held -= 2,
+            _ => held += 1,
         }
-        top
+        depth = depth.max(held);
     }
+    depth
+}
+
+/// Runs operations that leave one value, with a stack of at least their depth.
+#[inline]
+fn run<A: Evaluation>(
+    ops: &[Op],
+    arithmetic: &mut A,
+    slots: &[A::Number],
+    stack: &mut [A::Number],
+) -> A::Number {
+    let mut below = 0;
+    // The top of the stack is kept apart; the slice has the values below it and an unused first value.
+    let mut top = arithmetic.unknown();
+    for op in ops {
+        let pushed = match *op {
+            Op::Constant(value) => arithmetic.decimal(value),
+            Op::Named(constant) => arithmetic.named(constant),
+            Op::Parameter(number) => arithmetic.parameter(number),
+            Op::Slot(slot) => read(arithmetic, slots, slot),
+            Op::SlotModulo(slot, divisor) => {
+                let value = read(arithmetic, slots, slot);
+                let divisor = arithmetic.decimal(divisor.into());
+                arithmetic.two(Two::Modulo, &value, &divisor)
+            }
+            Op::One(operation) => {
+                top = arithmetic.one(operation, &top);
+                continue;
+            }
+            Op::Two(operation) => {
+                below -= 1;
+                top = arithmetic.two(operation, &stack[below], &top);
+                continue;
+            }
+            Op::Select => {
+                below -= 2;
+                top = arithmetic.select(&stack[below], [&stack[below + 1], &top]);
+                continue;
+            }
+        };
+        stack[below] = top;
+        below += 1;
+        top = pushed;
+    }
+    top
+}
+
+#[inline]
+fn read<A: Evaluation>(arithmetic: &mut A, slots: &[A::Number], slot: usize) -> A::Number {
+    let value = slots.get(slot).cloned();
+    value.unwrap_or_else(|| arithmetic.unknown())
 }
 
 impl Dependence {
@@ -171,9 +369,4 @@ impl Dependence {
 
 fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
-}
-
-#[inline]
-fn read(slots: &[f64], slot: usize) -> f64 {
-    slots.get(slot).copied().unwrap_or(f64::NAN)
 }

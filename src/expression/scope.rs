@@ -5,13 +5,36 @@ use std::sync::Arc;
 
 use super::functions::{FUNCTIONS, Function};
 use super::lex::PARTS;
+use super::program::Op;
 use super::{ExpressionError, Range};
 use crate::diagnostic::{listed, nearest};
 
-const CONSTANTS: [(&str, f64); 3] = [
-    ("pi", std::f64::consts::PI),
-    ("phi", 1.618_033_988_749_895),
-    ("e", std::f64::consts::E),
+/// A constant of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Constant {
+    /// Ratio of the circumference of a circle to its diameter.
+    Pi,
+    /// Golden ratio.
+    Phi,
+    /// Base of natural logarithms.
+    E,
+}
+
+impl Constant {
+    /// Returns the double next to the value.
+    pub(super) fn value(self) -> f64 {
+        match self {
+            Self::Pi => std::f64::consts::PI,
+            Self::Phi => 1.618_033_988_749_895,
+            Self::E => std::f64::consts::E,
+        }
+    }
+}
+
+const CONSTANTS: [(&str, Constant); 3] = [
+    ("pi", Constant::Pi),
+    ("phi", Constant::Phi),
+    ("e", Constant::E),
 ];
 
 const KEYWORDS: [&str; 5] = ["and", "or", "not", "true", "false"];
@@ -23,10 +46,10 @@ pub fn is_reserved(name: &str) -> bool {
     KEYWORDS.contains(&name) || constant(name).is_some() || Function::find(name).is_some()
 }
 
-/// Returns the value of the constant `pi`, `phi` (the golden ratio, 1.618…) or `e`.
-pub(super) fn constant(name: &str) -> Option<f64> {
-    let found = CONSTANTS.iter().find(|(constant, _)| *constant == name);
-    found.map(|(_, value)| *value)
+/// Returns the constant `pi`, `phi` (the golden ratio, 1.618…) or `e`.
+pub(super) fn constant(name: &str) -> Option<Constant> {
+    let found = CONSTANTS.iter().find(|(known, _)| *known == name);
+    found.map(|(_, constant)| *constant)
 }
 
 /// The names that an expression may use in addition to those of the language.
@@ -47,7 +70,8 @@ pub(super) const UNKNOWN: usize = usize::MAX;
 /// Meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Named {
-    Constant(f64),
+    /// A constant, with the operation that gives it in full.
+    Constant(f64, Op),
     Slot(usize),
 }
 
@@ -70,7 +94,14 @@ impl Scope {
 
     /// Adds a name for a value, replacing a previous meaning.
     pub fn constant(&mut self, name: &str, value: f64) {
-        self.names.insert(name.to_owned(), Named::Constant(value));
+        let named = Named::Constant(value, Op::Constant(value));
+        self.names.insert(name.to_owned(), named);
+    }
+
+    /// Adds a name for a parameter, by its index in [`Metadata::numbers`](crate::metadata::Metadata).
+    pub(crate) fn parameter(&mut self, name: &str, value: f64, number: usize) {
+        let named = Named::Constant(value, Op::Parameter(number));
+        self.names.insert(name.to_owned(), named);
     }
 
     /// Adds a name for the value at index `slot` of the argument of
@@ -102,7 +133,7 @@ impl Scope {
 
     pub(super) fn get(&self, name: &str) -> Option<Named> {
         constant(name)
-            .map(Named::Constant)
+            .map(|constant| Named::Constant(constant.value(), Op::Named(constant)))
             .or_else(|| self.own(name))
             .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }

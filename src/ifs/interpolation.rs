@@ -2,7 +2,8 @@
 //! and interpolation", 1986; Demko, Hodges & Naylor 1985, section 3.5).
 
 use super::Map;
-use crate::geometry::{DAffine2, DVec2};
+use crate::expression::{Affine, Arithmetic, Doubles};
+use crate::geometry::DVec2;
 
 /// An error that leaves no curve through the points. Indices count from 0 in fields, from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -78,16 +79,38 @@ pub fn interpolate(points: &[DVec2], scales: &[f64]) -> Result<Vec<Map>, Interpo
         let scale = scales[number];
         return Err(InterpolationError::Scale { number, scale });
     }
-    let (first, whole) = (points[0], span(points));
+    let written: Vec<_> = points.iter().map(DVec2::to_array).collect();
+    let pieces = self::pieces(&mut Doubles, &written, scales).into_iter();
+    let maps = pieces.zip(shares(points));
+    Ok(maps
+        .map(|(piece, share)| Map::new(piece.into()).weighing(share))
+        .collect())
+}
+
+/// Returns the maps of [`interpolate`] in any arithmetic, for at least two points and at least one factor.
+pub(crate) fn pieces<A: Arithmetic>(
+    of: &mut A,
+    points: &[[A::Number; 2]],
+    scales: &[A::Number],
+) -> Vec<Affine<A::Number>> {
+    let span = |of: &mut A, from: &[A::Number; 2], to: &[A::Number; 2]| {
+        [0, 1].map(|row| of.subtract(&to[row], &from[row]))
+    };
+    let first = &points[0];
+    let whole = span(of, first, &points[points.len() - 1]);
     let maps = points.windows(2).zip(scales.iter().cycle());
-    let maps = maps.map(|(ends, &scale)| {
-        let piece = ends[1] - ends[0];
-        let along = (piece - scale * DVec2::new(0.0, whole.y)) / whole.x;
-        let mut affine = DAffine2::from_cols(along, DVec2::new(0.0, scale), DVec2::ZERO);
-        affine.translation = ends[0] - affine.transform_vector2(first);
-        Map::new(affine).weighing(piece.x / whole.x)
+    let maps = maps.map(|(ends, scale)| {
+        let [width, height] = span(of, &ends[0], &ends[1]);
+        let rise = of.multiply(scale, &whole[1]);
+        let rise = of.subtract(&height, &rise);
+        let along = [width, rise].map(|part| of.divide(&part, &whole[0]));
+        let zero = of.decimal(0.0);
+        let linear = Affine::linear(of, [along, [zero, scale.clone()]]);
+        let image = linear.turned(of, first);
+        let origin = span(of, &image, &ends[0]);
+        linear.moved_to(origin)
     });
-    Ok(maps.collect())
+    maps.collect()
 }
 
 /// Returns the vertical factor d with which the curve through points, with this one factor for all pieces,

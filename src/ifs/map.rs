@@ -1,7 +1,7 @@
 //! Affine maps of an iterated function system, and constructors for common notations of them.
 
 use super::norm::spectral_radius;
-use crate::expression::degrees::{cos, sin};
+use crate::expression::{Affine, Arithmetic, Doubles};
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
 /// A map of a system.
@@ -70,10 +70,9 @@ pub(super) fn fixed_point(affine: &DAffine2) -> Option<DVec2> {
 /// rotate.
 #[must_use]
 pub fn axes(scale: DVec2, angles: DVec2) -> DMat2 {
-    DMat2::from_cols(
-        scale.x * DVec2::new(cos(angles.x), sin(angles.x)),
-        scale.y * DVec2::new(-sin(angles.y), cos(angles.y)),
-    )
+    let turns = angles.to_array().map(|angle| Doubles.turn(&angle));
+    let map = Affine::turned_axes(&mut Doubles, &scale.to_array(), turns.each_ref());
+    DAffine2::from(map).matrix2
 }
 
 /// Returns the map x → c + L (x − c) with a linear part L and a fixed point c.

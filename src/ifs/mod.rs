@@ -43,6 +43,7 @@ mod walk;
 
 pub use contraction::{Contraction, Verdict};
 pub use error::{IfsError, WeightOwner};
+pub(crate) use interpolation::pieces;
 pub use interpolation::{
     InterpolationError, interpolate, interpolation_dimension, scale_of_dimension,
 };

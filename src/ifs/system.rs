@@ -1,6 +1,7 @@
 //! An iterated function system with the metadata and the options of its file.
 
 use super::{Contraction, Ifs, IfsError, Shape};
+use crate::expression::{Affine, Program};
 use crate::geometry::{DVec2, Homothety, convex_hull};
 use crate::metadata::Metadata;
 
@@ -11,6 +12,8 @@ use crate::metadata::Metadata;
 pub struct System {
     pub(crate) heading: Metadata,
     pub(crate) ifs: Ifs,
+    /// The maps as written, in the coordinates of the file.
+    pub(crate) written: Vec<Affine<Program>>,
     /// Whether the images of the initial set, in the order of the maps, form one line.
     pub(crate) chained: bool,
     /// Whether the maps are those of [`interpolate`](super::interpolate).
@@ -71,6 +74,8 @@ impl System {
             .collect();
         let mut number = 0..;
         definition.maps.retain(|_| number.next().is_some_and(stays));
+        let written = self.written.iter().enumerate();
+        let written = written.filter(|(map, _)| stays(*map));
         if let Some(edges) = &mut definition.edges {
             edges.retain(|edge| stays(edge.from) && stays(edge.to));
             for edge in edges {
@@ -82,6 +87,7 @@ impl System {
             heading: self.heading.clone(),
             contraction: ifs.contraction(),
             ifs,
+            written: written.map(|(_, map)| map.clone()).collect(),
             chained: self.chained && maps.is_empty(),
             interpolates: self.interpolates,
         })

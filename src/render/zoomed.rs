@@ -4,8 +4,9 @@ use std::io::Write;
 
 use crate::graph::Graph;
 use crate::grow::Growth;
+use crate::model::Model;
 use crate::style::{ColorBy, Style, View, Width};
-use crate::zoom::{self, Address, Factor, ZoomSource, ZoomWindow};
+use crate::zoom::{self, Address, Factor, ZoomWindow};
 
 use super::culling::starts_rings;
 use super::layout::Layout;
@@ -43,7 +44,7 @@ pub enum NoZoom {
 ///
 /// Returns an error under the conditions of [`write`](super::write), and if the point does not exist.
 pub fn write_zoomed(
-    source: &ZoomSource<'_>,
+    model: &Model,
     graph: &Graph,
     growth: &Growth<'_>,
     options: &Options,
@@ -51,7 +52,7 @@ pub fn write_zoomed(
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
     let style = &options.style;
-    zoom::check(source, graph)?;
+    zoom::check(model, graph)?;
     check(style)?;
     let canvas = whole(graph, growth, options)?;
     let (stroke, relative_stroke) = match style.width {
@@ -75,7 +76,7 @@ pub fn write_zoomed(
         steps: steps.map(|_| growth.steps),
         cancel: growth.cancel,
     };
-    let found = zoom::zoom(source, graph, &zoom_growth, &window)?;
+    let found = zoom::zoom(model, graph, &zoom_growth, &window)?;
     let steps = match (steps, graph.depth()) {
         (Some(_), _) => growth.steps,
         (None, Some(depth)) => depth,

@@ -23,7 +23,10 @@ impl<K> Resolver<K> {
             }
             whole
         });
-        let map = document.map.as_ref().map(|map| self.affine(map));
+        let map = document
+            .map
+            .as_ref()
+            .map(|map| self.affine(map)?.as_constant());
         let settings = self.settings(document)?;
         let model = match resolve(&document.file, &settings) {
             Ok((model, _)) => model,

@@ -2,13 +2,15 @@
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean};
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
+use crate::expression::{Affine, Program, Symbols};
 use crate::ifs::{
     Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, Shape, System, Verdict,
-    WeightOwner, hull, toward,
+    WeightOwner, hull,
 };
 use crate::metadata::Metadata;
 
 use super::Resolver;
+use super::numbers::values;
 
 /// Maximum size of a system, with all instances of sets and of maps in maps.
 const MOST_INSTANCES: usize = 2_000_000;
@@ -21,6 +23,8 @@ pub(super) struct OfIfs;
 /// one line.
 pub(super) struct Maps {
     pub(super) maps: Vec<Map>,
+    /// The maps as written.
+    pub(super) written: Vec<Affine<Program>>,
     pub(super) initial: Option<Shape>,
     pub(super) chained: bool,
 }
@@ -94,6 +98,7 @@ impl Resolver<OfIfs> {
         Some(System {
             heading,
             ifs,
+            written: maps.written,
             chained,
             interpolates: matches!(document.maps, Some(MapsDocument::Interpolated(_))),
             contraction,
@@ -104,20 +109,32 @@ impl Resolver<OfIfs> {
         match document {
             MapsDocument::Listed(maps) => {
                 let maps: Vec<_> = maps.iter().map(|map| self.map(map)).collect();
+                let (maps, written) = maps
+                    .into_iter()
+                    .collect::<Option<Vec<_>>>()?
+                    .into_iter()
+                    .unzip();
                 Some(Maps {
-                    maps: maps.into_iter().collect::<Option<_>>()?,
+                    maps,
+                    written,
                     initial: None,
                     chained: false,
                 })
             }
             MapsDocument::Vertices { points, shrink } => {
-                let factor = self.constant(shrink);
-                let points = self.points(points);
-                let (factor, points) = (factor?, points?);
-                let maps = points.iter().map(|&point| Map::new(toward(point, factor)));
+                let factor = self.constant_program(shrink);
+                let points = self.points(points)?;
+                let factors = [factor.clone(), factor];
+                let toward = |point| {
+                    let map = Affine::scaling(&mut Symbols, factors.clone());
+                    map.about(&mut Symbols, point)
+                };
+                let written: Vec<_> = points.iter().map(toward).collect();
+                let maps = written.iter().map(|map| map.as_constant().map(Map::new));
                 Some(Maps {
-                    maps: maps.collect(),
-                    initial: Some(hull(&points)),
+                    maps: maps.collect::<Option<_>>()?,
+                    written,
+                    initial: Some(hull(&values(&points))),
                     chained: false,
                 })
             }
@@ -125,17 +142,19 @@ impl Resolver<OfIfs> {
         }
     }
 
-    fn map(&mut self, document: &MapDocument) -> Option<Map> {
-        let affine = self.affine(document);
+    fn map(&mut self, document: &MapDocument) -> Option<(Map, Affine<Program>)> {
+        let written = self.affine(document);
         let weight = document.weight.as_ref().map(|it| self.constant(it));
-        Some(Map {
+        let written = written?;
+        let map = Map {
             name: document.name.as_ref().map(|name| name.value.clone()),
-            affine: affine?,
+            affine: written.as_constant()?,
             weight: match weight {
                 None => None,
                 Some(weight) => Some(weight?),
             },
-        })
+        };
+        Some((map, written))
     }
 
     fn edge(&mut self, edge: &EdgeDocument, names: &[Option<&str>]) -> Option<Edge> {

@@ -11,9 +11,9 @@ use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, Number, ObjectDocument,
     ShapeDocument, TransformDocument, UnionDocument,
 };
-use crate::expression::{Program, Scope};
-use crate::geometry::{DAffine2, DMat2, DVec2};
-use crate::ifs::{Shape, axes};
+use crate::expression::{Affine, Arithmetic, Doubles, Program, Scope, Symbols};
+use crate::geometry::DAffine2;
+use crate::ifs::Shape;
 use crate::instancing::{Instance, Instancing, Master, Object, Tint};
 use crate::metadata::Metadata;
 use crate::style::{ColorBy, Colour};
@@ -62,12 +62,12 @@ impl Definitions {
 struct Union {
     name: String,
     instances: Vec<Prepared>,
-    transforms: Vec<Transform>,
+    transforms: Arc<[Affine<Program>]>,
 }
 
 struct Prepared {
     master: Option<PreparedMaster>,
-    transforms: Vec<Transform>,
+    transforms: Arc<[Affine<Program>]>,
     tint: Option<(Colour, Program)>,
     place: Place,
 }
@@ -81,38 +81,14 @@ enum PreparedMaster {
     },
 }
 
-enum Transform {
-    Scale([Program; 2]),
-    Rotate(Program),
-    Translate([Program; 2]),
-    Matrix([[Program; 2]; 2]),
-}
-
-impl Transform {
-    fn map(&self, slots: &[f64]) -> DAffine2 {
-        let vector = |[x, y]: &[Program; 2]| DVec2::new(x.eval(slots), y.eval(slots));
-        match self {
-            Self::Scale(factors) => DAffine2::from_mat2(DMat2::from_diagonal(vector(factors))),
-            Self::Rotate(angle) => {
-                DAffine2::from_mat2(axes(DVec2::ONE, DVec2::splat(angle.eval(slots))))
-            }
-            Self::Translate(shift) => DAffine2::from_translation(vector(shift)),
-            Self::Matrix([first, second]) => {
-                DAffine2::from_mat2(DMat2::from_cols(vector(first), vector(second)).transpose())
-            }
-        }
-    }
-}
-
 /// Returns a key that identifies a level. 0 and -0 have the same key.
 fn bits(level: f64) -> u64 {
     (level + 0.0).to_bits()
 }
 
 /// Computes the product of transforms, of which the first one is applied first.
-fn product(transforms: &[Transform], slots: &[f64]) -> DAffine2 {
-    let maps = transforms.iter().map(|transform| transform.map(slots));
-    maps.fold(DAffine2::IDENTITY, |before, map| map * before)
+fn product(transforms: &[Affine<Program>], slots: &[f64]) -> DAffine2 {
+    Affine::product(&mut Doubles, transforms, slots).into()
 }
 
 impl Resolver<OfInstancing> {
@@ -133,9 +109,11 @@ impl Resolver<OfInstancing> {
             return None;
         }
         let whole = product(&scene.transforms, &[]);
+        let whole_scene = Arc::clone(&scene.transforms);
         let mut scene = self.instances(&scene, None);
         for instance in &mut scene {
             instance.map = whole * instance.map;
+            instance.transforms = [&instance.transforms[..], &whole_scene].concat().into();
         }
         let mut objects = Vec::new();
         while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
@@ -148,7 +126,8 @@ impl Resolver<OfInstancing> {
                 },
                 map: product(&union.transforms, level.as_slice()),
                 instances: self.instances(&union, level),
-                origin: (number, level),
+                transforms: Arc::clone(&union.transforms),
+                slots: level.into_iter().collect(),
             });
             self.kind.unions[number] = union;
             if self.kind.size > MOST_INSTANCES {
@@ -278,25 +257,30 @@ impl Resolver<OfInstancing> {
         }
     }
 
-    fn transforms(&mut self, documents: &[TransformDocument], scope: &Scope) -> Vec<Transform> {
+    fn transforms(
+        &mut self,
+        documents: &[TransformDocument],
+        scope: &Scope,
+    ) -> Arc<[Affine<Program>]> {
         let mut two = |x: &Number, y: &Number| [self.program(x, scope), self.program(y, scope)];
-        let mut transforms = Vec::new();
-        for document in documents {
-            transforms.push(match document {
-                TransformDocument::Scale([x, y]) => Transform::Scale(two(x, y)),
-                TransformDocument::Translate(shift) => {
-                    Transform::Translate(two(&shift.x, &shift.y))
-                }
-                TransformDocument::Matrix([a, b]) => {
-                    Transform::Matrix([two(&a.x, &a.y), two(&b.x, &b.y)])
-                }
-                TransformDocument::Rotate(angle) => {
-                    let [angle, _] = two(angle, angle);
-                    Transform::Rotate(angle)
-                }
-            });
-        }
-        transforms
+        let of = &mut Symbols;
+        let transforms = documents.iter().map(|document| match document {
+            TransformDocument::Scale([x, y]) => Affine::scaling(of, two(x, y)),
+            TransformDocument::Translate(shift) => {
+                Affine::identity(of).moved_to(two(&shift.x, &shift.y))
+            }
+            TransformDocument::Matrix([first, second]) => {
+                let [a, c] = two(&first.x, &first.y);
+                let [b, d] = two(&second.x, &second.y);
+                Affine::linear(of, [[a, b], [c, d]])
+            }
+            TransformDocument::Rotate(angle) => {
+                let [angle, _] = two(angle, angle);
+                let turn = of.turn(&angle);
+                Affine::rotation(of, turn)
+            }
+        });
+        transforms.collect()
     }
 
     /// Reports unknown names of objects and missing or superfluous levels, also in objects that are not
@@ -383,7 +367,13 @@ impl Resolver<OfInstancing> {
                     Master::Shape(Shape::Outline(outline)) => 1 + outline.pieces().len(),
                     _ => 1,
                 };
-                instances.push(Instance { map, master, tint });
+                let transforms = Arc::clone(&prepared.transforms);
+                instances.push(Instance {
+                    map,
+                    master,
+                    tint,
+                    transforms,
+                });
             }
         }
         instances
@@ -448,7 +438,7 @@ impl Union {
         Self {
             name: String::new(),
             instances: Vec::new(),
-            transforms: Vec::new(),
+            transforms: Arc::default(),
         }
     }
 }

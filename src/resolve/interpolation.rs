@@ -1,10 +1,12 @@
 //! Resolution of fractal interpolation.
 
 use crate::document::{InterpolationDocument, Scales};
-use crate::ifs::{InterpolationError, Shape, interpolate, scale_of_dimension};
+use crate::expression::{Program, Symbols};
+use crate::ifs::{InterpolationError, Shape, interpolate, pieces, scale_of_dimension};
 
 use super::Resolver;
 use super::ifs::{Maps, OfIfs};
+use super::numbers::values;
 
 impl Resolver<OfIfs> {
     /// Computes the maps of fractal interpolation. The initial set is the line between the ends of the
@@ -12,31 +14,38 @@ impl Resolver<OfIfs> {
     pub(super) fn interpolation(&mut self, document: &InterpolationDocument) -> Option<Maps> {
         let points = self.points(&document.points);
         let scales = match &document.scale {
-            Some(Scales::One(number)) => Some(vec![self.constant(number)?]),
+            Some(Scales::One(number)) => vec![self.constant_program(number)],
             Some(Scales::Each(numbers)) => {
-                let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
-                Some(values.into_iter().collect::<Option<_>>()?)
+                let numbers = numbers.iter();
+                numbers.map(|it| self.constant_program(it)).collect()
             }
-            None => None,
+            None => Vec::new(),
         };
+        let factors = scales.iter().map(Program::as_constant);
+        let factors: Vec<f64> = factors.collect::<Option<_>>()?;
         let dimension = match &document.dimension {
             Some(number) => Some(self.constant(number)?),
             None => None,
         };
-        let points = points?;
-        let scales = match (scales, dimension) {
-            (Some(scales), _) => Ok(scales),
-            (None, dimension) => {
-                let dimension = dimension.unwrap_or(1.0);
-                scale_of_dimension(&points, dimension).map(|scale| vec![scale])
-            }
+        let written = points?;
+        let points = values(&written);
+        let found = match (&document.scale, dimension) {
+            (Some(_), _) => Ok((factors, scales)),
+            (None, Some(dimension)) => scale_of_dimension(&points, dimension)
+                .map(|scale| (vec![scale], vec![Program::constant(scale)])),
+            // The missing factor has been reported.
+            (None, None) => return None,
         };
-        let maps = scales.and_then(|scales| interpolate(&points, &scales));
+        let maps = found.and_then(|(factors, scales)| {
+            let maps = interpolate(&points, &factors)?;
+            Ok((maps, pieces(&mut Symbols, &written, &scales)))
+        });
         let maps = maps.map_err(|error| self.refuse_interpolation(document, &error));
-        let maps = maps.ok()?;
+        let (maps, written) = maps.ok()?;
         let ends = [points[0], points[points.len() - 1]];
         Some(Maps {
             maps,
+            written,
             initial: Shape::polyline(&ends),
             chained: true,
         })

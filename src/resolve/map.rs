@@ -1,47 +1,45 @@
 //! Resolution of affine maps.
 
 use crate::document::{LinearDocument, MapDocument};
-use crate::geometry::{DAffine2, DMat2, DVec2};
-use crate::ifs::{about, axes, complex, complex_conjugate};
+use crate::expression::{Affine, Arithmetic, Program, Symbols};
 
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// Resolves an affine map. Reports mistakes and returns `None`.
-    pub(super) fn affine(&mut self, document: &MapDocument) -> Option<DAffine2> {
+    /// Resolves an affine map, whose numbers are constants. Reports mistakes and returns `None`.
+    pub(super) fn affine(&mut self, document: &MapDocument) -> Option<Affine<Program>> {
         let linear = document.linear.as_ref().and_then(|it| self.linear(it));
-        let shift = document.shift.as_ref().map(|it| self.constant_point(it));
-        let fixed = document.fixed.as_ref().map(|it| self.constant_point(it));
+        let shift = document.shift.as_ref().map(|it| self.point(it));
+        let fixed = document.fixed.as_ref().map(|it| self.point(it));
         let linear = linear?;
         Some(match (shift, fixed) {
-            (_, Some(fixed)) => about(linear, fixed?),
-            (Some(shift), None) => DAffine2::from_mat2_translation(linear, shift?),
-            (None, None) => DAffine2::from_mat2_translation(linear, DVec2::ZERO),
+            (_, Some(fixed)) => linear.about(&mut Symbols, &fixed?),
+            (Some(shift), None) => linear.moved_to(shift?),
+            (None, None) => linear,
         })
     }
 
-    fn linear(&mut self, document: &LinearDocument) -> Option<DMat2> {
+    fn linear(&mut self, document: &LinearDocument) -> Option<Affine<Program>> {
         match document {
             LinearDocument::Matrix([first, second]) => {
-                let (first, second) = (self.constant_point(first), self.constant_point(second));
-                // The document has rows, the matrix has columns.
-                Some(DMat2::from_cols(first?, second?).transpose())
+                let (first, second) = (self.point(first), self.point(second));
+                // The document has rows, the map has columns.
+                let ([a, c], [b, d]) = (first?, second?);
+                Some(Affine::linear(&mut Symbols, [[a, b], [c, d]]))
             }
             LinearDocument::Axes { scale, rotate } => {
-                let scale = self.numbers(scale);
+                let scale = self.numbers(scale.each_ref());
                 let rotate = match rotate {
-                    Some(rotate) => self.numbers(rotate),
-                    None => Some([0.0; 2]),
+                    Some(rotate) => self.numbers(rotate.each_ref()),
+                    None => Some([0.0; 2].map(Program::constant)),
                 };
-                Some(axes(scale?.into(), rotate?.into()))
+                let (scale, rotate) = (scale?, rotate?);
+                let turns = rotate.map(|angle| Symbols.turn(&angle));
+                Some(Affine::turned_axes(&mut Symbols, &scale, turns.each_ref()))
             }
             LinearDocument::Complex { times, conjugate } => {
-                let map = if *conjugate {
-                    complex_conjugate
-                } else {
-                    complex
-                };
-                Some(map(self.constant_point(times)?, DVec2::ZERO).matrix2)
+                let times = self.point(times)?;
+                Some(Affine::complex(&mut Symbols, times, *conjugate))
             }
         }
     }

@@ -13,7 +13,7 @@ impl<K> Resolver<K> {
         settings: &[Setting],
     ) -> Metadata {
         self.incomplete = !document.complete;
-        let parameters = self.parameters(document, settings);
+        let (parameters, numbers) = self.parameters(document, settings);
         if self.incomplete {
             self.constants.accept_any_name();
         }
@@ -21,6 +21,7 @@ impl<K> Resolver<K> {
         Metadata {
             description: document.description.clone(),
             parameters,
+            numbers,
             steps: steps.and_then(|number| self.steps(number)),
             dimension: self.dimension(document.dimension.as_ref()),
             hausdorff_dimension: self.dimension(document.hausdorff_dimension.as_ref()),

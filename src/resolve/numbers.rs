@@ -59,13 +59,31 @@ impl<K> Resolver<K> {
 
     /// Evaluates a number in the scope of parameters. Returns `None` if its value is unknown.
     pub(super) fn constant(&mut self, number: &Number) -> Option<f64> {
+        self.constant_program(number).as_constant()
+    }
+
+    /// Compiles a number in the scope of parameters. The program is a constant if its value is known.
+    pub(super) fn constant_program(&mut self, number: &Number) -> Program {
         let scope = std::mem::take(&mut self.constants);
         let program = self.program(number, &scope);
         self.constants = scope;
-        program.as_constant()
+        program
     }
 
+    /// Evaluates a point in the scope of parameters. Returns `None` if a coordinate is unknown.
     pub(super) fn constant_point(&mut self, point: &Point) -> Option<DVec2> {
+        let [x, y] = self.point(point)?;
+        Some(DVec2::new(x.as_constant()?, y.as_constant()?))
+    }
+
+    /// Compiles points in the scope of parameters. Returns `None` if a coordinate is unknown.
+    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<[Program; 2]>> {
+        let points: Vec<_> = points.iter().map(|point| self.point(point)).collect();
+        points.into_iter().collect()
+    }
+
+    /// Compiles a point in the scope of parameters. Returns `None` if a coordinate is unknown.
+    pub(super) fn point(&mut self, point: &Point) -> Option<[Program; 2]> {
         if let Some(name) = point.name()
             && !PARTS
                 .iter()
@@ -82,9 +100,24 @@ impl<K> Resolver<K> {
             self.error_with_hint(&point.place, message, hint);
             return None;
         }
-        let (x, y) = (self.constant(&point.x), self.constant(&point.y));
-        Some(DVec2::new(x?, y?))
+        self.numbers([&point.x, &point.y])
     }
+
+    /// Compiles two numbers in the scope of parameters. Returns `None` if one is unknown.
+    pub(super) fn numbers(&mut self, numbers: [&Number; 2]) -> Option<[Program; 2]> {
+        let programs = numbers.map(|number| self.constant_program(number));
+        let are_known = programs.iter().all(|it| it.as_constant().is_some());
+        are_known.then_some(programs)
+    }
+}
+
+/// Returns the values of the coordinates of points; NaN for one that is not constant.
+pub(super) fn values(points: &[[Program; 2]]) -> Vec<DVec2> {
+    let value = |program: &Program| program.as_constant().unwrap_or(f64::NAN);
+    let points = points.iter();
+    points
+        .map(|[x, y]| DVec2::new(value(x), value(y)))
+        .collect()
 }
 
 /// Returns the place of a part of a number, or of the whole number if its notation differs from its

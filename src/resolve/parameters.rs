@@ -3,19 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::document::{MetadataDocument, Number, ParameterDocument, Setting, Written};
-use crate::expression::{PARTS, is_name, is_reserved};
+use crate::expression::{PARTS, Program, Scope, is_name, is_reserved};
 use crate::metadata::Parameter;
 use crate::rule::ElementContext;
 
 use super::Resolver;
 
 impl<K> Resolver<K> {
-    /// Resolves the parameters and adds them to the scope of expressions.
+    /// Resolves the parameters and adds them to the scope of expressions. Returns them with their values as
+    /// written, which are in the order of dependence.
     pub(super) fn parameters(
         &mut self,
         document: &MetadataDocument,
         settings: &[Setting],
-    ) -> Vec<Parameter> {
+    ) -> (Vec<Parameter>, Vec<Program>) {
         if !document.complete {
             self.constants.accept_any_name();
         }
@@ -28,6 +29,7 @@ impl<K> Resolver<K> {
             self.error(&value.place, message);
             self.constants.unknown_value(&name.value);
         }
+        let mut numbers = Vec::new();
         for index in order {
             let written = &document.params[index];
             self.check_name(written);
@@ -35,9 +37,10 @@ impl<K> Resolver<K> {
             let set = settings.iter().rfind(|setting| setting.name == *name);
             let parameter = self.parameter(written, set);
             match parameter.value {
-                Some(value) => self.constants.constant(name, value),
+                Some(value) => self.constants.parameter(name, value, numbers.len()),
                 None => self.constants.unknown_value(name),
             }
+            numbers.push(parameter.written);
             parameters[index] = Some(Parameter {
                 name: name.clone(),
                 value: parameter.value.unwrap_or(f64::NAN),
@@ -46,7 +49,7 @@ impl<K> Resolver<K> {
                 about: written.about.clone(),
             });
         }
-        parameters.into_iter().flatten().collect()
+        (parameters.into_iter().flatten().collect(), numbers)
     }
 
     fn check_name(&mut self, written: &ParameterDocument) {
@@ -67,10 +70,14 @@ impl<K> Resolver<K> {
 
     fn parameter(&mut self, written: &ParameterDocument, set: Option<&Setting>) -> Values {
         let name = &written.name.value;
-        let default = self.constant(&written.value);
+        let default = self.constant_program(&written.value);
+        let as_set = |setting: &Setting| match &setting.written {
+            Some(written) => written.compile(&Scope::new()).ok(),
+            None => Some(Program::constant(setting.value)),
+        };
         let mut limit = |number: &Option<_>| number.as_ref().and_then(|n| self.constant(n));
         let (min, max) = (limit(&written.min), limit(&written.max));
-        let mut value = set.map(|setting| setting.value).or(default);
+        let mut value = (set.map(|setting| setting.value)).or(default.as_constant());
         // A refused value is unknown, so that values computed from it are not reported.
         if let (Some(low), Some(high), Some(number)) = (min, max, &written.min)
             && low > high
@@ -99,13 +106,18 @@ impl<K> Resolver<K> {
                 value = None;
             }
         }
-        Values { value, min, max }
+        Values {
+            value,
+            written: set.and_then(as_set).unwrap_or(default),
+            min,
+            max,
+        }
     }
 }
 
 /// Returns the indices of the parameters in an order in which each follows those that its value and
 /// limits depend on, and the indices of those that depend on themselves.
-pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
+fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let names = params.iter().enumerate();
     let numbers: BTreeMap<&str, usize> = names
         .map(|(index, param)| (param.name.value.as_str(), index))
@@ -171,6 +183,7 @@ pub(crate) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
 /// Values of a parameter, as far as they are known.
 struct Values {
     value: Option<f64>,
+    written: Program,
     min: Option<f64>,
     max: Option<f64>,
 }

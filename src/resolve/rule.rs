@@ -17,6 +17,7 @@ use crate::rule::{BaseElement, ElementContext, Rule, Selection};
 use generator::loops_shrink;
 
 use super::Resolver;
+use super::numbers::values;
 
 /// State that is specific to rules.
 #[derive(Default)]
@@ -51,7 +52,7 @@ impl Resolver<OfRule> {
             moment.variable(name, slot);
         }
         let moment = Arc::new(moment);
-        let (origin, points, initiator) = self.initiator(document);
+        let (written_points, initiator) = self.initiator(document);
         let generators: Vec<_> = document
             .generators
             .iter()
@@ -68,8 +69,8 @@ impl Resolver<OfRule> {
         }
         Rule {
             heading,
-            origin,
-            points,
+            points: values(&written_points),
+            written_points,
             initiator,
             generators,
             selection,

@@ -1,10 +1,10 @@
 //! Resolution of plane sets.
 
-use crate::document::{EllipseDocument, FormDocument, Number, Point, ShapeDocument};
-use crate::geometry::DVec2;
+use crate::document::{EllipseDocument, FormDocument, ShapeDocument};
 use crate::ifs::Shape;
 
 use super::Resolver;
+use super::numbers::values;
 
 impl<K> Resolver<K> {
     /// Resolves a set. Reports mistakes and returns `None`.
@@ -14,7 +14,7 @@ impl<K> Resolver<K> {
             FormDocument::Point(point) => Some(Shape::Point(self.constant_point(point)?)),
             FormDocument::Outline { points, closed } => {
                 let written = points;
-                let points = self.points(points)?;
+                let points = values(&self.points(points)?);
                 let returns = points.first() == points.last();
                 if let (true, Some(last)) = (returns && points.len() > 2, written.last()) {
                     let message = "the last point is the first one again";
@@ -38,17 +38,19 @@ impl<K> Resolver<K> {
                     rotate,
                 } = &**ellipse;
                 let centre = self.constant_point(centre);
-                let values = self.numbers(axes);
+                let axes = axes.each_ref();
+                let lengths = self.numbers(axes);
                 let angle = match rotate {
                     Some(rotate) => self.constant(rotate),
                     None => Some(0.0),
                 };
-                let values = values?;
-                if let Some(index) = values.iter().position(|axis| *axis <= 0.0) {
-                    let message = format!("{} is no radius: it must be above 0", values[index]);
-                    self.error(&axes[index].place, message);
+                let lengths = values(&[lengths?])[0];
+                let mut written = lengths.to_array().into_iter().zip(axes);
+                if let Some((length, axis)) = written.find(|(length, _)| *length <= 0.0) {
+                    let message = format!("{length} is no radius: it must be above 0");
+                    self.error(&axis.place, message);
                 }
-                Shape::ellipse(centre?, values.into(), angle?)
+                Shape::ellipse(centre?, lengths, angle?)
             }
             FormDocument::Fractal(fractal) => Some(self.fractal(fractal)?),
         };
@@ -59,20 +61,5 @@ impl<K> Resolver<K> {
             self.error_with_hint(&document.place, "this set has no extent", hint);
         }
         shape
-    }
-
-    /// Evaluates points. Returns `None` if a coordinate is unknown.
-    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<DVec2>> {
-        let points: Vec<_> = points
-            .iter()
-            .map(|point| self.constant_point(point))
-            .collect();
-        points.into_iter().collect()
-    }
-
-    pub(super) fn numbers<const N: usize>(&mut self, numbers: &[Number; N]) -> Option<[f64; N]> {
-        let values: Vec<_> = numbers.iter().map(|number| self.constant(number)).collect();
-        let values: Option<Vec<_>> = values.into_iter().collect();
-        values?.try_into().ok()
     }
 }

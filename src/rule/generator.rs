@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
-use crate::expression::{Dependence, Program, degrees};
-use crate::geometry::{DAffine2, DMat2, DVec2, Direction};
+use crate::expression::{Affine, Dependence, Doubles, Evaluation, Program};
+use crate::geometry::{DAffine2, DVec2, Direction};
 use crate::written::Point;
 
 use crate::draws::{Path, Variable};
@@ -63,15 +63,21 @@ impl Move {
         std::iter::once(&self.rotate).chain(pairs.flatten())
     }
 
-    fn map(&self, slots: &[f64]) -> DAffine2 {
-        let vector = |[x, y]: &[Program; 2]| DVec2::new(x.eval(slots), y.eval(slots));
-        let angle = self.rotate.eval(slots);
-        let (sine, cosine) = (degrees::sin(angle), degrees::cos(angle));
-        let scale = vector(&self.scale);
-        let turn = DMat2::from_cols(DVec2::new(cosine, sine), DVec2::new(-sine, cosine));
-        let about = vector(&self.about);
-        let linear = turn * DMat2::from_diagonal(scale);
-        DAffine2::from_mat2_translation(linear, about - linear * about + vector(&self.shift))
+    /// Evaluates the map of the points.
+    #[inline]
+    pub(crate) fn map<A: Evaluation>(
+        &self,
+        of: &mut A,
+        mut value: impl FnMut(&mut A, &Program) -> A::Number,
+    ) -> Affine<A::Number> {
+        let mut pair = |of: &mut A, [x, y]: &[Program; 2]| [value(of, x), value(of, y)];
+        let scale = pair(of, &self.scale);
+        let (about, shift) = (pair(of, &self.about), pair(of, &self.shift));
+        let angle = value(of, &self.rotate);
+        let turn = of.turn(&angle);
+        let map = Affine::turned_axes(of, &scale, [&turn; 2]).about(of, &about);
+        let origin = [0, 1].map(|row| of.add(&map.origin[row], &shift[row]));
+        map.moved_to(origin)
     }
 }
 
@@ -128,8 +134,7 @@ pub struct Part {
     pub meets_frame: [bool; 2],
 }
 
-/// Source of a generator or an initiator: for diagnostics of evaluation, and for computations in more
-/// digits than a double has.
+/// Source of a generator, for diagnostics of evaluation and for texts.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) name: Place,
@@ -273,7 +278,8 @@ impl Generator {
                 .map(|[x, y]| DVec2::new(x.eval(scratch), y.eval(scratch))),
         );
         for moving in &self.moves {
-            let map = moving.map(scratch);
+            let map = moving.map(&mut Doubles, |_, program| program.eval(scratch));
+            let map = DAffine2::from(map);
             for &number in &*moving.points {
                 points[number] = map.transform_point2(points[number]);
             }

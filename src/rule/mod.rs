@@ -15,6 +15,7 @@ pub(crate) use generator::Origin;
 pub use generator::{ElementContext, Generator, ListedElement, Move, Part, Placement};
 pub use selection::Selection;
 
+use crate::expression::Program;
 use crate::geometry::DVec2;
 use crate::metadata::{Description, Metadata, Parameter};
 use crate::style::{Style, View};
@@ -23,9 +24,9 @@ use crate::style::{Style, View};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     pub(crate) heading: Metadata,
-    /// Source of the initiator.
-    pub(crate) origin: Origin,
     pub(crate) points: Vec<DVec2>,
+    /// Points of the initiator as written.
+    pub(crate) written_points: Vec<[Program; 2]>,
     pub(crate) initiator: Part,
     pub(crate) generators: Vec<Generator>,
     pub(crate) selection: Selection,

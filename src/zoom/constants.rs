@@ -1,24 +1,21 @@
-//! Maps of a file, evaluated to an arbitrary number of bits.
-
-mod rule;
-mod structure;
-mod system;
-mod turtle;
+//! Maps of a model, evaluated from its programs to an arbitrary number of bits.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use dashu_int::IBig;
 
-use crate::document::{KindDocument, MetadataDocument, Number, Point, Setting};
-use crate::expression::{Precise, Precision};
+use crate::compile::Chords;
+use crate::expression::{Affine, Arithmetic, Precise, Precision, Program};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::grow::{ReplacementContext, Standing};
+use crate::ifs::System;
+use crate::instancing::Instancing;
 use crate::model::Model;
-use crate::resolve::order_of_parameters;
+use crate::rule::{ListedElement, Rule};
 
+use super::ZoomError;
 use super::fixed::{Fixed, Vector};
-use super::{ZoomError, ZoomSource};
 
 /// Limit of the number of cached maps.
 const MOST_KNOWN: usize = 1 << 12;
@@ -36,93 +33,93 @@ pub(super) struct Parent<'a> {
 /// Evaluator of the maps of instances, in multiples of 2^-`bits`.
 pub(super) struct Constants<'a> {
     graph: &'a Graph,
-    numbers: Numbers,
+    precision: Precision,
     kind: Kind<'a>,
     /// Cached maps of fixed instances, by the behaviour of their parent and their position.
     known: HashMap<(usize, u32), Arc<Fixed>>,
 }
 
 enum Kind<'a> {
-    Rule(rule::OfRule<'a>),
-    System(system::OfSystem<'a>),
-    Structure(structure::OfStructure<'a>),
-    Turtle(turtle::OfTurtle),
+    Rule(OfRule<'a>),
+    System(&'a System, Vec<Arc<Fixed>>),
+    /// A structure, with the canonical objects of the graph's objects.
+    Structure(&'a Instancing, Vec<Option<usize>>),
+    Turtle(Chords),
 }
 
-/// Evaluator of numbers as written.
-struct Numbers {
-    precision: Precision,
-    /// Parameters of the file.
-    params: BTreeMap<String, Precise>,
+/// Maps of a production rule.
+struct OfRule<'a> {
+    rule: &'a Rule,
+    /// Points of the initiator.
+    points: Vec<Vector>,
+    /// Elements of every generator, by position.
+    listed: Vec<Vec<&'a ListedElement>>,
 }
-
-/// Names that expressions see beside parameters, with their values.
-type Names<'n> = &'n [(&'n str, Precise)];
 
 impl<'a> Constants<'a> {
-    /// Creates an evaluator for a model and its file.
+    /// Creates an evaluator for a model.
     ///
     /// # Errors
     ///
     /// If an L-system does not rewrite edges: each number of steps then has its own initiator.
-    pub(super) fn new(
-        source: &ZoomSource<'a>,
-        graph: &'a Graph,
-        bits: usize,
-    ) -> Result<Self, ZoomError> {
-        let document = source.document.kind();
-        let mut numbers = Numbers {
-            precision: Precision::new(bits),
-            params: BTreeMap::new(),
-        };
-        numbers.read_parameters(document.metadata(), source.settings);
-        let kind = match (document, source.model) {
-            (KindDocument::Rule(document), Model::Rule(rule)) => {
-                Kind::Rule(rule::OfRule::new(document, rule, &mut numbers))
+    pub(super) fn new(model: &'a Model, graph: &'a Graph, bits: usize) -> Result<Self, ZoomError> {
+        let mut precision = Precision::new(bits);
+        precision.set_parameters(&model.metadata().numbers);
+        let kind = match model {
+            Model::Rule(rule) => {
+                let points = rule.written_points.iter();
+                let points =
+                    points.map(|point| fixed_point(&precise(&mut precision, point, &[]), bits));
+                Kind::Rule(OfRule {
+                    rule,
+                    points: points.collect(),
+                    listed: rule
+                        .generators()
+                        .iter()
+                        .map(|it| it.elements().collect())
+                        .collect(),
+                })
             }
-            (KindDocument::Ifs(document), Model::Ifs(system)) => {
-                let omitted = source.omitted;
-                Kind::System(system::OfSystem::new(
-                    document,
-                    system,
-                    omitted,
-                    &mut numbers,
-                ))
+            Model::Ifs(system) => {
+                let maps = system.written.iter().map(|map| {
+                    let map = map.map(|number| number.evaluate(&mut precision, &[]));
+                    Arc::new(Fixed::of(&map, bits))
+                });
+                let maps = maps.collect();
+                Kind::System(system, maps)
             }
-            (KindDocument::Instancing(document), Model::Instancing(structure)) => {
-                Kind::Structure(structure::OfStructure::new(document, structure))
+            Model::Instancing(structure) => {
+                Kind::Structure(structure, Graph::canonical_objects(structure))
             }
-            (KindDocument::LSystem(_), Model::LSystem(system)) => {
-                let turtle = turtle::OfTurtle::new(system, bits);
-                Kind::Turtle(turtle.ok_or(ZoomError::StartsAnew)?)
+            Model::LSystem(system) => {
+                Kind::Turtle(Chords::of(system, bits).ok_or(ZoomError::StartsAnew)?)
             }
-            _ => unreachable!("a model is of the kind of its document"),
         };
         Ok(Self {
             graph,
-            numbers,
+            precision,
             kind,
             known: HashMap::new(),
         })
     }
 
     pub(super) fn bits(&self) -> usize {
-        self.numbers.bits()
+        self.precision.bits()
     }
 
     /// Returns the shortest decimal that reads as a double, in multiples of 2^-`bits`.
-    pub(super) fn written(&self, number: f64) -> IBig {
-        self.numbers.precision.written(number).fixed(self.bits())
+    pub(super) fn written(&mut self, number: f64) -> IBig {
+        self.precision.decimal(number).fixed(self.bits())
     }
 
     /// Returns the map of an instance in the initiator.
     pub(super) fn root(&mut self, instance: &Instance) -> Arc<Fixed> {
-        Arc::new(match &mut self.kind {
-            Kind::Rule(rule) => rule.root(instance),
-            Kind::System(_) => Fixed::identity(self.numbers.bits()),
-            Kind::Structure(structure) => structure.child(None, instance, &mut self.numbers),
-            Kind::Turtle(turtle) => turtle.child(None, instance),
-        })
+        if let Kind::Rule(OfRule { rule, points, .. }) = &self.kind {
+            let element = &rule.initiator().elements[instance.position as usize];
+            let [from, to] = [element.from, element.to].map(|point| &points[point]);
+            return Arc::new(Fixed::between(from, to, element.direction));
+        }
+        self.child(None, instance)
     }
 
     /// Returns the maps of instances in the replacement of an element.
@@ -138,23 +135,14 @@ impl<'a> Constants<'a> {
         }
         // Cached maps have full precision, because they may be used again where more is required.
         let needed = if is_fixed { self.bits() } else { parent.bits };
-        self.numbers.precision.make_do_with(needed);
-        let made: Vec<Arc<Fixed>> = match &mut self.kind {
-            Kind::Rule(rule) => rule.children(self.graph, parent, wanted, &mut self.numbers),
-            Kind::System(system) => {
-                let bits = self.numbers.bits();
-                let child = |instance: &&Instance| system.child(self.graph, instance, bits);
-                wanted.iter().map(child).collect()
-            }
-            Kind::Structure(structure) => {
-                let mut child = |instance: &&Instance| {
-                    structure.child(Some(parent.object), instance, &mut self.numbers)
-                };
-                wanted.iter().map(|it| Arc::new(child(it))).collect()
-            }
-            Kind::Turtle(turtle) => {
-                let child = |it: &&Instance| turtle.child(Some(parent.object), it);
-                wanted.iter().map(|it| Arc::new(child(it))).collect()
+        self.precision.make_do_with(needed);
+        let made: Vec<Arc<Fixed>> = match &self.kind {
+            Kind::Rule(rule) => rule.children(self.graph, parent, wanted, &mut self.precision),
+            _ => {
+                let wanted = wanted.iter();
+                wanted
+                    .map(|it| self.child(Some(parent.object), it))
+                    .collect()
             }
         };
         if is_fixed {
@@ -166,56 +154,105 @@ impl<'a> Constants<'a> {
         }
         made
     }
-}
 
-impl Numbers {
-    fn bits(&self) -> usize {
-        self.precision.bits()
-    }
-
-    /// Evaluates the parameters, each after those on which its value depends.
-    fn read_parameters(&mut self, heading: &MetadataDocument, settings: &[Setting]) {
-        let (order, _) = order_of_parameters(&heading.params);
-        for index in order {
-            let written = &heading.params[index];
-            let name = &written.name.value;
-            let set = settings.iter().rfind(|setting| setting.name == *name);
-            let value = match set {
-                Some(Setting {
-                    written: Some(written),
-                    ..
-                }) => self.precision.value(written, &|_| None),
-                Some(setting) => self.precision.written(setting.value),
-                None => self.number(&written.value, &[]),
-            };
-            self.params.insert(name.clone(), value);
+    /// Returns the map of an instance of a model that is no rule, in an object, or in the initiator if there
+    /// is no parent.
+    fn child(&mut self, parent: Option<usize>, instance: &Instance) -> Arc<Fixed> {
+        let bits = self.precision.bits();
+        let position = instance.position as usize;
+        match &self.kind {
+            Kind::Rule(_) => unreachable!("the elements of a generator are evaluated together"),
+            Kind::System(system, written) => {
+                let origin = self.graph.objects()[instance.object].origin;
+                let maps = system.ifs().maps();
+                // The instance of a condensation set may have the origin of a map without being under it.
+                let map = origin
+                    .filter(|&map| parent.is_some() && maps[map].affine == *instance.frame.map());
+                map.map_or_else(
+                    || Arc::new(Fixed::identity(bits)),
+                    |map| Arc::clone(&written[map]),
+                )
+            }
+            Kind::Structure(structure, canonical) => {
+                let object = |number: usize| canonical[number].map(|it| &structure.objects()[it]);
+                let mut product = |transforms: &[Affine<Program>], slots: &[f64]| {
+                    let slots: Vec<_> = slots.iter().copied().map(Precise::of).collect();
+                    Affine::product(&mut self.precision, transforms, &slots)
+                };
+                let inner = match object(instance.object) {
+                    Some(of) => product(&of.transforms, &of.slots),
+                    None => product(&[], &[]),
+                };
+                let own = match parent {
+                    Some(parent) => object(parent)
+                        .map(|of| product(&of.instances[position].transforms, &of.slots)),
+                    None => Some(product(&structure.scene()[position].transforms, &[])),
+                };
+                let map = own.map(|own| own.after(&mut self.precision, &inner));
+                Arc::new(Fixed::of(&map.unwrap_or(inner), bits))
+            }
+            Kind::Turtle(Chords { initiator, objects }) => {
+                let lines = parent.map_or(initiator, |object| &objects[object]);
+                let [from, to] = &lines[position];
+                Arc::new(Fixed::between(from, to, instance.frame.direction()))
+            }
         }
     }
+}
 
-    fn number(&mut self, number: &Number, names: Names<'_>) -> Precise {
-        let Self { precision, params } = self;
-        precision.value(&number.value, &|name| {
-            let own = names.iter().find(|(own, _)| *own == name);
-            own.map(|(_, value)| value)
-                .or_else(|| params.get(name))
-                .cloned()
-        })
+impl OfRule<'_> {
+    fn children(
+        &self,
+        graph: &Graph,
+        parent: Parent<'_>,
+        wanted: &[&Instance],
+        precision: &mut Precision,
+    ) -> Vec<Arc<Fixed>> {
+        let first = wanted.first();
+        let Some(number) = first.and_then(|it| graph.objects()[it.object].origin) else {
+            return Vec::new();
+        };
+        let generator = &self.rule.generators()[number];
+        let moment = parent.moment.seen(parent.standing);
+        let slots = generator.slots(&moment, parent.standing.path);
+        let slots: Vec<_> = slots.into_iter().map(Precise::of).collect();
+        let mut points = BTreeMap::new();
+        for instance in wanted {
+            let element = self.listed[number][instance.position as usize];
+            for point in [element.from, element.to] {
+                let made = points.entry(point);
+                made.or_insert_with(|| precise(precision, &generator.points[point], &slots));
+            }
+        }
+        for moving in &generator.moves {
+            let mut moved = moving.points.iter().filter(|it| points.contains_key(it));
+            if moved.next().is_none() {
+                continue;
+            }
+            let map = moving.map(precision, |of, program| program.evaluate(of, &slots));
+            for point in &*moving.points {
+                if let Some(point) = points.get_mut(point) {
+                    *point = map.image(precision, point);
+                }
+            }
+        }
+        let bits = precision.bits();
+        let child = |instance: &&Instance| {
+            let element = self.listed[number][instance.position as usize];
+            let [from, to] =
+                [element.from, element.to].map(|point| fixed_point(&points[&point], bits));
+            Arc::new(Fixed::between(&from, &to, element.direction))
+        };
+        wanted.iter().map(child).collect()
     }
+}
 
-    /// Evaluates a number in multiples of 2^-`bits`.
-    fn fixed(&mut self, number: &Number, names: Names<'_>) -> IBig {
-        let value = self.number(number, names);
-        value.fixed(self.bits())
-    }
+/// Evaluates the coordinates of a point.
+fn precise(of: &mut Precision, point: &[Program; 2], slots: &[Precise]) -> [Precise; 2] {
+    point.each_ref().map(|number| number.evaluate(of, slots))
+}
 
-    fn point(&mut self, point: &Point, names: Names<'_>) -> Vector {
-        [&point.x, &point.y].map(|number| self.fixed(number, names))
-    }
-
-    /// Returns the cosine and sine of an angle in degrees.
-    fn turn(&mut self, angle: &Number, names: Names<'_>) -> Vector {
-        let angle = self.number(angle, names);
-        let [sine, cosine] = self.precision.sine_cosine(&angle);
-        [cosine, sine].map(|value| value.fixed(self.bits()))
-    }
+/// Returns a point in multiples of 2^-`bits`.
+fn fixed_point(point: &[Precise; 2], bits: usize) -> Vector {
+    point.each_ref().map(|number| number.fixed(bits))
 }

@@ -3,6 +3,7 @@
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
+use crate::expression::{Affine, Precise};
 use crate::geometry::{DAffine2, DVec2, Direction};
 
 /// Point or vector, in integer multiples of a unit that depends on the context.
@@ -27,12 +28,10 @@ impl Fixed {
         }
     }
 
-    /// Returns the rotation by an angle with the given cosine and sine.
-    pub(super) fn rotation([cosine, sine]: Vector, bits: usize) -> Self {
-        Self {
-            axes: [[cosine.clone(), sine.clone()], [-sine, cosine]],
-            ..Self::identity(bits)
-        }
+    /// Returns a map in multiples of 2^-`bits`.
+    pub(super) fn of(map: &Affine<Precise>, bits: usize) -> Self {
+        let Affine { axes, origin } = map.map(|number| number.fixed(bits));
+        Self { axes, origin }
     }
 
     /// Returns the map of an element; see [`Frame2::between`](crate::geometry::Frame2::between).

@@ -10,7 +10,7 @@
 //!
 //! # Numbers
 //!
-//! The maps of a file are evaluated from its expressions as written ([`Precision`](crate::expression)): a
+//! The maps of a model are evaluated from its programs with constants as written: a
 //! third is not the double next to it, and rounded maps would not fit together beyond a magnification of
 //! some 1e15. Decimals are exact, random draws are the doubles that were drawn, and conditions are
 //! evaluated in doubles, as everywhere. Maps of instances are integer multiples of 2⁻⁶⁴ pixels, and
@@ -53,25 +53,11 @@ pub(crate) use nearest::distance;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::document::{Document, Setting};
 use crate::extent::NoLimit;
 use crate::geometry::DVec2;
 use crate::graph::{CompileError, Graph, Object};
 use crate::model::Model;
 use crate::saturating::whole;
-
-/// Model with the file from which its numbers are evaluated.
-#[derive(Clone, Copy)]
-pub struct ZoomSource<'a> {
-    /// File.
-    pub document: &'a Document,
-    /// Settings of the file's parameters.
-    pub settings: &'a [Setting],
-    /// Model to which the file and the settings resolve.
-    pub model: &'a Model,
-    /// Maps of a system that are omitted, by their numbers from 1.
-    pub omitted: &'a [u32],
-}
 
 /// Part of the plane that is drawn.
 #[derive(Clone, Debug)]
@@ -227,19 +213,19 @@ const GRAIN: usize = 64;
 /// Additional bits of constants.
 const SPARE: usize = 128;
 
-/// Computes the part of a graph that shows in a window.
+/// Computes the part of the graph of a model that shows in a window.
 ///
 /// # Errors
 ///
 /// If there is no point to zoom into, if the window contains too much, or if the graph is not resolved
 /// for the required number of steps.
 pub fn zoom(
-    source: &ZoomSource<'_>,
+    model: &Model,
     graph: &Graph,
     growth: &ZoomOptions<'_>,
     window: &ZoomWindow,
 ) -> Result<Zoom, ZoomError> {
-    check(source, graph)?;
+    check(model, graph)?;
     let own = |object: &Object| graph.outline_radius(object) + window.relative_stroke;
     let is_unknown = |reaches: &[f64]| reaches.iter().any(|reach| !reach.is_finite());
     let mut reaches = graph.reaches(own);
@@ -254,7 +240,7 @@ pub fn zoom(
     }
     let lead = (window.factor.log2() + window.scale.log2()).ceil();
     let bits = whole(lead) + GRAIN + SPARE;
-    let mut constants = constants::Constants::new(source, graph, bits)?;
+    let mut constants = constants::Constants::new(model, graph, bits)?;
     let centre = centre::centre(graph, growth, window, &mut constants)?;
     descent::Descent::new(graph, growth, window, &reaches, &mut constants).run(&centre)
 }
@@ -272,8 +258,8 @@ pub fn check_model(model: &Model) -> Result<(), ZoomError> {
 }
 
 /// Checks that a graph may have points to zoom into.
-pub(crate) fn check(source: &ZoomSource<'_>, graph: &Graph) -> Result<(), ZoomError> {
-    check_model(source.model)?;
+pub(crate) fn check(model: &Model, graph: &Graph) -> Result<(), ZoomError> {
+    check_model(model)?;
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);
     }

@@ -4,7 +4,7 @@ use kfrac::geometry::DAffine2;
 use kfrac::grow::Growth;
 use kfrac::zoom::{ZoomOptions as ZoomGrowth, zoom};
 
-use super::{SCALE, Seen, library, source, window};
+use super::{SCALE, Seen, library, window};
 
 /// A point times 2^100.
 type Point = [i128; 2];
@@ -48,7 +48,7 @@ impl Element {
 fn elements_of_step_200_stand_where_whole_numbers_say() {
     const STEPS: u32 = 200;
     let rule = library("dragon");
-    let graph = rule.1.compile(STEPS).unwrap();
+    let graph = rule.compile(STEPS).unwrap();
     let whole = Element {
         from: [0, 0],
         to: [1 << 100, 0],
@@ -73,9 +73,8 @@ fn elements_of_step_200_stand_where_whole_numbers_say() {
         let at = format!("0.({})", ways.join("."));
         // At a zoom of 2^96, elements of step 200 are 32 pixels long.
         let window = window("2^96", &at);
-        let source = source(&rule);
         let growth = ZoomGrowth::default().steps(Some(STEPS));
-        let found = zoom(&source, &graph, &growth, &window).unwrap();
+        let found = zoom(&rule, &graph, &growth, &window).unwrap();
         let seen = Seen::of(&found.graph, &Growth::steps(STEPS), DAffine2::IDENTITY, 0.0);
         let pixel = SCALE * (2.0_f64).powi(-4);
         // The limit point lies within the element; all other positions are relative to it.

@@ -2,7 +2,6 @@
 
 use std::io::Cursor;
 
-use kfrac::document::Document;
 use kfrac::geometry::DVec2;
 use kfrac::grow::Growth;
 use kfrac::model::Model;
@@ -11,9 +10,9 @@ use kfrac::style::{ColorBy, Colour, Style, View, Width};
 use png::Transformations;
 
 use super::seeds::ISLANDS;
-use super::{library, point, read, source};
+use super::{library, point, read};
 
-type Rule = (Document, Model);
+type Rule = Model;
 
 /// Returns options of black lines on white.
 fn options(rule: &Rule) -> Options {
@@ -22,7 +21,7 @@ fn options(rule: &Rule) -> Options {
         color_by: ColorBy::None,
         stroke: Some(Colour::BLACK),
         background: Some(Colour::grey(255)),
-        ..rule.1.metadata().style.clone()
+        ..rule.metadata().style.clone()
     };
     Options::default()
         .format(Format::Png)
@@ -46,15 +45,14 @@ fn values(picture: Vec<u8>) -> Vec<u8> {
 }
 
 fn zoomed(rule: &Rule, options: &Options, factor: &str, at: &str) -> Vec<u8> {
-    let graph = rule.1.compile(64).unwrap();
-    let source = source(rule);
+    let graph = rule.compile(64).unwrap();
     let look = ZoomTarget {
         factor: factor.parse().unwrap(),
         at: at.parse().unwrap(),
     };
     let mut bytes = Vec::new();
     let growth = Growth::steps(1_000_000);
-    render::write_zoomed(&source, &graph, &growth, options, &look, &mut bytes).unwrap();
+    render::write_zoomed(rule, &graph, &growth, options, &look, &mut bytes).unwrap();
     values(bytes)
 }
 
@@ -152,7 +150,7 @@ fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
 #[test]
 fn areas_are_those_of_the_whole() {
     let rule = library("koch-snowflake");
-    let graph = rule.1.compile(64).unwrap();
+    let graph = rule.compile(64).unwrap();
     let p = point(&graph, &[0, 1, 2]);
     let base = options(&rule).style(Style {
         fill: Some(Colour::BLACK),
@@ -206,7 +204,7 @@ fn seeds_are_drawn_as_in_the_whole() {
         (&islands, plain_islands, "4", [0.5127, 0.7321]),
         (&islands, islands_by_step, "2e1", [0.5127, 0.7321]),
     ] {
-        let graph = rule.1.compile(64).unwrap();
+        let graph = rule.compile(64).unwrap();
         let base = options(rule).style(style);
         let side = 2.0 / factor.parse::<f64>().unwrap();
         let mut plain = Vec::new();

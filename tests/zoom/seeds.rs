@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 
-use kfrac::document::Document;
 use kfrac::geometry::{DAffine2, DVec2, Frame2};
 use kfrac::graph::{Graph, Instance, Production, Replacement};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::zoom::{ZoomOptions, zoom};
 
-use super::{SCALE, SHORTEST, SIDE, Seen, assert_same, library, read, source, window, zoomed};
+use super::{SCALE, SHORTEST, SIDE, Seen, assert_same, library, read, window, zoomed};
 
 /// A rule of islands that seed islets in every third step, at random, and of open lines that seed open lines,
 /// some of them backwards.
@@ -111,10 +110,10 @@ fn point(graph: &Graph, way: &[u32]) -> DVec2 {
 
 /// Asserts that a zoom shows the elements of the whole in the same order, with their births, lengths,
 /// directions and joints, and the births of their fractals.
-fn assert_window(rule: &(Document, Model), seed: u64, point: DVec2, at: &str, factor: &str) {
-    let graph = rule.1.compile(64).unwrap();
+fn assert_window(rule: &Model, seed: u64, point: DVec2, at: &str, factor: &str) {
+    let graph = rule.compile(64).unwrap();
     let growth = ZoomOptions::default().seed(seed);
-    let found = zoom(&source(rule), &graph, &growth, &window(factor, at)).unwrap();
+    let found = zoom(rule, &graph, &growth, &window(factor, at)).unwrap();
     let growth = kfrac::grow::Growth::steps(graph.depth().unwrap_or(200)).seed(seed);
     // Large infertile elements may be clipped.
     let own = graph.objects().len();
@@ -192,7 +191,7 @@ fn shallow_zooms_are_windows_of_the_whole() {
         (&vanishing, &[0, 0, 1, 2]),
         (&vanishing, &[0, 0, 0, 1, 0, 1, 1]),
     ] {
-        let graph = rule.1.compile(64).unwrap();
+        let graph = rule.compile(64).unwrap();
         let repeated: Vec<_> = way[1..].iter().map(ToString::to_string).collect();
         let at = format!("{}.({})", way[0], repeated.join("."));
         for factor in ["2e1", "1e6"] {
@@ -202,8 +201,8 @@ fn shallow_zooms_are_windows_of_the_whole() {
 }
 
 /// Asserts the same for windows about ends of elements of seeded fractals, given by coordinates.
-fn assert_windows(rule: &(Document, Model), steps: u32, factors: &[&str]) {
-    let graph = rule.1.compile(64).unwrap();
+fn assert_windows(rule: &Model, steps: u32, factors: &[&str]) {
+    let graph = rule.compile(64).unwrap();
     for seed in 0..3 {
         let growth = kfrac::grow::Growth::steps(steps).seed(seed);
         let grown = Ordered::of(&graph, &growth, DAffine2::IDENTITY, 0.0).all;
@@ -236,13 +235,13 @@ fn what_is_improbable_is_not_looked_for() {
 #[test]
 fn deep_zooms_of_random_rules_agree() {
     let islands = read(ISLANDS);
-    let graph = islands.1.compile(512).unwrap();
+    let graph = islands.compile(512).unwrap();
     // On a coast, on islets of islets, and on lines that are seeded by islets.
     for at in ["0.(0.1)", "0.(0.3)", "0.(0.5.1.2.1.5)", "1.(0.3.0.6)"] {
         for seed in [0, 7] {
             let [near, far] = ["1e40", "5e40"].map(|factor| {
                 let growth = ZoomOptions::default().seed(seed);
-                zoom(&source(&islands), &graph, &growth, &window(factor, at)).unwrap()
+                zoom(&islands, &graph, &growth, &window(factor, at)).unwrap()
             });
             let growth = kfrac::grow::Growth::steps(512).seed(seed);
             let larger = DAffine2::from_scale(DVec2::splat(5.0));
@@ -266,7 +265,7 @@ fn fixed_points_of_seeds_look_the_same_at_any_depth() {
         ("square", library("self-seeding-square"), 5),
         ("adjacent", library("self-seeding-square-adjacent"), 4),
     ] {
-        let graph = rule.1.compile(64).unwrap();
+        let graph = rule.compile(64).unwrap();
         let root = graph.initiator(0).instances[0].object;
         let linear = child(&graph, root, seed).frame.map().matrix2;
         let turn = DAffine2::from_mat2(linear * (1.0 / linear.determinant().abs().sqrt()));
@@ -319,7 +318,7 @@ impl Side {
 fn sides_of_step_70_stand_where_whole_numbers_say() {
     const STEPS: u32 = 70;
     let rule = library("self-seeding-square");
-    let graph = rule.1.compile(STEPS).unwrap();
+    let graph = rule.compile(STEPS).unwrap();
     let whole = 3_i128.pow(STEPS);
     let corners = [[0, 0], [0, whole], [whole, whole], [whole, 0]];
     let square = [0, 1, 2, 3].map(|it| Side {
@@ -364,7 +363,7 @@ fn sides_of_step_70_stand_where_whole_numbers_say() {
         let at = format!("0.({})", ways.join("."));
         let window = window("3^67", &at);
         let growth = ZoomOptions::default().steps(Some(STEPS));
-        let found = zoom(&source(&rule), &graph, &growth, &window).unwrap();
+        let found = zoom(&rule, &graph, &growth, &window).unwrap();
         let growth = kfrac::grow::Growth::steps(STEPS);
         let shown = Ordered::of(&found.graph, &growth, DAffine2::IDENTITY, 0.0).all;
         let shown = oldest(&shown);

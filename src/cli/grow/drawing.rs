@@ -138,8 +138,8 @@ impl<'a> Drawing<'a> {
                 growth.most_elements = most.unwrap_or(growth.most_elements);
                 match &self.shown {
                     Shown::Zoom(target) => {
-                        let source = self.loaded.source();
-                        render::write_zoomed(&source, graph, &growth, &options, target, &mut out)
+                        let model = &self.loaded.model;
+                        render::write_zoomed(model, graph, &growth, &options, target, &mut out)
                     }
                     _ => render::write(graph, &growth, &options, &mut out),
                 }

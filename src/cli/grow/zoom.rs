@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::render::{Empty, Nearest, ZoomTarget};
-use crate::zoom::{Address, Factor, ZoomSource};
+use crate::zoom::{Address, Factor};
 
-use super::super::rule::Loaded;
 use super::super::{Failure, readable};
 
 /// Options of zooms.
@@ -56,18 +55,6 @@ impl ZoomArguments {
         let zoom = self.zoom.as_ref().map(|zoom| ("zoom", zoom.to_string()));
         let at = self.at.as_ref().map(|at| ("at", at.to_string()));
         zoom.into_iter().chain(at)
-    }
-}
-
-impl Loaded {
-    /// Returns the model with its document, which holds the exact numbers.
-    pub(super) fn source(&self) -> ZoomSource<'_> {
-        ZoomSource {
-            document: &self.document,
-            settings: &self.settings,
-            model: &self.model,
-            omitted: &self.omitted,
-        }
     }
 }
 

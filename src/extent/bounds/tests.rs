@@ -50,6 +50,7 @@ impl Maps {
             heading: Metadata::default(),
             contraction: ifs.contraction_within(10_000),
             ifs,
+            written: Vec::new(),
             chained: false,
             interpolates: false,
         }

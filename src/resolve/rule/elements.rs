@@ -1,11 +1,13 @@
 //! Resolution of lists of elements and of the initiator.
 
 use crate::document::{Entry, Listed, Point, RuleDocument};
-use crate::geometry::{DVec2, Direction};
+use crate::expression::Program;
+use crate::geometry::Direction;
 
 use super::OfRule;
+use crate::resolve::numbers::values;
 use crate::resolve::{Resolver, whole_number};
-use crate::rule::{ListedElement, Origin, Part, Placement};
+use crate::rule::{ListedElement, Part, Placement};
 
 /// A point of a list, with its number.
 struct ListedPoint {
@@ -139,7 +141,7 @@ impl Resolver<OfRule> {
         element
     }
 
-    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Origin, Vec<DVec2>, Part) {
+    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<[Program; 2]>, Part) {
         let initiator = &document.initiator;
         let mut written = Vec::new();
         let elements = self.elements(
@@ -149,10 +151,11 @@ impl Resolver<OfRule> {
             &mut written,
             true,
         );
-        let points: Vec<_> = written
-            .iter()
-            .map(|point| self.constant_point(point).unwrap_or(DVec2::NAN))
-            .collect();
+        let unknown = || [Program::unknown(), Program::unknown()];
+        let programs = written.iter();
+        let programs = programs.map(|point| self.point(point).unwrap_or_else(unknown));
+        let programs: Vec<_> = programs.collect();
+        let points = values(&programs);
         for element in &elements {
             if points[element.from] == points[element.to] {
                 let place = &written[element.to].place.clone();
@@ -168,10 +171,6 @@ impl Resolver<OfRule> {
             elements,
             meets_frame: [false; 2],
         };
-        let origin = Origin {
-            name: initiator.place.clone(),
-            points: written,
-        };
-        (origin, points, part)
+        (programs, part)
     }
 }
