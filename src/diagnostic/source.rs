@@ -223,6 +223,12 @@ impl Place {
         let offset = |byte: usize| self.start.saturating_add(byte).min(self.end);
         Self::new(&self.source, offset(range.start)..offset(range.end))
     }
+
+    /// Returns the first line of the span, which identifies a mapping that lacks a key.
+    pub(crate) fn first_line(&self) -> Self {
+        let end = self.text().find(['\n', '\r']);
+        self.within(0..end.unwrap_or(usize::MAX))
+    }
 }
 
 impl PartialEq for Place {

@@ -26,7 +26,7 @@ pub(super) use metadata::{DESCRIPTION, check_description};
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 
-use crate::diagnostic::{Diagnostics, Place};
+use crate::diagnostic::Diagnostics;
 use crate::kind::Kind;
 
 use super::KindDocument;
@@ -67,10 +67,4 @@ fn read_kind(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Op
         }
         Kind::LSystem => lsystem::read_lsystem(reader, node, complete).map(KindDocument::LSystem),
     }
-}
-
-/// Returns the first line of a place, which identifies the mapping that lacks a key.
-fn first_line(place: &Place) -> Place {
-    let end = place.text().find(['\n', '\r']);
-    place.within(0..end.unwrap_or(usize::MAX))
 }

@@ -109,13 +109,40 @@ pub(super) const fn key(name: &'static str, holds: Form, about: &'static str) ->
     }
 }
 
-/// Defines a required key.
-pub(super) const fn needed_key(name: &'static str, holds: Form, about: &'static str) -> Member {
-    Member {
-        needed: Needed::Always,
-        ..key(name, holds, about)
-    }
+/// Defines an alternative set of keys.
+pub(super) const fn way(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
+    Way { needs, excludes }
 }
+
+/// Makes the definitions of keys from a table of their names, types and descriptions. A key may be
+/// `needed`, or needed `alone`, without a parent; `=MEMBER` stands for a definition that several tables
+/// share.
+macro_rules! keys {
+    (@ [$($made:expr,)*]) => { [$($made),*] };
+    (@ [$($made:expr,)*] =$member:ident; $($rest:tt)*) => {
+        keys!(@ [$($made,)* $member,] $($rest)*)
+    };
+    (@ [$($made:expr,)*] needed $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
+        keys!(@ [$($made,)* keys!(# Always, $name, $form, $about),] $($rest)*)
+    };
+    (@ [$($made:expr,)*] alone $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
+        keys!(@ [$($made,)* keys!(# Alone, $name, $form, $about),] $($rest)*)
+    };
+    (@ [$($made:expr,)*] $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
+        keys!(@ [$($made,)* keys!(# Never, $name, $form, $about),] $($rest)*)
+    };
+    (# $needed:ident, $name:ident, $form:expr, $about:expr) => {
+        $crate::document::shape::Member {
+            name: stringify!($name),
+            holds: $form,
+            about: $about,
+            needed: $crate::document::shape::Needed::$needed,
+        }
+    };
+    ($($table:tt)*) => { keys!(@ [] $($table)*) };
+}
+
+pub(super) use keys;
 
 impl Shape {
     /// Iterates over the definitions of all keys.

@@ -6,61 +6,26 @@ use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, View, Width};
 
 use super::node::{Node, Value};
 use super::reader::Reader;
-use super::shape::{Choice, Form, Shape, key, needed_key};
+use super::shape::{Choice, Form, Shape, keys};
 
 pub(super) const STYLE: Shape = Shape {
     what: "a style",
-    keys: &[&[
-        key(
-            "stroke",
-            Form::Colour,
-            "The colour of lines, as CSS writes it, or `none`; black if left out.",
-        ),
-        key(
-            "fill",
-            Form::Colour,
-            "The colour of areas, as CSS writes it; `none` if left out.",
-        ),
-        key(
-            "background",
-            Form::Colour,
-            "The colour behind everything, as CSS writes it; `none` if left out.",
-        ),
-        key(
-            "width",
-            Form::Either(&[Form::Positive, Form::Mapping(&WIDTH)]),
-            "The width of lines in pixels, 1.5 if left out; or `{relative: 0.1}`, times the \
-             element's length.",
-        ),
-        key(
-            "cap",
-            Form::variant::<Cap>(),
-            "The ends of lines: a half disk, cut off at the end point, or half a width longer.",
-        ),
-        key(
-            "join",
-            Form::variant::<Join>(),
-            "The corners of lines: a disk, cut off, or pointed.",
-        ),
-        key(
-            "color_by",
-            Form::variant::<ColorBy>(),
+    keys: &[&keys![
+        stroke: Form::Colour, "The colour of lines, as CSS writes it, or `none`; black if left out.";
+        fill: Form::Colour, "The colour of areas, as CSS writes it; `none` if left out.";
+        background: Form::Colour, "The colour behind everything, as CSS writes it; `none` if left out.";
+        width: Form::Either(&[Form::Positive, Form::Mapping(&WIDTH)]),
+            "The width of lines in pixels, 1.5 if left out; or `{relative: 0.1}`, times the element's \
+             length.";
+        cap: Form::variant::<Cap>(),
+            "The ends of lines: a half disk, cut off at the end point, or half a width longer.";
+        join: Form::variant::<Join>(), "The corners of lines: a disk, cut off, or pointed.";
+        color_by: Form::variant::<ColorBy>(),
             "What the colours of the palette tell: the step of an element's birth, the age or the \
              number of its fractal, its rank in it, the generator that it comes from, or its \
-             direction.",
-        ),
-        key(
-            "palette",
-            Form::Either(&[
-                Form::Choice(|| Choice {
-                    names: Palette::names().collect(),
-                    default: Palette::default().name().into(),
-                }),
-                Form::List(&Form::Colour, 1, None),
-            ]),
-            "The colours for `color_by`: a palette's name, or a list of colours that are mixed \
-             evenly.",
-        ),
+             direction.";
+        palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),
+            "The colours for `color_by`: a palette's name, or a list of colours that are mixed evenly.";
     ]],
     ways: &[],
     hint: "style: {stroke: black, width: 1.5}",
@@ -68,29 +33,20 @@ pub(super) const STYLE: Shape = Shape {
 
 const WIDTH: Shape = Shape {
     what: "a width",
-    keys: &[&[needed_key(
-        "relative",
-        Form::Positive,
-        "The width as a multiple of the element's length.",
-    )]],
+    keys: &[&keys![
+        needed relative: Form::Positive, "The width as a multiple of the element's length.";
+    ]],
     ways: &[],
     hint: "width: 1.5 in pixels, or width: {relative: 0.1} of the element's length",
 };
 
 pub(super) const VIEW: Shape = Shape {
     what: "a view",
-    keys: &[&[
-        key(
-            "window",
-            Form::List(&Form::Number, 4, Some(4)),
+    keys: &[&keys![
+        window: Form::List(&Form::Number, 4, Some(4)),
             "[x, y, width, height] in the rule's units, from the lower left corner; everything, if \
-             left out.",
-        ),
-        key(
-            "margin",
-            Form::Positive,
-            "Pixels that are left free around the picture; 0 if left out.",
-        ),
+             left out.";
+        margin: Form::Positive, "Pixels that are left free around the picture; 0 if left out.";
     ]],
     ways: &[],
     hint: "view: {window: [x, y, width, height], margin: 10}",

@@ -225,13 +225,6 @@ impl LSystem {
             .all(|production| !production.has_context())
     }
 
-    /// Returns whether a symbol with arguments has productions.
-    #[must_use]
-    pub fn is_parametric(&self) -> bool {
-        let mut symbols = self.symbols.iter();
-        symbols.any(|symbol| symbol.arity > 0 && !symbol.productions.is_empty())
-    }
-
     /// Returns whether the drawing of a word depends on more of the turtle's state than its frame: on the
     /// second heading, or on the mirrored flag where [`Action::Rotate`] ignores it.
     pub(crate) fn depends_on_the_way(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Resolution of iterated function systems.
 
-use crate::diagnostic::{Diagnostic, Place, did_you_mean};
+use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
 use crate::expression::{Affine, Program, Symbols};
 use crate::ifs::{
@@ -90,7 +90,7 @@ impl Resolver<OfIfs> {
             let hint = format!(
                 "of all sets and maps inside all maps there are no more than {MOST_INSTANCES}"
             );
-            self.error_with_hint(&first_line(&document.heading.place), message, hint);
+            self.error_with_hint(&document.heading.place.first_line(), message, hint);
             return None;
         }
         let contraction = ifs.contraction();
@@ -205,7 +205,7 @@ impl Resolver<OfIfs> {
         };
         let place = match *error {
             IfsError::MapNotFinite { map } | IfsError::WeightMissing { map } => {
-                listed(document, map).map(|map| first_line(&map.place))
+                listed(document, map).map(|map| map.place.first_line())
             }
             IfsError::Weight { .. } => weight.map(|weight| weight.place.clone()),
             IfsError::EdgeTwice { edge: number, .. } | IfsError::NoSuchMap { edge: number, .. } => {
@@ -220,7 +220,7 @@ impl Resolver<OfIfs> {
             IfsError::InitialNotFinite => document.initial.as_ref().map(|set| set.place.clone()),
             IfsError::NoMaps => None,
         };
-        let place = place.unwrap_or_else(|| first_line(&document.heading.place));
+        let place = place.unwrap_or_else(|| document.heading.place.first_line());
         self.error(&place, error.to_string());
     }
 
@@ -235,7 +235,7 @@ impl Resolver<OfIfs> {
         let place = first
             .and_then(|map| listed(document, map))
             .map_or(&document.heading.place, |map| &map.place);
-        let place = first_line(place);
+        let place = place.first_line();
         match contraction.verdict {
             Verdict::Contracts => Some(()),
             Verdict::Diverges => {
@@ -276,10 +276,4 @@ fn listed(document: &IfsDocument, map: usize) -> Option<&MapDocument> {
         Some(MapsDocument::Listed(maps)) => maps.get(map),
         _ => None,
     }
-}
-
-/// Returns the first line of a place.
-fn first_line(place: &Place) -> Place {
-    let end = place.text().find(['\n', '\r']);
-    place.within(0..end.unwrap_or(usize::MAX))
 }

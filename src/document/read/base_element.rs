@@ -4,38 +4,19 @@ use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{BaseElementDocument, PieceDocument};
-use crate::document::shape::{Form, Shape, Way, key, needed_key};
-
-use super::first_line;
+use crate::document::shape::{Form, Shape, Way, keys, way};
 
 pub(in crate::document) const BASE_ELEMENT: Shape = Shape {
     what: "a base element",
-    keys: &[&[
-        needed_key(
-            "points",
-            Form::List(
-                &Form::Either(&[Form::Point, Form::Mapping(&PIECE)]),
-                2,
-                None,
-            ),
-            "The outline: a point, then points and round pieces. The first and the last point \
-             differ.",
-        ),
-        key(
-            "closed",
-            Form::Flag(false),
-            "Whether the last point is joined to the first: a polygon, which is filled.",
-        ),
-        key(
-            "from",
-            Form::Point,
-            "The point of the outline's plane that lies on the element's start; [0, 0] if left out.",
-        ),
-        key(
-            "to",
-            Form::Point,
-            "The point of the outline's plane that lies on the element's end; [1, 0] if left out.",
-        ),
+    keys: &[&keys![
+        needed points: Form::List(&Form::Either(&[Form::Point, Form::Mapping(&PIECE)]), 2, None),
+            "The outline: a point, then points and round pieces. The first and the last point differ.";
+        closed: Form::Flag(false),
+            "Whether the last point is joined to the first: a polygon, which is filled.";
+        from: Form::Point,
+            "The point of the outline's plane that lies on the element's start; [0, 0] if left out.";
+        to: Form::Point,
+            "The point of the outline's plane that lies on the element's end; [1, 0] if left out.";
     ]],
     ways: &[],
     hint: "a name from the library (base_element: triangle), or \
@@ -49,34 +30,24 @@ pub(super) const BASE_ELEMENT_OF: Form = Form::Either(&[
 
 const PIECE: Shape = Shape {
     what: "a piece of a base element",
-    keys: &[&[
-        key(
-            "arc",
-            Form::Point,
-            "A circular arc to this point, through another.",
-        ),
-        key("through", Form::Point, "A point on the arc."),
-        key("curve", Form::Point, "A Bézier curve to this point."),
-        key(
-            "control",
-            Form::List(&Form::Point, 1, Some(2)),
-            "The control points of the curve: one of a quadratic curve, two of a cubic one.",
-        ),
+    keys: &[&keys![
+        arc: Form::Point, "A circular arc to this point, through another.";
+        through: Form::Point, "A point on the arc.";
+        curve: Form::Point, "A Bézier curve to this point.";
+        control: Form::List(&Form::Point, 1, Some(2)),
+            "The control points of the curve: one of a quadratic curve, two of a cubic one.";
     ]],
-    ways: &[ARC, CURVE],
+    ways: &keys![
+        =ARC;
+        =CURVE;
+    ],
     hint: "a piece is a point, {arc: [x, y], through: [x, y]} or \
            {curve: [x, y], control: [[x, y]]}",
 };
 
-const ARC: Way = Way {
-    needs: &["arc", "through"],
-    excludes: &["curve", "control"],
-};
+const ARC: Way = way(&["arc", "through"], &["curve", "control"]);
 
-const CURVE: Way = Way {
-    needs: &["curve", "control"],
-    excludes: &["arc", "through"],
-};
+const CURVE: Way = way(&["curve", "control"], &["arc", "through"]);
 
 pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<BaseElementDocument> {
     if reader.is_component(node) {
@@ -95,7 +66,7 @@ pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<Base
         }
         None => {
             let message = "a base element needs `points`";
-            reader.error_with_hint(&first_line(&node.place), message, BASE_ELEMENT.hint);
+            reader.error_with_hint(&node.place.first_line(), message, BASE_ELEMENT.hint);
         }
     }
     Some(BaseElementDocument {
@@ -117,7 +88,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         let to = reader.point(to);
         let Some(through) = reader.optional_point(fields.take("through")) else {
             let message = "an arc needs a point that it goes through";
-            reader.error_with_hint(&first_line(&node.place), message, PIECE.hint);
+            reader.error_with_hint(&node.place.first_line(), message, PIECE.hint);
             return None;
         };
         Some(PieceDocument::Arc { to, through })
@@ -130,7 +101,9 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         });
         let is_list = control.is_none_or(|node| matches!(node.value, Value::Sequence(_)));
         if is_list && !(1..=2).contains(&points.len()) {
-            let place = first_line(control.map_or(&node.place, |control| &control.place));
+            let place = control
+                .map_or(&node.place, |control| &control.place)
+                .first_line();
             let message = "a curve has one control point or two";
             reader.error_with_hint(&place, message, PIECE.hint);
         }
@@ -138,7 +111,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         Some(PieceDocument::Curve { to, control })
     } else {
         let message = "this piece does not say where it ends";
-        reader.error_with_hint(&first_line(&node.place), message, PIECE.hint);
+        reader.error_with_hint(&node.place.first_line(), message, PIECE.hint);
         None
     }
 }

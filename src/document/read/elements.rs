@@ -4,53 +4,27 @@ use crate::document::Point;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{Entry, InitiatorDocument, Listed};
-use crate::document::shape::{Form, Shape, key, needed_key};
+use crate::document::shape::{Form, Shape, keys};
 
 use super::base_element::{BASE_ELEMENT_OF, read_base_element};
-use super::first_line;
 
 const ELEMENT: Shape = Shape {
     what: "an element",
-    keys: &[&[
-        key(
-            "from",
-            Form::Point,
-            "Where the element runs from; where the one before it ends, if left out.",
-        ),
-        needed_key("to", Form::Point, "Where the element runs to."),
-        key(
-            "direction",
-            Form::Whole(1, Some(4)),
-            "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected \
-             (its sides swapped), 3 x reflected (its ends swapped), 4 both.",
-        ),
-        key(
-            "fertile",
-            Form::Flag(true),
-            "Whether the element is replaced; if not, it stays as it is for ever.",
-        ),
-        key(
-            "visible",
-            Form::Flag(true),
-            "Whether the element is drawn. It counts, and is replaced if it is fertile, all the \
-             same.",
-        ),
-        key(
-            "connected",
-            Form::Flag(true),
-            "Whether the element may join the one before it.",
-        ),
-        key(
-            "use",
-            Form::Text,
-            "The generator that replaces this element, whatever `select` says.",
-        ),
-        key(
-            "base_element",
-            BASE_ELEMENT_OF,
-            "What this element looks like, if not like the others: a name from the library, or a \
-             shape of its own.",
-        ),
+    keys: &[&keys![
+        from: Form::Point, "Where the element runs from; where the one before it ends, if left out.";
+        needed to: Form::Point, "Where the element runs to.";
+        direction: Form::Whole(1, Some(4)),
+            "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
+             sides swapped), 3 x reflected (its ends swapped), 4 both.";
+        fertile: Form::Flag(true),
+            "Whether the element is replaced; if not, it stays as it is for ever.";
+        visible: Form::Flag(true),
+            "Whether the element is drawn. It counts, and is replaced if it is fertile, all the same.";
+        connected: Form::Flag(true), "Whether the element may join the one before it.";
+        use: Form::Text, "The generator that replaces this element, whatever `select` says.";
+        base_element: BASE_ELEMENT_OF,
+            "What this element looks like, if not like the others: a name from the library, or a shape \
+             of its own.";
     ]],
     ways: &[],
     hint: "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]",
@@ -69,18 +43,11 @@ pub(super) const ABOUT_ELEMENTS: &str = "A list of points and elements: a chain 
 
 pub(in crate::document) const INITIATOR: Shape = Shape {
     what: "an initiator",
-    keys: &[&[
-        needed_key("elements", ELEMENTS, ABOUT_ELEMENTS),
-        key(
-            "closed",
-            Form::Flag(false),
-            "Whether one more element runs from the last point back to the first.",
-        ),
-        key(
-            "connected",
-            Form::Flag(true),
-            "Whether elements join each other at all.",
-        ),
+    keys: &[&keys![
+        needed elements: ELEMENTS, ABOUT_ELEMENTS;
+        closed: Form::Flag(false),
+            "Whether one more element runs from the last point back to the first.";
+        connected: Form::Flag(true), "Whether elements join each other at all.";
     ]],
     ways: &[],
     hint: "a name from the library (initiator: segment), a list of points, or \
@@ -113,7 +80,7 @@ pub(super) fn required_entries(reader: &mut Reader, fields: &Fields<'_>, what: &
         return read_entries(reader, node);
     }
     reader.error_with_hint(
-        &first_line(fields.place),
+        &fields.place.first_line(),
         format!("{what} needs `elements`"),
         "elements: [[0, 0], [1, 0]]",
     );
@@ -129,7 +96,7 @@ pub(super) fn read_entries(reader: &mut Reader, node: &Node) -> Vec<Entry> {
             reader.error_with_hint(&node.place, "there is no element in this list", LIST);
         }
         (_, [Entry::Element(first), ..]) if first.from.is_none() => reader.error_with_hint(
-            &first_line(&first.place),
+            &first.place.first_line(),
             "the first element does not say where it runs from",
             "begin the list with a point, - [0, 0], or give the element `from`",
         ),
@@ -152,7 +119,7 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
     };
     let to = reader.optional_point(fields.take("to")).unwrap_or_else(|| {
         let message = "this element does not say where it runs to";
-        reader.error_with_hint(&first_line(&node.place), message, ELEMENT.hint);
+        reader.error_with_hint(&node.place.first_line(), message, ELEMENT.hint);
         Point::unknown(&node.place)
     });
     Entry::Element(Box::new(Listed {

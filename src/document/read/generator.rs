@@ -4,55 +4,31 @@ use crate::catalogue::Shelf;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{GeneratorDocument, MoveDocument, PartDocument, WhichPoints};
-use crate::document::shape::{Form, Shape, Way, key, needed_key};
+use crate::document::shape::{Form, Shape, keys, way};
 use crate::document::{Number, Written};
 use crate::rule::Placement;
 
 use super::elements::{ABOUT_ELEMENTS, ELEMENTS, read_entries, required_entries};
-use super::first_line;
 use super::parameters::written;
 use super::set::pair;
 
 pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",
-    keys: &[&[
-        key("elements", ELEMENTS, ABOUT_ELEMENTS),
-        key(
-            "parts",
-            Form::List(&Form::Mapping(&PART), 1, None),
+    keys: &[&keys![
+        elements: ELEMENTS, ABOUT_ELEMENTS;
+        parts: Form::List(&Form::Mapping(&PART), 1, None),
             "Several lists, in place of `elements`: parts that take the element's place, and parts \
-             that seed.",
-        ),
-        key(
-            "random",
-            Form::Names(&Form::Expression, 0),
+             that seed.";
+        random: Form::Names(&Form::Expression, 0),
             "Variables that are drawn anew for every element that is replaced: `uniform(a, b)`, \
-             `normal(mean, deviation)` or `choice(a, b, ...)`.",
-        ),
-        key(
-            "move",
-            Form::Either(&[
-                Form::Mapping(&MOVE),
-                Form::List(&Form::Mapping(&MOVE), 0, None),
-            ]),
-            "Moves points of the generator: one move, or a list of moves that act one after the \
-             other.",
-        ),
-        key(
-            "connected",
-            Form::Flag(true),
-            "Whether elements join each other at all; beside `elements` only.",
-        ),
+             `normal(mean, deviation)` or `choice(a, b, ...)`.";
+        move: Form::Either(&[Form::Mapping(&MOVE), Form::List(&Form::Mapping(&MOVE), 0, None)]),
+            "Moves points of the generator: one move, or a list of moves that act one after the other.";
+        connected: Form::Flag(true), "Whether elements join each other at all; beside `elements` only.";
     ]],
     ways: &[
-        Way {
-            needs: &["elements"],
-            excludes: &["parts"],
-        },
-        Way {
-            needs: &["parts"],
-            excludes: &["elements", "connected"],
-        },
+        way(&["elements"], &["parts"]),
+        way(&["parts"], &["elements", "connected"]),
     ],
     hint: "a name from the library (generator: koch), a list of points, or {elements: [...]} or \
            {parts: [...]}",
@@ -60,30 +36,17 @@ pub(in crate::document) const GENERATOR: Shape = Shape {
 
 const PART: Shape = Shape {
     what: "a part",
-    keys: &[&[
-        key(
-            "seeds",
-            Form::Flag(false),
-            "Whether the part starts a new fractal of age 0, instead of taking the element's place.",
-        ),
-        key(
-            "placed",
-            Form::Words(&[AS_INITIATOR, IN_ELEMENT]),
-            "`initiator`: a seed as large and as upright as the initiator, where the element \
-             starts. `element`, or left out: in the element's own frame.",
-        ),
-        key(
-            "closed",
-            Form::Flag(false),
+    keys: &[&keys![
+        seeds: Form::Flag(false),
+            "Whether the part starts a new fractal of age 0, instead of taking the element's place.";
+        placed: Form::Words(&[AS_INITIATOR, IN_ELEMENT]),
+            "`initiator`: a seed as large and as upright as the initiator, where the element starts. \
+             `element`, or left out: in the element's own frame.";
+        closed: Form::Flag(false),
             "Whether one more element runs from the last point back to the first; for a part that \
-             seeds.",
-        ),
-        key(
-            "connected",
-            Form::Flag(true),
-            "Whether elements join each other at all.",
-        ),
-        needed_key("elements", ELEMENTS, ABOUT_ELEMENTS),
+             seeds.";
+        connected: Form::Flag(true), "Whether elements join each other at all.";
+        needed elements: ELEMENTS, ABOUT_ELEMENTS;
     ]],
     ways: &[],
     hint: "- {seeds: true, elements: [...]}",
@@ -91,32 +54,14 @@ const PART: Shape = Shape {
 
 const MOVE: Shape = Shape {
     what: "a move",
-    keys: &[&[
-        key(
-            "rotate",
-            Form::Number,
-            "An angle in degrees, counter-clockwise.",
-        ),
-        key(
-            "scale",
-            Form::Either(&[Form::Number, Form::Point]),
-            "A factor, or one along x and one along y.",
-        ),
-        key("shift", Form::Point, "What is added last: [x, y]."),
-        key(
-            "about",
-            Form::Point,
-            "The centre of scaling and turning; [0, 0] if left out.",
-        ),
-        key(
-            "points",
-            Form::Either(&[
-                Form::Words(&[ALL]),
-                Form::List(&Form::Whole(0, None), 0, None),
-            ]),
+    keys: &[&keys![
+        rotate: Form::Number, "An angle in degrees, counter-clockwise.";
+        scale: Form::Either(&[Form::Number, Form::Point]), "A factor, or one along x and one along y.";
+        shift: Form::Point, "What is added last: [x, y].";
+        about: Form::Point, "The centre of scaling and turning; [0, 0] if left out.";
+        points: Form::Either(&[Form::Words(&[ALL]), Form::List(&Form::Whole(0, None), 0, None)]),
             "The points that move: `all`, or their numbers from 0 in the order in which they are \
-             written; all but the two ends, if left out.",
-        ),
+             written; all but the two ends, if left out.";
     ]],
     ways: &[],
     hint: "move: {rotate: tilt, about: [1/2, 1]}",
@@ -153,7 +98,7 @@ pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<N
             reader.names_are_missing = true;
         }
         (None, None) => reader.error_with_hint(
-            &first_line(fields.place),
+            &fields.place.first_line(),
             "the rule has no generator",
             "generator: [[0, 0], [1/3, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]",
         ),
@@ -269,8 +214,8 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
                 "{seeds: true, placed: initiator, elements: [...]}",
             ),
             _ => reader.error_with_hint(
-                &first_line(&placed.place),
-                format!("'{}' is no placement", first_line(&placed.place).text()),
+                &placed.place.first_line(),
+                format!("'{}' is no placement", placed.place.first_line().text()),
                 "placed: initiator, or nothing for the element's own frame",
             ),
         }

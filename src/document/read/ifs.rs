@@ -9,10 +9,9 @@ use crate::document::ifs::{
 };
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
+use crate::document::shape::{Form, Member, Shape, Way, keys, way};
 use crate::kind::Kind;
 
-use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, pair, read_set};
@@ -22,90 +21,44 @@ pub(in crate::document) const IFS: Shape = Shape {
     what: "an iterated function system",
     keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
     ways: &[
-        Way {
-            needs: &["maps"],
-            excludes: &["vertices", "interpolate"],
-        },
-        Way {
-            needs: &["vertices"],
-            excludes: &["maps", "interpolate"],
-        },
-        Way {
-            needs: &["interpolate"],
-            excludes: &["maps", "vertices"],
-        },
+        way(&["maps"], &["vertices", "interpolate"]),
+        way(&["vertices"], &["maps", "interpolate"]),
+        way(&["interpolate"], &["maps", "vertices"]),
     ],
     hint: "a system is a mapping of keys: `kfrac cat gasket` shows a short one",
 };
 
 /// Keys that only an iterated function system has.
-const IFS_ALONE: [Member; 9] = [
-    needed_key(
-        "kind",
-        Form::Words(&[Kind::Ifs.name()]),
-        "The kind of file.",
-    ),
-    key(
-        "extends",
-        Form::File(Shelf::IFS),
+const IFS_ALONE: [Member; 9] = keys![
+    needed kind: Form::Words(&[Kind::Ifs.name()]), "The kind of file.";
+    extends: Form::File(Shelf::IFS),
         "Another system to start from, by name or by file. The keys written here replace its keys; \
-         `params`, `style` and `view` merge entry by entry.",
-    ),
-    PARAMS,
-    key(
-        "maps",
-        Form::Either(&[
-            Form::List(&Form::Mapping(&MAP), 1, None),
-            Form::Names(&Form::Mapping(&MAP), 1),
-        ]),
-        "The maps: a list of them, or a mapping of names to maps.",
-    ),
-    key(
-        "vertices",
-        Form::Mapping(&VERTICES),
-        "In place of `maps`: one map towards each of some points.",
-    ),
-    key(
-        "interpolate",
-        Form::Mapping(&INTERPOLATION),
-        "In place of `maps`: those of a curve through points that looks the same in every part.",
-    ),
-    key(
-        "condensation",
-        Form::List(&Form::Mapping(&CONDENSATION), 1, None),
-        "Sets that are drawn at every level: a stem, a trunk.",
-    ),
-    key(
-        "initial",
-        Form::Mapping(&SET),
-        "What approximant 0 draws: the condensation sets if left out, or else the box of the \
-         limit set.",
-    ),
-    key(
-        "edges",
-        Form::Names(
-            &Form::Either(&[
-                Form::List(&Form::Text, 1, None),
-                Form::Names(&Form::Positive, 1),
-            ]),
-            1,
-        ),
-        "Which map may be applied after which: for every map a list of the maps that may follow it, \
-         by number from 1 or by name, or a mapping of these to weights. Any may follow any if left \
-         out.",
-    ),
+         `params`, `style` and `view` merge entry by entry.";
+    =PARAMS;
+    maps: Form::Either(&[Form::List(&Form::Mapping(&MAP), 1, None), Form::Names(&Form::Mapping(&MAP), 1)]),
+        "The maps: a list of them, or a mapping of names to maps.";
+    vertices: Form::Mapping(&VERTICES), "In place of `maps`: one map towards each of some points.";
+    interpolate: Form::Mapping(&INTERPOLATION),
+        "In place of `maps`: those of a curve through points that looks the same in every part.";
+    condensation: Form::List(&Form::Mapping(&CONDENSATION), 1, None),
+        "Sets that are drawn at every level: a stem, a trunk.";
+    initial: Form::Mapping(&SET),
+        "What approximant 0 draws: the condensation sets if left out, or else the box of the limit \
+         set.";
+    edges: Form::Names(&Form::Either(&[Form::List(&Form::Text, 1, None), Form::Names(&Form::Positive, 1)]), 1),
+        "Which map may be applied after which: for every map a list of the maps that may follow it, by \
+         number from 1 or by name, or a mapping of these to weights. Any may follow any if left out.";
 ];
 
 const MAP: Shape = Shape {
     what: "a map",
     keys: &[
         &PLACING,
-        &[key(
-            "weight",
-            Form::Positive,
-            "How often random iteration picks the map, relative to the others: above 0, for all maps \
-             or for none.",
-        )],
+        &keys![
+            weight: Form::Positive,
+                "How often random iteration picks the map, relative to the others: above 0, for all \
+                 maps or for none.";
+        ],
     ],
     ways: &WAYS_TO_PLACE,
     hint: MAP_HINT,
@@ -126,73 +79,32 @@ const MAP_HINT: &str =
 const COMPLEX: Form = Form::Either(&[Form::Point, Form::Expression]);
 
 /// Keys that define a map.
-const PLACING: [Member; 7] = [
-    key(
-        "matrix",
-        Form::List(&Form::Point, 2, Some(2)),
-        "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].",
-    ),
-    key(
-        "scale",
-        Form::Either(&[Form::Number, Form::Point]),
-        "A factor, or one along x and one along y.",
-    ),
-    key(
-        "rotate",
-        Form::Either(&[Form::Number, Form::Point]),
-        "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.",
-    ),
-    key(
-        "times",
-        COMPLEX,
-        "A complex factor s, as [real part, imaginary part] or the name of a complex parameter: z goes to \
-         s z.",
-    ),
-    key(
-        "conjugate",
-        Form::Flag(false),
-        "With `times`: z goes to s conj z.",
-    ),
-    key(
-        "shift",
-        COMPLEX,
-        "What is added last: [x, y], or the name of a complex parameter.",
-    ),
-    key(
-        "fixed",
-        COMPLEX,
-        "In place of `shift`: the point that stays where it is.",
-    ),
+const PLACING: [Member; 7] = keys![
+    matrix: Form::List(&Form::Point, 2, Some(2)),
+        "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].";
+    scale: Form::Either(&[Form::Number, Form::Point]), "A factor, or one along x and one along y.";
+    rotate: Form::Either(&[Form::Number, Form::Point]),
+        "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.";
+    times: COMPLEX,
+        "A complex factor s, as [real part, imaginary part] or the name of a complex parameter: z goes \
+         to s z.";
+    conjugate: Form::Flag(false), "With `times`: z goes to s conj z.";
+    shift: COMPLEX, "What is added last: [x, y], or the name of a complex parameter.";
+    fixed: COMPLEX, "In place of `shift`: the point that stays where it is.";
 ];
 
 const WAYS_TO_PLACE: [Way; 3] = [
-    Way {
-        needs: &["matrix"],
-        excludes: &["scale", "rotate", "times", "conjugate"],
-    },
-    Way {
-        needs: &["scale"],
-        excludes: &["matrix", "times", "conjugate"],
-    },
-    Way {
-        needs: &["times"],
-        excludes: &["matrix", "scale", "rotate"],
-    },
+    way(&["matrix"], &["scale", "rotate", "times", "conjugate"]),
+    way(&["scale"], &["matrix", "times", "conjugate"]),
+    way(&["times"], &["matrix", "scale", "rotate"]),
 ];
 
 const VERTICES: Shape = Shape {
     what: "vertices",
-    keys: &[&[
-        needed_key(
-            "points",
-            Form::List(&Form::Point, 1, None),
-            "The vertices: a map towards each.",
-        ),
-        needed_key(
-            "shrink",
-            Form::Number,
-            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it.",
-        ),
+    keys: &[&keys![
+        needed points: Form::List(&Form::Point, 1, None), "The vertices: a map towards each.";
+        needed shrink: Form::Number,
+            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it.";
     ]],
     ways: &[],
     hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
@@ -200,35 +112,20 @@ const VERTICES: Shape = Shape {
 
 const INTERPOLATION: Shape = Shape {
     what: "an interpolation",
-    keys: &[&[
-        needed_key(
-            "points",
-            // A name of a file; `Text` would admit only text that is not a number.
+    keys: &[&keys![
+        needed points: // A name of a file; `Text` would admit only text that is not a number.
             Form::Either(&[Form::List(&Form::Point, 3, None), Form::Expression]),
-            "The points that the curve runs through, from left to right; or the name of a file \
-             beside this one with a column of x and one of y.",
-        ),
-        key(
-            "scale",
-            Form::Either(&[Form::Number, Form::List(&Form::Number, 1, None)]),
-            "By how much heights shrink from the whole to its pieces, between -1 and 1: one factor, \
-             or one for each piece.",
-        ),
-        key(
-            "dimension",
-            Form::Number,
-            "In place of `scale`: the dimension of the curve, from 1 to less than 2.",
-        ),
+            "The points that the curve runs through, from left to right; or the name of a file beside \
+             this one with a column of x and one of y.";
+        scale: Form::Either(&[Form::Number, Form::List(&Form::Number, 1, None)]),
+            "By how much heights shrink from the whole to its pieces, between -1 and 1: one factor, or \
+             one for each piece.";
+        dimension: Form::Number,
+            "In place of `scale`: the dimension of the curve, from 1 to less than 2.";
     ]],
     ways: &[
-        Way {
-            needs: &["scale"],
-            excludes: &["dimension"],
-        },
-        Way {
-            needs: &["dimension"],
-            excludes: &["scale"],
-        },
+        way(&["scale"], &["dimension"]),
+        way(&["dimension"], &["scale"]),
     ],
     hint: "interpolate: {points: [[0, 0], [1, 1], [2, 0]], scale: 0.3}",
 };
@@ -266,7 +163,7 @@ pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Opti
         initial,
         edges: fields
             .take("edges")
-            .and_then(|node| Some((read_edges(reader, node)?, first_line(&node.place)))),
+            .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
     };
     ifs.heading.complete = complete && !reader.names_are_missing;
     Some(ifs)
@@ -278,7 +175,7 @@ fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
     let Some(way) = there.next() else {
         let message = "the system has no maps";
         let hint = "write `maps`, `vertices` or `interpolate`";
-        reader.error_with_hint(&first_line(fields.place), message, hint);
+        reader.error_with_hint(&fields.place.first_line(), message, hint);
         return None;
     };
     for other in there {
@@ -368,7 +265,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
             Some(_) => "this map turns, but does not say by how much it shrinks",
             None => "this map does not say what it does",
         };
-        reader.error_with_hint(&first_line(fields.place), message, MAP_HINT);
+        reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
         return None;
     };
     for other in way.excludes {
@@ -405,7 +302,7 @@ fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
     let shrink = fields.take("shrink").map(|node| reader.number(node));
     if shrink.is_none() {
         let message = "vertices need `shrink`: what is left of the way to one";
-        reader.error_with_hint(&first_line(&node.place), message, VERTICES.hint);
+        reader.error_with_hint(&node.place.first_line(), message, VERTICES.hint);
     }
     Some(MapsDocument::Vertices {
         points: points?,
@@ -425,7 +322,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
     let dimension = reader.optional_number(fields.take("dimension"));
     if scale.is_some() == dimension.is_some() {
         let message = "an interpolation needs `scale` or `dimension`, and not both";
-        reader.error_with_hint(&first_line(&node.place), message, INTERPOLATION.hint);
+        reader.error_with_hint(&node.place.first_line(), message, INTERPOLATION.hint);
         return None;
     }
     Some(InterpolationDocument {
@@ -440,7 +337,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
 fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
     let Some(node) = fields.take("points") else {
         let message = "there are no `points`";
-        reader.error_with_hint(&first_line(fields.place), message, hint);
+        reader.error_with_hint(&fields.place.first_line(), message, hint);
         return None;
     };
     let list = reader.list(node, "a list of points", hint);

@@ -8,13 +8,12 @@ use crate::document::instancing::{
 };
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
+use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::style::read_colour;
 use crate::document::{Number, Written};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
-use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_set};
@@ -29,38 +28,19 @@ pub(in crate::document) const INSTANCING: Shape = Shape {
 };
 
 /// Keys that only an instancing structure has.
-const INSTANCING_ALONE: [Member; 6] = [
-    needed_key(
-        "kind",
-        Form::Words(&[Kind::Instancing.name()]),
-        "The kind of file.",
-    ),
-    key(
-        "extends",
-        Form::File(Shelf::INSTANCING),
-        "Another structure to start from, by name or by file. The keys written here replace its \
-         keys; `params`, `style` and `view` merge entry by entry.",
-    ),
-    PARAMS,
-    Member {
-        needed: Needed::Alone,
-        ..key(
-            "objects",
-            Form::Names(&UNION_OF, 1),
-            "The canonical objects, by name: each a union of instances. An object with a level is \
-             written `A(n)`, and `A(0)` for one level that is another.",
-        )
-    },
-    Member {
-        needed: Needed::Alone,
-        ..key("scene", UNION_OF, "The object that places the scene.")
-    },
-    key(
-        "initial",
-        Form::Mapping(&SET),
+const INSTANCING_ALONE: [Member; 6] = keys![
+    needed kind: Form::Words(&[Kind::Instancing.name()]), "The kind of file.";
+    extends: Form::File(Shelf::INSTANCING),
+        "Another structure to start from, by name or by file. The keys written here replace its keys; \
+         `params`, `style` and `view` merge entry by entry.";
+    =PARAMS;
+    alone objects: Form::Names(&UNION_OF, 1),
+        "The canonical objects, by name: each a union of instances. An object with a level is written \
+         `A(n)`, and `A(0)` for one level that is another.";
+    alone scene: UNION_OF, "The object that places the scene.";
+    initial: Form::Mapping(&SET),
         "What stands for an object that has not been replaced yet. If left out, nothing does where \
-         there are shapes, or else the box of the object's limit set.",
-    ),
+         there are shapes, or else the box of the object's limit set.";
 ];
 
 const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
@@ -75,11 +55,9 @@ const INSTANCES: Form = Form::List(
 const UNION: Shape = Shape {
     what: "an object",
     keys: &[
-        &[needed_key(
-            "union",
-            INSTANCES,
-            "The instances: names of objects, or mappings.",
-        )],
+        &keys![
+            needed union: INSTANCES, "The instances: names of objects, or mappings.";
+        ],
         &TRANSFORMS,
     ],
     ways: &[],
@@ -89,17 +67,10 @@ const UNION: Shape = Shape {
 const INSTANCE: Shape = Shape {
     what: "an instance",
     keys: &[
-        &[
-            key(
-                "object",
-                Form::Text,
-                "The object that it is one of; with its level in brackets, if it has one.",
-            ),
-            key(
-                "tint",
-                Form::Mapping(&TINT),
-                "What it colours all that is in it with.",
-            ),
+        &keys![
+            object: Form::Text,
+                "The object that it is one of; with its level in brackets, if it has one.";
+            tint: Form::Mapping(&TINT), "What it colours all that is in it with.";
         ],
         &FORMS,
         &OF_FRACTAL,
@@ -111,13 +82,10 @@ const INSTANCE: Shape = Shape {
 
 const TINT: Shape = Shape {
     what: "a tint",
-    keys: &[&[
-        needed_key("color", Form::Colour, "The colour, as CSS writes it."),
-        key(
-            "alpha",
-            Form::Number,
-            "How much it covers of what comes from further inside, from 0 to 1; all if left out.",
-        ),
+    keys: &[&keys![
+        needed color: Form::Colour, "The colour, as CSS writes it.";
+        alpha: Form::Number,
+            "How much it covers of what comes from further inside, from 0 to 1; all if left out.";
     ]],
     ways: &[],
     hint: "tint: {color: brown, alpha: 0.5}",
@@ -142,7 +110,7 @@ pub(super) fn read_instancing(
         }
         None => {
             let message = "the structure has no objects";
-            reader.error_with_hint(&first_line(fields.place), message, INSTANCING.hint);
+            reader.error_with_hint(&fields.place.first_line(), message, INSTANCING.hint);
             Vec::new()
         }
     };
@@ -151,7 +119,7 @@ pub(super) fn read_instancing(
         None => {
             let message = "the structure has no scene";
             let hint = "scene: [A] places the object A";
-            reader.error_with_hint(&first_line(fields.place), message, hint);
+            reader.error_with_hint(&fields.place.first_line(), message, hint);
             None
         }
     };
@@ -229,7 +197,7 @@ fn read_union(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
         Some(node) => read_instances(reader, node),
         None => {
             let message = "an object needs a `union` of instances";
-            reader.error_with_hint(&first_line(&node.place), message, UNION.hint);
+            reader.error_with_hint(&node.place.first_line(), message, UNION.hint);
             Vec::new()
         }
     };
@@ -267,7 +235,7 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
             let fields = reader.fields(node, &TINT)?;
             if fields.take("color").is_none() {
                 let message = "a tint needs a `color`";
-                reader.error_with_hint(&first_line(&node.place), message, TINT.hint);
+                reader.error_with_hint(&node.place.first_line(), message, TINT.hint);
             }
             Some(TintDocument {
                 colour: fields
@@ -300,7 +268,7 @@ fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocumen
         (None, Some(_)) => Some(MasterDocument::Shape(Box::new(read_set(reader, fields)))),
         (None, None) => {
             let message = "this instance does not say what it is one of";
-            reader.error_with_hint(&first_line(fields.place), message, INSTANCE.hint);
+            reader.error_with_hint(&fields.place.first_line(), message, INSTANCE.hint);
             None
         }
     }

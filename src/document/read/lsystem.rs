@@ -4,12 +4,11 @@ use crate::catalogue::Shelf;
 use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument};
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
-use crate::document::shape::{Form, Member, Needed, Shape, key, needed_key};
+use crate::document::shape::{Form, Member, Shape, key, keys};
 use crate::document::{Number, Written};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
-use super::first_line;
 use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
 use super::turtle::{MEANING, read_symbol};
@@ -24,87 +23,28 @@ pub(in crate::document) const LSYSTEM: Shape = Shape {
 };
 
 /// Keys that only an L-system has.
-const LSYSTEM_ALONE: [Member; 11] = [
-    needed_key(
-        "kind",
-        Form::Words(&[Kind::LSystem.name()]),
-        "The kind of file.",
-    ),
-    key(
-        "extends",
-        Form::File(Shelf::LSYSTEMS),
+const LSYSTEM_ALONE: [Member; 11] = keys![
+    needed kind: Form::Words(&[Kind::LSystem.name()]), "The kind of file.";
+    extends: Form::File(Shelf::LSYSTEMS),
         "Another L-system to start from, by name or by file. The keys written here replace its keys; \
-         `params`, `style` and `view` merge entry by entry.",
-    ),
-    PARAMS,
-    Member {
-        needed: Needed::Alone,
-        ..key(
-            "axiom",
-            Form::Text,
-            "The word that all begins with: symbols, perhaps with arguments, such as `F` or \
-             `A(1, 10)`. Blanks mean nothing.",
-        )
-    },
-    Member {
-        needed: Needed::Alone,
-        ..key(
-            "productions",
-            Form::Either(&[
-                Form::Names(
-                    &Form::Either(&[
-                        Form::Text,
-                        Form::List(
-                            &Form::Either(&[Form::Text, Form::Mapping(&ALTERNATIVE)]),
-                            1,
-                            None,
-                        ),
-                        Form::Mapping(&ALTERNATIVE),
-                    ]),
-                    0,
-                ),
-                Form::List(
-                    &Form::Either(&[Form::Text, Form::Mapping(&PRODUCTION)]),
-                    0,
-                    None,
-                ),
-            ]),
-            "What replaces what: a mapping of symbols to words, or to lists of words of which one is \
-             drawn; or a list of productions such as `A(w) : w > 1 -> F[A(w/2)]` and \
-             `A < B > C -> AB`.",
-        )
-    },
-    key(
-        "angle",
-        Form::Number,
-        "By how much `+` turns counter-clockwise and `-` clockwise, in degrees; 90 if left out.",
-    ),
-    key(
-        "heading",
-        Form::Number,
-        "Where the turtle looks first, in degrees counter-clockwise; 0, to the right, if left out.",
-    ),
-    key(
-        "length",
-        Form::Positive,
-        "The length of a step; 1 if left out.",
-    ),
-    key(
-        "thinning",
-        Form::Positive,
-        "What `!` multiplies widths by; 0.7 if left out.",
-    ),
-    key(
-        "symbols",
-        Form::Names(&MEANING, 0),
+         `params`, `style` and `view` merge entry by entry.";
+    =PARAMS;
+    alone axiom: Form::Text,
+        "The word that all begins with: symbols, perhaps with arguments, such as `F` or `A(1, 10)`. \
+         Blanks mean nothing.";
+    alone productions: Form::Either(&[Form::Names(&Form::Either(&[Form::Text, Form::List(&Form::Either(&[Form::Text, Form::Mapping(&ALTERNATIVE)]), 1, None), Form::Mapping(&ALTERNATIVE)]), 0), Form::List(&Form::Either(&[Form::Text, Form::Mapping(&PRODUCTION)]), 0, None)]),
+        "What replaces what: a mapping of symbols to words, or to lists of words of which one is \
+         drawn; or a list of productions such as `A(w) : w > 1 -> F[A(w/2)]` and `A < B > C -> AB`.";
+    angle: Form::Number,
+        "By how much `+` turns counter-clockwise and `-` clockwise, in degrees; 90 if left out.";
+    heading: Form::Number,
+        "Where the turtle looks first, in degrees counter-clockwise; 0, to the right, if left out.";
+    length: Form::Positive, "The length of a step; 1 if left out.";
+    thinning: Form::Positive, "What `!` multiplies widths by; 0.7 if left out.";
+    symbols: Form::Names(&MEANING, 0),
         "What the turtle does where it meets a symbol, where that is not as usual: an action, or a \
-         list of actions. Arguments have names: `B(s)`.",
-    ),
-    key(
-        "ignore",
-        Form::Text,
-        "The symbols that contexts do not see.",
-    ),
+         list of actions. Arguments have names: `B(s)`.";
+    ignore: Form::Text, "The symbols that contexts do not see.";
 ];
 
 const WEIGHT: Member = key(
@@ -115,9 +55,9 @@ const WEIGHT: Member = key(
 
 const ALTERNATIVE: Shape = Shape {
     what: "an alternative",
-    keys: &[&[
-        needed_key("to", Form::Text, "The word that replaces the module."),
-        WEIGHT,
+    keys: &[&keys![
+        needed to: Form::Text, "The word that replaces the module.";
+        =WEIGHT;
     ]],
     ways: &[],
     hint: "F: [\"F[+F]F\", {to: \"F[-F]F\", weight: 2}]",
@@ -125,13 +65,9 @@ const ALTERNATIVE: Shape = Shape {
 
 const PRODUCTION: Shape = Shape {
     what: "a production",
-    keys: &[&[
-        needed_key("production", Form::Text, "The production: `F -> F[+F]F`."),
-        key(
-            "weight",
-            Form::Positive,
-            "How often it is taken, relative to others with weights that fit.",
-        ),
+    keys: &[&keys![
+        needed production: Form::Text, "The production: `F -> F[+F]F`.";
+        weight: Form::Positive, "How often it is taken, relative to others with weights that fit.";
     ]],
     ways: &[],
     hint: "- \"F -> F[+F]F\", or - {production: \"F -> F[+F]F\", weight: 1/3}",
@@ -157,7 +93,7 @@ pub(super) fn read_lsystem(
         ("productions", "productions: {F: F+F--F+F}"),
     ] {
         if fields.take(key).is_none() {
-            let place = first_line(fields.place);
+            let place = fields.place.first_line();
             let message = format!("the L-system has no {key}");
             reader.error_with_hint(&place, message, hint);
         }
@@ -241,7 +177,7 @@ fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocum
             let weight = words.reader.optional_number(fields.take("weight"));
             let Some(text) = fields.take("production") else {
                 let message = "this entry has no production";
-                let place = first_line(&node.place);
+                let place = node.place.first_line();
                 words
                     .reader
                     .error_with_hint(&place, message, PRODUCTION.hint);
@@ -349,7 +285,7 @@ fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument,
     let weight = words.reader.optional_number(fields.take("weight"));
     let Some(to) = fields.take("to") else {
         let message = "this alternative has no word";
-        let place = first_line(&node.place);
+        let place = node.place.first_line();
         words
             .reader
             .error_with_hint(&place, message, ALTERNATIVE.hint);

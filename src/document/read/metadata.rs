@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostics;
 use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, key};
+use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::style::{STYLE, VIEW, read_style, read_view};
 use crate::metadata::Description;
 use crate::metadata::MOST_STEPS;
@@ -12,52 +12,26 @@ use crate::metadata::MOST_STEPS;
 use super::parameters::read_params;
 
 /// Keys that describe a file and are not inlined with a component.
-pub(in crate::document) const DESCRIPTION: [Member; 5] = [
-    key("title", Form::Text, "A title, in a few words."),
-    key("about", Form::Text, "A few sentences on what it is."),
-    key(
-        "source",
-        Form::Text,
-        "Where it comes from: who published it, and when.",
-    ),
-    key(
-        "tags",
-        Form::List(&Form::Text, 0, None),
-        "Words by which `kfrac list WORD` finds it.",
-    ),
-    key(
-        "format",
-        Form::Exactly(FORMAT),
-        "The version of this format; may be left out.",
-    ),
+pub(in crate::document) const DESCRIPTION: [Member; 5] = keys![
+    title: Form::Text, "A title, in a few words.";
+    about: Form::Text, "A few sentences on what it is.";
+    source: Form::Text, "Where it comes from: who published it, and when.";
+    tags: Form::List(&Form::Text, 0, None), "Words by which `kfrac list WORD` finds it.";
+    format: Form::Exactly(FORMAT), "The version of this format; may be left out.";
 ];
 
 /// Version of the file format.
 const FORMAT: u32 = 1;
 
 /// Keys for the defaults of growing and drawing, and for published properties.
-pub(super) const LIKING: [Member; 5] = [
-    key(
-        "steps",
-        Form::Whole(0, Some(MOST_STEPS)),
-        "The number of steps, unless another is asked for.",
-    ),
-    key(
-        "dimension",
-        Form::Number,
-        "The published similarity dimension. It does not change the picture.",
-    ),
-    key(
-        "hausdorff_dimension",
-        Form::Number,
-        "The published dimension of the set itself, where it is smaller because copies overlap.",
-    ),
-    key("style", Form::Mapping(&STYLE), "How it is drawn."),
-    key(
-        "view",
-        Form::Mapping(&VIEW),
-        "Which part of the plane is drawn.",
-    ),
+pub(super) const LIKING: [Member; 5] = keys![
+    steps: Form::Whole(0, Some(MOST_STEPS)),
+        "The number of steps, unless another is asked for.";
+    dimension: Form::Number, "The published similarity dimension. It does not change the picture.";
+    hausdorff_dimension: Form::Number,
+        "The published dimension of the set itself, where it is smaller because copies overlap.";
+    style: Form::Mapping(&STYLE), "How it is drawn.";
+    view: Form::Mapping(&VIEW), "Which part of the plane is drawn.";
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.

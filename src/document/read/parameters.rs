@@ -3,7 +3,7 @@
 use crate::document::metadata::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
-use crate::document::shape::{Form, Member, Needed, Shape, key};
+use crate::document::shape::{Form, Member, Shape, key, keys};
 use crate::document::{Number, Point, Written};
 use crate::expression::{Expression, PARTS};
 
@@ -12,19 +12,13 @@ const NUMBER: Form = Form::Either(&[Form::Number, Form::Point]);
 
 pub(in crate::document) const PARAMETER: Shape = Shape {
     what: "a parameter",
-    keys: &[&[
-        Member {
-            needed: Needed::Alone,
-            ..key(
-                "value",
-                NUMBER,
-                "Its value, where nothing else is set. It may use the parameters above it. A list of two is \
-                 a complex number, as are its limits then: [real part, imaginary part].",
-            )
-        },
-        key("min", NUMBER, "The least value that it may be set to."),
-        key("max", NUMBER, "The largest value that it may be set to."),
-        key("about", Form::Text, "What it means."),
+    keys: &[&keys![
+        alone value: NUMBER,
+            "Its value, where nothing else is set. It may use the parameters above it. A list of two \
+             is a complex number, as are its limits then: [real part, imaginary part].";
+        min: NUMBER, "The least value that it may be set to.";
+        max: NUMBER, "The largest value that it may be set to.";
+        about: Form::Text, "What it means.";
     ]],
     ways: &[],
     hint: "angle: {value: 45, min: 5, max: 85, about: \"what it means\"}",

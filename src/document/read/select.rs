@@ -3,35 +3,22 @@
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
 use crate::document::rule::SelectDocument;
-use crate::document::shape::{Form, Shape, Way, key, needed_key};
+use crate::document::shape::{Form, Shape, keys, way};
 
-use super::first_line;
 use super::parameters::written;
 
 const SELECTION: Shape = Shape {
     what: "a selection",
-    keys: &[&[
-        key(
-            "by_index",
-            Form::List(&Form::Text, 1, None),
-            "Generators in turn: element 1 of a fractal takes the first, element 2 the second, and \
-             so on round.",
-        ),
-        key(
-            "at_random",
-            Form::Names(&Form::Positive, 1),
-            "Generators with their weights: each element draws one of them.",
-        ),
+    keys: &[&keys![
+        by_index: Form::List(&Form::Text, 1, None),
+            "Generators in turn: element 1 of a fractal takes the first, element 2 the second, and so \
+             on round.";
+        at_random: Form::Names(&Form::Positive, 1),
+            "Generators with their weights: each element draws one of them.";
     ]],
     ways: &[
-        Way {
-            needs: &["by_index"],
-            excludes: &["at_random"],
-        },
-        Way {
-            needs: &["at_random"],
-            excludes: &["by_index"],
-        },
+        way(&["by_index"], &["at_random"]),
+        way(&["at_random"], &["by_index"]),
     ],
     hint: "a list of {when: CONDITION, use: NAME} that ends with {use: NAME}, or \
            {by_index: [NAME, NAME]}, or {at_random: {NAME: WEIGHT}}",
@@ -39,18 +26,11 @@ const SELECTION: Shape = Shape {
 
 const CASE: Shape = Shape {
     what: "a case of the selection",
-    keys: &[&[
-        key(
-            "when",
-            Form::Expression,
-            "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, \
-             `step` and `length`. The last case has none.",
-        ),
-        needed_key(
-            "use",
-            Form::Text,
-            "The generator that replaces the element.",
-        ),
+    keys: &[&keys![
+        when: Form::Expression,
+            "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, `step` \
+             and `length`. The last case has none.";
+        needed use: Form::Text, "The generator that replaces the element.";
     ]],
     ways: &[],
     hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
@@ -78,7 +58,7 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
             };
             let when = reader.optional_number(fields.take("when"));
             let Some(name) = fields.take("use") else {
-                let place = first_line(&entry.place);
+                let place = entry.place.first_line();
                 reader.error_with_hint(&place, "this case names no generator", CASE.hint);
                 return (when, None);
             };
@@ -94,7 +74,7 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
         (None, Some(weights)) => at_random(reader, weights),
         (Some(_), Some(_)) => {
             let message = "a selection goes by index or at random, not both";
-            reader.error_with_hint(&first_line(&node.place), message, SELECTION.hint);
+            reader.error_with_hint(&node.place.first_line(), message, SELECTION.hint);
             unknown(node)
         }
         (None, None) => {

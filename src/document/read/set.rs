@@ -3,7 +3,7 @@
 use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, ShapeDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, Way, key, needed_key};
+use crate::document::shape::{Form, Member, Shape, Way, keys};
 use crate::document::{Number, Point, Written};
 use crate::expression::PARTS;
 use crate::kind::Kind;
@@ -11,7 +11,7 @@ use crate::metadata::MOST_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
-use super::{first_line, read_kind};
+use super::read_kind;
 
 /// Keys of an initial set.
 pub(super) const SET: Shape = Shape {
@@ -27,12 +27,11 @@ pub(super) const CONDENSATION: Shape = Shape {
     keys: &[
         &FORMS,
         &OF_FRACTAL,
-        &[key(
-            "weight",
-            Form::Positive,
-            "How often random iteration draws a point anew from the set, relative to the weights of \
-             the maps; the mean of these if left out.",
-        )],
+        &keys![
+            weight: Form::Positive,
+                "How often random iteration draws a point anew from the set, relative to the weights \
+                 of the maps; the mean of these if left out.";
+        ],
     ],
     ways: &WAYS,
     hint: HINT,
@@ -42,54 +41,26 @@ const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
 /// Alternative keys for the geometry of a set.
-pub(super) const FORMS: [Member; 7] = [
-    key("point", Form::Point, "A point: a dot as wide as a line."),
-    key(
-        "segment",
-        Form::List(&Form::Point, 2, Some(2)),
-        "A line from one point to another.",
-    ),
-    key(
-        "polyline",
-        Form::List(&Form::Point, 2, None),
-        "A line through points.",
-    ),
-    key(
-        "polygon",
-        Form::List(&Form::Point, 3, None),
-        "What a line through points and back to the first encloses.",
-    ),
-    key("disk", Form::Mapping(&DISK), "A disk."),
-    key("ellipse", Form::Mapping(&ELLIPSE), "An ellipse."),
-    key(
-        "fractal",
-        Form::Grown,
-        "Another fractal, as it is after some steps: the name of its file, or what that says.",
-    ),
+pub(super) const FORMS: [Member; 7] = keys![
+    point: Form::Point, "A point: a dot as wide as a line.";
+    segment: Form::List(&Form::Point, 2, Some(2)), "A line from one point to another.";
+    polyline: Form::List(&Form::Point, 2, None), "A line through points.";
+    polygon: Form::List(&Form::Point, 3, None),
+        "What a line through points and back to the first encloses.";
+    disk: Form::Mapping(&DISK), "A disk.";
+    ellipse: Form::Mapping(&ELLIPSE), "An ellipse.";
+    fractal: Form::Grown,
+        "Another fractal, as it is after some steps: the name of its file, or what that says.";
 ];
 
 /// Keys that accompany `fractal`.
-pub(super) const OF_FRACTAL: [Member; 4] = [
-    key(
-        "steps",
-        Form::Whole(0, Some(MOST_STEPS)),
-        "The number of steps of the fractal; what its file says if left out.",
-    ),
-    key(
-        "seed",
-        Form::Whole(0, None),
-        "What the random draws of the fractal depend on; 0 if left out.",
-    ),
-    key(
-        "set",
-        Form::Names(&Form::Either(&[Form::Number, Form::Point]), 0),
-        "Values of the fractal's parameters by name, in place of those of its file.",
-    ),
-    key(
-        "map",
-        Form::Mapping(&PLACE),
-        "Where the fractal stands, if not where its file has it.",
-    ),
+pub(super) const OF_FRACTAL: [Member; 4] = keys![
+    steps: Form::Whole(0, Some(MOST_STEPS)),
+        "The number of steps of the fractal; what its file says if left out.";
+    seed: Form::Whole(0, None), "What the random draws of the fractal depend on; 0 if left out.";
+    set: Form::Names(&Form::Either(&[Form::Number, Form::Point]), 0),
+        "Values of the fractal's parameters by name, in place of those of its file.";
+    map: Form::Mapping(&PLACE), "Where the fractal stands, if not where its file has it.";
 ];
 
 const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
@@ -147,9 +118,9 @@ const WAYS: [Way; 7] = [
 
 const DISK: Shape = Shape {
     what: "a disk",
-    keys: &[&[
-        key("centre", Form::Point, "Its centre; [0, 0] if left out."),
-        needed_key("radius", Form::Positive, "Its radius, above 0."),
+    keys: &[&keys![
+        centre: Form::Point, "Its centre; [0, 0] if left out.";
+        needed radius: Form::Positive, "Its radius, above 0.";
     ]],
     ways: &[],
     hint: "disk: {centre: [0, 0], radius: 1}",
@@ -157,18 +128,11 @@ const DISK: Shape = Shape {
 
 const ELLIPSE: Shape = Shape {
     what: "an ellipse",
-    keys: &[&[
-        key("centre", Form::Point, "Its centre; [0, 0] if left out."),
-        needed_key(
-            "axes",
-            Form::Either(&[Form::Number, Form::Point]),
-            "Its half axes: from the centre to the right, and upwards.",
-        ),
-        key(
-            "rotate",
-            Form::Number,
-            "By how much it is turned, in degrees, counter-clockwise.",
-        ),
+    keys: &[&keys![
+        centre: Form::Point, "Its centre; [0, 0] if left out.";
+        needed axes: Form::Either(&[Form::Number, Form::Point]),
+            "Its half axes: from the centre to the right, and upwards.";
+        rotate: Form::Number, "By how much it is turned, in degrees, counter-clockwise.";
     ]],
     ways: &[],
     hint: "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}",
@@ -182,7 +146,7 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
         .filter_map(|form| Some((form.name, fields.take(form.name)?)));
     let Some((name, node)) = there.next() else {
         let message = "this set does not say what it is";
-        reader.error_with_hint(&first_line(&place), message, HINT);
+        reader.error_with_hint(&place.first_line(), message, HINT);
         return ShapeDocument { form: None, place };
     };
     for (other, _) in there {
@@ -233,7 +197,7 @@ fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocu
 fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
     let fields = reader.fields(node, &DISK)?;
     let Some(radius) = reader.optional_number(fields.take("radius")) else {
-        reader.error_with_hint(&first_line(&node.place), "a disk needs a radius", DISK.hint);
+        reader.error_with_hint(&node.place.first_line(), "a disk needs a radius", DISK.hint);
         return None;
     };
     Some(FormDocument::Ellipse(Box::new(EllipseDocument {
@@ -247,7 +211,7 @@ fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
     let fields = reader.fields(node, &ELLIPSE)?;
     let Some(axes) = fields.take("axes").map(|node| pair(reader, node)) else {
         let message = "an ellipse needs its half axes";
-        reader.error_with_hint(&first_line(&node.place), message, ELLIPSE.hint);
+        reader.error_with_hint(&node.place.first_line(), message, ELLIPSE.hint);
         return None;
     };
     Some(FormDocument::Ellipse(Box::new(EllipseDocument {

@@ -3,22 +3,19 @@
 use crate::document::instancing::TransformDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, key};
+use crate::document::shape::{Form, Member, Shape, key, keys};
 
 use super::ifs::read_matrix;
 use super::set::pair;
 
 /// Keys that transform.
-pub(super) const TRANSFORMS: [Member; 5] = [
-    SCALE,
-    ROTATE,
-    TRANSLATE,
-    MATRIX,
-    key(
-        "transform",
-        Form::List(&Form::Mapping(&TRANSFORM), 1, None),
-        "Transforms one after the other, where one of them is needed twice.",
-    ),
+pub(super) const TRANSFORMS: [Member; 5] = keys![
+    =SCALE;
+    =ROTATE;
+    =TRANSLATE;
+    =MATRIX;
+    transform: Form::List(&Form::Mapping(&TRANSFORM), 1, None),
+        "Transforms one after the other, where one of them is needed twice.";
 ];
 
 const SCALE: Member = key(
@@ -44,7 +41,12 @@ const MATRIX: Member = key(
 
 const TRANSFORM: Shape = Shape {
     what: "a transform",
-    keys: &[&[SCALE, ROTATE, TRANSLATE, MATRIX]],
+    keys: &[&keys![
+        =SCALE;
+        =ROTATE;
+        =TRANSLATE;
+        =MATRIX;
+    ]],
     ways: &[],
     hint: "{rotate: 30}, {scale: 1/2} or {translate: [1, 0]}",
 };

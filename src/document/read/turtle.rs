@@ -3,7 +3,7 @@
 use crate::diagnostic::did_you_mean;
 use crate::document::lsystem::{ActionDocument, SymbolDocument};
 use crate::document::node::{Key, Node, Value};
-use crate::document::shape::{Form, Shape, key};
+use crate::document::shape::{Form, Shape, keys};
 
 use super::word::{Text, Words};
 
@@ -19,53 +19,18 @@ const ONE: Form = Form::Either(&[Form::Words(&WORDS), Form::Mapping(&ACTION)]);
 
 const ACTION: Shape = Shape {
     what: "an action",
-    keys: &[&[
-        key("draw", Form::Number, "Draws a line of so many steps."),
-        key(
-            "move",
-            Form::Number,
-            "Goes so many steps ahead and draws nothing.",
-        ),
-        key(
-            "glide",
-            Form::Number,
-            "Goes so many steps ahead; in a polygon it makes no vertex.",
-        ),
-        key(
-            "turn",
-            Form::Number,
-            "Turns by so many degrees, counter-clockwise.",
-        ),
-        key(
-            "rotate",
-            Form::Number,
-            "Turns by so many degrees, counter-clockwise also where turns are reflected.",
-        ),
-        key(
-            "scale",
-            Form::Number,
-            "Multiplies the length of all steps from here on.",
-        ),
-        key(
-            "width",
-            Form::Positive,
-            "Multiplies the width of lines from here on.",
-        ),
-        key(
-            "set_width",
-            Form::Positive,
-            "Sets the width, as a multiple of the file's.",
-        ),
-        key(
-            "colour",
-            Form::Number,
-            "Sets the colour: its number in the palette, from 0.",
-        ),
-        key(
-            "shift_colour",
-            Form::Number,
-            "Adds to the number of the colour.",
-        ),
+    keys: &[&keys![
+        draw: Form::Number, "Draws a line of so many steps.";
+        move: Form::Number, "Goes so many steps ahead and draws nothing.";
+        glide: Form::Number, "Goes so many steps ahead; in a polygon it makes no vertex.";
+        turn: Form::Number, "Turns by so many degrees, counter-clockwise.";
+        rotate: Form::Number,
+            "Turns by so many degrees, counter-clockwise also where turns are reflected.";
+        scale: Form::Number, "Multiplies the length of all steps from here on.";
+        width: Form::Positive, "Multiplies the width of lines from here on.";
+        set_width: Form::Positive, "Sets the width, as a multiple of the file's.";
+        colour: Form::Number, "Sets the colour: its number in the palette, from 0.";
+        shift_colour: Form::Number, "Adds to the number of the colour.";
     ]],
     ways: &[],
     hint: "draw, move, {draw: 1/2}, {turn: 36}, {scale: 1/2}, push, pop or another action",
