@@ -3,6 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
+use crate::random::GOLDEN;
+
 /// Map with the fast hash; nothing iterates over it, because the order of its entries is arbitrary.
 pub(crate) type FastMap<K, V> = HashMap<K, V, BuildHasherDefault<FastHasher>>;
 
@@ -35,7 +37,7 @@ impl Hasher for FastHasher {
         // The rotation makes the order of words matter, and the constant makes words of 0 change the
         // state.
         let state = self.0.rotate_left(23) ^ 0x2545_F491_4F6C_DD1D;
-        let mixed = u128::from(state ^ word) * 0x9E37_79B9_7F4A_7C15;
+        let mixed = u128::from(state ^ word) * u128::from(GOLDEN);
         #[expect(clippy::cast_possible_truncation, reason = "both halves are used")]
         {
             self.0 = (mixed >> 64) as u64 ^ mixed as u64;

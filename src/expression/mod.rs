@@ -37,8 +37,8 @@ use std::ops::Range;
 pub(crate) use affine::Affine;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
-pub(crate) use precise::{Precise, Precision};
-pub(crate) use program::{Arithmetic, Doubles, Evaluation, Symbols};
+pub(crate) use precise::{Precise, Precision, leading};
+pub(crate) use program::{Arithmetic, Doubles, Evaluation, Symbols, gcd};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 

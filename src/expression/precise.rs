@@ -5,6 +5,7 @@ use std::str::FromStr;
 use dashu_float::round::mode::HalfEven;
 use dashu_float::{ConstCache, Context, DBig, FBig, FpError, Repr};
 use dashu_int::IBig;
+use dashu_int::ops::BitTest;
 
 use super::circle::Circle;
 use super::operator::{One, Two};
@@ -37,6 +38,18 @@ impl Precise {
         let shift = isize::try_from(bits).unwrap_or(isize::MAX);
         (self.exact.clone() << shift).to_int().value()
     }
+}
+
+/// Converts integers to doubles by their leading bits: multiples of 2^`exponent`, with that exponent.
+pub(crate) fn leading<'n>(
+    numbers: impl Iterator<Item = &'n IBig> + Clone,
+) -> (impl Iterator<Item = f64>, usize) {
+    /// Number of bits that are converted.
+    const DIGITS: usize = 96;
+    let longest = numbers.clone().map(BitTest::bit_len).max();
+    let exponent = longest.unwrap_or(0).saturating_sub(DIGITS);
+    let leading = numbers.map(move |number| (number >> exponent).to_f64().value());
+    (leading, exponent)
 }
 
 /// Arithmetic of numbers of a fixed number of bits.

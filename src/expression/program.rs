@@ -359,14 +359,16 @@ impl Dependence {
     fn and(self, divisor: u32) -> Self {
         match self {
             Self::None => Self::Modulo(divisor),
-            Self::Modulo(other) => (other / gcd(other, divisor))
-                .checked_mul(divisor)
-                .map_or(Self::Free, Self::Modulo),
+            Self::Modulo(other) => {
+                let [a, b] = [other, divisor].map(u64::from);
+                u32::try_from(a / gcd(a, b) * b).map_or(Self::Free, Self::Modulo)
+            }
             Self::Free => Self::Free,
         }
     }
 }
 
-fn gcd(a: u32, b: u32) -> u32 {
+/// Returns the greatest common divisor.
+pub(crate) fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::expression::degrees;
+use crate::expression::{degrees, gcd};
 use crate::geometry::DVec2;
 
 use super::{Action, LSystem, Symbol};
@@ -172,10 +172,6 @@ fn denominator(angle: f64) -> Option<u64> {
     let numerator: u64 = format!("{units}{decimals}").parse().ok()?;
     let turn = scale.checked_mul(360)?;
     Some(turn / gcd(numerator, turn))
-}
-
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 #[cfg(test)]

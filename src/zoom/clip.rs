@@ -1,14 +1,11 @@
 //! Clipping of outlines that are much larger than the window.
 
-use dashu_int::IBig;
-use dashu_int::ops::BitTest;
-
-use crate::expression::Precise;
+use crate::expression::{Precise, leading};
 use crate::geometry::{DVec2, Direction, Frame2};
 use crate::rule::{BaseElement, Piece};
 
 use super::descent::pixel;
-use super::fixed::{Fixed, Vector, double};
+use super::fixed::{Fixed, Vector};
 
 /// Distance from the centre, in radii, to which all points farther away are moved.
 const FAR: f64 = 4.0;
@@ -205,12 +202,10 @@ fn drawn((near, unit): (Vec<DVec2>, f64), radius: f64) -> DVec2 {
 
 /// Converts points to doubles; returns their unit in pixels as well.
 fn near(points: &[Vector]) -> (Vec<DVec2>, f64) {
-    const DIGITS: usize = 96;
-    let lengths = points.iter().flatten().map(|it| it.bit_len());
-    let exponent = lengths.max().unwrap_or(0).saturating_sub(DIGITS);
-    let number = |number: &IBig| double(&(number >> exponent));
-    let point = |[x, y]: &Vector| DVec2::new(number(x), number(y));
-    (points.iter().map(point).collect(), pixel(exponent))
+    let (near, exponent) = leading(points.iter().flatten());
+    let near: Vec<f64> = near.collect();
+    let points = near.chunks_exact(2).map(DVec2::from_slice);
+    (points.collect(), pixel(exponent))
 }
 
 /// Halves a line or a curve (de Casteljau).

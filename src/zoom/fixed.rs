@@ -3,8 +3,8 @@
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
-use crate::expression::{Affine, Precise};
-use crate::geometry::{DAffine2, DVec2, Direction};
+use crate::expression::{Affine, Precise, leading};
+use crate::geometry::{DAffine2, Direction};
 
 /// Point or vector, in integer multiples of a unit that depends on the context.
 pub(super) type Vector = [IBig; 2];
@@ -105,23 +105,14 @@ impl Fixed {
     /// Returns the map in doubles, approximately, as a multiple of 2^`exponent` of its unit, and that
     /// exponent.
     pub(super) fn near(&self) -> (DAffine2, usize) {
-        let [[a, b], [c, d]] = &self.axes;
-        let [e, f] = &self.origin;
-        let all = [a, b, c, d, e, f];
-        let longest = all.map(|number| number.bit_len()).into_iter().max();
-        let exponent = longest.unwrap_or(0).saturating_sub(DIGITS);
-        let [a, b, c, d, e, f] = all.map(|number| double(&(number >> exponent)));
-        let (right, up) = (DVec2::new(a, b), DVec2::new(c, d));
-        (DAffine2::from_cols(right, up, DVec2::new(e, f)), exponent)
+        let [right, up] = &self.axes;
+        let (near, exponent) = leading([right, up, &self.origin].into_iter().flatten());
+        let mut map = [0.0; 6];
+        map.iter_mut()
+            .zip(near)
+            .for_each(|(number, near)| *number = near);
+        (DAffine2::from_cols_array(&map), exponent)
     }
-}
-
-/// Number of leading bits that are converted to doubles.
-const DIGITS: usize = 96;
-
-/// Converts an integer within the range of doubles.
-pub(super) fn double(number: &IBig) -> f64 {
-    number.to_f64().value()
 }
 
 /// Returns the product of an integer and a number in multiples of 2^-`bits`.

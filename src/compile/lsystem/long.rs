@@ -8,9 +8,8 @@
 use std::collections::BTreeMap;
 
 use dashu_int::IBig;
-use dashu_int::ops::BitTest;
 
-use crate::expression::Precision;
+use crate::expression::{Precision, leading};
 use crate::geometry::DVec2;
 use crate::lsystem::{Action, Compass};
 
@@ -250,18 +249,9 @@ fn times(number: &IBig, factor: f64) -> IBig {
 impl Far {
     /// Converts a vector in multiples of 2^-`bits`.
     fn of_long(vector: &Vector, bits: usize) -> Self {
-        /// Number of leading bits that are converted to doubles.
-        const DIGITS: usize = 96;
-        let longest = vector
-            .iter()
-            .map(|number| number.bit_len())
-            .max()
-            .unwrap_or_default();
-        let dropped = longest.saturating_sub(DIGITS);
-        let [x, y] = vector
-            .each_ref()
-            .map(|number| (number >> dropped).to_f64().value());
+        let (near, dropped) = leading(vector.iter());
+        let near: Vec<f64> = near.collect();
         let power = |by: usize| i32::try_from(by).unwrap_or(i32::MAX);
-        Self::new(DVec2::new(x, y)).shifted(power(dropped) - power(bits))
+        Self::new(DVec2::from_slice(&near)).shifted(power(dropped) - power(bits))
     }
 }
