@@ -44,9 +44,7 @@ pub struct InterpolationDocument {
     /// Interpolation points, from left to right.
     pub points: Vec<Point>,
     /// Vertical scaling factors.
-    pub scale: Option<Scales>,
-    /// Box dimension of the curve, as an alternative to scaling factors.
-    pub dimension: Option<Number>,
+    pub scale: Scales,
     /// Source span of the interpolation.
     pub place: Place,
 }
@@ -58,6 +56,8 @@ pub enum Scales {
     One(Number),
     /// One factor for each piece.
     Each(Vec<Number>),
+    /// One factor for all pieces, by the box dimension of the curve.
+    Dimension(Number),
 }
 
 /// An affine map as written.

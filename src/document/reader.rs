@@ -126,7 +126,7 @@ impl Reader {
     }
 
     /// Returns the keys of a mapping. Unknown keys are reported, and each is interpreted as the key
-    /// that was probably meant.
+    /// that was probably meant; then keys that are absent.
     pub(super) fn fields<'n>(
         &mut self,
         node: &'n Node,
@@ -144,6 +144,14 @@ impl Reader {
             match name {
                 Some(name) => known.push((name, Field { key, value })),
                 None => self.names_are_missing |= matches!(value.value, Value::Mapping(_)),
+            }
+        }
+        for member in shape.members() {
+            if let Some((message, hint)) = member.absent
+                && known.iter().all(|(name, _)| *name != member.name)
+            {
+                let place = node.place.first_line();
+                self.error_with_hint(&place, message, hint.unwrap_or(shape.hint));
             }
         }
         Some(Fields {
@@ -315,6 +323,22 @@ impl Reader {
             self.mismatch(node, what, hint);
             &[]
         }
+    }
+
+    /// Returns the entries of a list; an empty one is reported as one in which there is no `entry`.
+    pub(super) fn filled<'n>(
+        &mut self,
+        node: &'n Node,
+        what: &str,
+        entry: &str,
+        hint: &str,
+    ) -> &'n [Node] {
+        let entries = self.list(node, what, hint);
+        if matches!(&node.value, Value::Sequence(all) if all.is_empty()) {
+            let message = format!("there is no {entry} in this list");
+            self.error_with_hint(&node.place, message, hint);
+        }
+        entries
     }
 
     /// Reads the name of a variant of an enumeration.

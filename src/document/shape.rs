@@ -27,6 +27,9 @@ pub(super) struct Member {
     /// Description, which editors show.
     pub(super) about: &'static str,
     pub(super) needed: Needed,
+    /// Message for a mapping without the key, where reading reports one, and a help text if the mapping's own
+    /// does not fit.
+    pub(super) absent: Option<(&'static str, Option<&'static str>)>,
 }
 
 /// Condition under which a key is required.
@@ -106,6 +109,7 @@ pub(super) const fn key(name: &'static str, holds: Form, about: &'static str) ->
         holds,
         about,
         needed: Needed::Never,
+        absent: None,
     }
 }
 
@@ -115,30 +119,31 @@ pub(super) const fn way(needs: &'static [&'static str], excludes: &'static [&'st
 }
 
 /// Makes the definitions of keys from a table of their names, types and descriptions. A key may be
-/// `needed`, or needed `alone`, without a parent; `=MEMBER` stands for a definition that several tables
-/// share.
+/// `needed`, or needed `alone`, without a parent; the message and the help text behind `=>` are for a mapping
+/// without it. `=MEMBER` stands for a definition that several tables share.
 macro_rules! keys {
     (@ [$($made:expr,)*]) => { [$($made),*] };
     (@ [$($made:expr,)*] =$member:ident; $($rest:tt)*) => {
         keys!(@ [$($made,)* $member,] $($rest)*)
     };
-    (@ [$($made:expr,)*] needed $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
-        keys!(@ [$($made,)* keys!(# Always, $name, $form, $about),] $($rest)*)
-    };
-    (@ [$($made:expr,)*] alone $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
-        keys!(@ [$($made,)* keys!(# Alone, $name, $form, $about),] $($rest)*)
-    };
-    (@ [$($made:expr,)*] $name:ident: $form:expr, $about:expr; $($rest:tt)*) => {
-        keys!(@ [$($made,)* keys!(# Never, $name, $form, $about),] $($rest)*)
-    };
-    (# $needed:ident, $name:ident, $form:expr, $about:expr) => {
-        $crate::document::shape::Member {
+    (@ [$($made:expr,)*] needed $($rest:tt)*) => { keys!(# Always [$($made,)*] $($rest)*) };
+    (@ [$($made:expr,)*] alone $($rest:tt)*) => { keys!(# Alone [$($made,)*] $($rest)*) };
+    (@ [$($made:expr,)*] $($rest:tt)*) => { keys!(# Never [$($made,)*] $($rest)*) };
+    (
+        # $needed:ident [$($made:expr,)*] $name:ident: $form:expr, $about:expr
+        $(=> $absent:literal $(, $hint:literal)?)?; $($rest:tt)*
+    ) => {
+        keys!(@ [$($made,)* $crate::document::shape::Member {
             name: stringify!($name),
             holds: $form,
             about: $about,
             needed: $crate::document::shape::Needed::$needed,
-        }
+            absent: keys!(? $($absent $(, $hint)?)?),
+        },] $($rest)*)
     };
+    (?) => { None };
+    (? $absent:literal) => { Some(($absent, None)) };
+    (? $absent:literal, $hint:literal) => { Some(($absent, Some($hint))) };
     ($($table:tt)*) => { keys!(@ [] $($table)*) };
 }
 

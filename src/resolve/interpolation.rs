@@ -13,28 +13,19 @@ impl Resolver<OfIfs> {
     /// curve.
     pub(super) fn interpolation(&mut self, document: &InterpolationDocument) -> Option<Maps> {
         let points = self.points(&document.points);
-        let scales = match &document.scale {
-            Some(Scales::One(number)) => vec![self.constant_program(number)],
-            Some(Scales::Each(numbers)) => {
-                let numbers = numbers.iter();
-                numbers.map(|it| self.constant_program(it)).collect()
-            }
-            None => Vec::new(),
+        let numbers = match &document.scale {
+            Scales::One(number) | Scales::Dimension(number) => std::slice::from_ref(number),
+            Scales::Each(numbers) => numbers,
         };
-        let factors = scales.iter().map(Program::as_constant);
+        let numbers: Vec<_> = numbers.iter().map(|it| self.constant_program(it)).collect();
+        let factors = numbers.iter().map(Program::as_constant);
         let factors: Vec<f64> = factors.collect::<Option<_>>()?;
-        let dimension = match &document.dimension {
-            Some(number) => Some(self.constant(number)?),
-            None => None,
-        };
         let written = points?;
         let points = values(&written);
-        let found = match (&document.scale, dimension) {
-            (Some(_), _) => Ok((factors, scales)),
-            (None, Some(dimension)) => scale_of_dimension(&points, dimension)
+        let found = match &document.scale {
+            Scales::Dimension(_) => scale_of_dimension(&points, factors[0])
                 .map(|scale| (vec![scale], vec![Program::constant(scale)])),
-            // The missing factor has been reported.
-            (None, None) => return None,
+            _ => Ok((factors, numbers)),
         };
         let maps = found.and_then(|(factors, scales)| {
             let maps = interpolate(&points, &factors)?;
@@ -60,14 +51,14 @@ impl Resolver<OfIfs> {
         let place = match *error {
             InterpolationError::PointNotFinite { point: number }
             | InterpolationError::NotIncreasing { point: number } => point(number),
-            InterpolationError::Scale { number, .. } => match &document.scale {
-                Some(Scales::One(number)) => Some(&number.place),
-                Some(Scales::Each(numbers)) => numbers.get(number).map(|number| &number.place),
-                None => None,
+            InterpolationError::Scale { number: index, .. } => match &document.scale {
+                Scales::One(number) | Scales::Dimension(number) => Some(&number.place),
+                Scales::Each(numbers) => numbers.get(index).map(|number| &number.place),
             },
-            InterpolationError::Dimension { .. } => {
-                document.dimension.as_ref().map(|number| &number.place)
-            }
+            InterpolationError::Dimension { .. } => match &document.scale {
+                Scales::Dimension(number) => Some(&number.place),
+                _ => None,
+            },
             InterpolationError::TooFewPoints { .. }
             | InterpolationError::NumberOfScales { .. }
             | InterpolationError::OnALine => None,

@@ -10,7 +10,8 @@ pub(in crate::document) const BASE_ELEMENT: Shape = Shape {
     what: "a base element",
     keys: &[&keys![
         needed points: Form::List(&Form::Either(&[Form::Point, Form::Mapping(&PIECE)]), 2, None),
-            "The outline: a point, then points and round pieces. The first and the last point differ.";
+            "The outline: a point, then points and round pieces. The first and the last point differ."
+            => "a base element needs `points`";
         closed: Form::Flag(false),
             "Whether the last point is joined to the first: a polygon, which is filled.";
         from: Form::Point,
@@ -37,10 +38,7 @@ const PIECE: Shape = Shape {
         control: Form::List(&Form::Point, 1, Some(2)),
             "The control points of the curve: one of a quadratic curve, two of a cubic one.";
     ]],
-    ways: &keys![
-        =ARC;
-        =CURVE;
-    ],
+    ways: &[ARC, CURVE],
     hint: "a piece is a point, {arc: [x, y], through: [x, y]} or \
            {curve: [x, y], control: [[x, y]]}",
 };
@@ -55,18 +53,12 @@ pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<Base
     }
     let fields = reader.fields(node, &BASE_ELEMENT)?;
     let mut pieces = Vec::new();
-    match fields.take("points") {
-        Some(points) => {
-            let list = reader.list(points, "a list of points", BASE_ELEMENT.hint);
-            pieces.extend(list.iter().filter_map(|entry| read_piece(reader, entry)));
-            if matches!(points.value, Value::Sequence(_)) && list.len() < 2 {
-                let message = "a base element needs two points or more";
-                reader.error_with_hint(&points.place, message, "points: [[0, 0], [1, 0]]");
-            }
-        }
-        None => {
-            let message = "a base element needs `points`";
-            reader.error_with_hint(&node.place.first_line(), message, BASE_ELEMENT.hint);
+    if let Some(points) = fields.take("points") {
+        let list = reader.list(points, "a list of points", BASE_ELEMENT.hint);
+        pieces.extend(list.iter().filter_map(|entry| read_piece(reader, entry)));
+        if matches!(points.value, Value::Sequence(_)) && list.len() < 2 {
+            let message = "a base element needs two points or more";
+            reader.error_with_hint(&points.place, message, "points: [[0, 0], [1, 0]]");
         }
     }
     Some(BaseElementDocument {

@@ -12,7 +12,8 @@ const ELEMENT: Shape = Shape {
     what: "an element",
     keys: &[&keys![
         from: Form::Point, "Where the element runs from; where the one before it ends, if left out.";
-        needed to: Form::Point, "Where the element runs to.";
+        needed to: Form::Point, "Where the element runs to."
+            => "this element does not say where it runs to";
         direction: Form::Whole(1, Some(4)),
             "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
              sides swapped), 3 x reflected (its ends swapped), 4 both.";
@@ -44,7 +45,8 @@ pub(super) const ABOUT_ELEMENTS: &str = "A list of points and elements: a chain 
 pub(in crate::document) const INITIATOR: Shape = Shape {
     what: "an initiator",
     keys: &[&keys![
-        needed elements: ELEMENTS, ABOUT_ELEMENTS;
+        needed elements: ELEMENTS, ABOUT_ELEMENTS
+            => "an initiator needs `elements`", "elements: [[0, 0], [1, 0]]";
         closed: Form::Flag(false),
             "Whether one more element runs from the last point back to the first.";
         connected: Form::Flag(true), "Whether elements join each other at all.";
@@ -69,22 +71,15 @@ pub(super) fn read_initiator(reader: &mut Reader, node: &Node) -> InitiatorDocum
     if let Some(fields) = reader.fields(node, &INITIATOR) {
         initiator.closed = reader.flag(&fields, "closed");
         initiator.connected = reader.flag(&fields, "connected");
-        initiator.entries = required_entries(reader, &fields, INITIATOR.what);
+        initiator.entries = listed_entries(reader, &fields);
     }
     initiator
 }
 
-/// Reads the required key `elements` of an initiator, a generator or a part.
-pub(super) fn required_entries(reader: &mut Reader, fields: &Fields<'_>, what: &str) -> Vec<Entry> {
-    if let Some(node) = fields.take("elements") {
-        return read_entries(reader, node);
-    }
-    reader.error_with_hint(
-        &fields.place.first_line(),
-        format!("{what} needs `elements`"),
-        "elements: [[0, 0], [1, 0]]",
-    );
-    Vec::new()
+/// Reads the key `elements` of an initiator, a generator or a part.
+pub(super) fn listed_entries(reader: &mut Reader, fields: &Fields<'_>) -> Vec<Entry> {
+    let node = fields.take("elements");
+    node.map_or_else(Vec::new, |node| read_entries(reader, node))
 }
 
 /// Reads the list of elements of an initiator or of a part.
@@ -117,14 +112,10 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
     let Some(fields) = reader.fields(node, &ELEMENT) else {
         return Entry::Point(Point::unknown(&node.place));
     };
-    let to = reader.optional_point(fields.take("to")).unwrap_or_else(|| {
-        let message = "this element does not say where it runs to";
-        reader.error_with_hint(&node.place.first_line(), message, ELEMENT.hint);
-        Point::unknown(&node.place)
-    });
+    let to = reader.optional_point(fields.take("to"));
     Entry::Element(Box::new(Listed {
         from: reader.optional_point(fields.take("from")),
-        to,
+        to: to.unwrap_or_else(|| Point::unknown(&node.place)),
         direction: reader.optional_number(fields.take("direction")),
         fertile: reader.flag(&fields, "fertile"),
         visible: reader.flag(&fields, "visible"),

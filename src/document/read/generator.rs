@@ -8,7 +8,7 @@ use crate::document::shape::{Form, Shape, keys, way};
 use crate::document::{Number, Written};
 use crate::rule::Placement;
 
-use super::elements::{ABOUT_ELEMENTS, ELEMENTS, read_entries, required_entries};
+use super::elements::{ABOUT_ELEMENTS, ELEMENTS, listed_entries, read_entries};
 use super::parameters::written;
 use super::set::pair;
 
@@ -46,7 +46,8 @@ const PART: Shape = Shape {
             "Whether one more element runs from the last point back to the first; for a part that \
              seeds.";
         connected: Form::Flag(true), "Whether elements join each other at all.";
-        needed elements: ELEMENTS, ABOUT_ELEMENTS;
+        needed elements: ELEMENTS, ABOUT_ELEMENTS
+            => "a part needs `elements`", "elements: [[0, 0], [1, 0]]";
     ]],
     ways: &[],
     hint: "- {seeds: true, elements: [...]}",
@@ -175,18 +176,22 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
                 );
             }
             let hint = "parts: [{elements: [...]}, {seeds: true, elements: [...]}]";
-            let list = reader.list(parts, "a list of parts", hint);
-            if matches!(&parts.value, Value::Sequence(list) if list.is_empty()) {
-                reader.error_with_hint(&parts.place, "there is no part in this list", hint);
-            }
+            let list = reader.filled(parts, "a list of parts", "part", hint);
             let parts = list.iter().filter_map(|part| read_part(reader, part));
             generator.parts.extend(parts);
         }
-        None => generator.parts.push(PartDocument {
-            connected: reader.flag(&fields, "connected"),
-            entries: required_entries(reader, &fields, GENERATOR.what),
-            ..part
-        }),
+        None => {
+            if fields.take("elements").is_none() {
+                let message = "a generator needs `elements`";
+                let hint = "elements: [[0, 0], [1, 0]]";
+                reader.error_with_hint(&fields.place.first_line(), message, hint);
+            }
+            generator.parts.push(PartDocument {
+                connected: reader.flag(&fields, "connected"),
+                entries: listed_entries(reader, &fields),
+                ..part
+            });
+        }
     }
     generator
 }
@@ -230,7 +235,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     }
     Some(PartDocument {
         placement,
-        entries: required_entries(reader, &fields, PART.what),
+        entries: listed_entries(reader, &fields),
         closed: closed && seeds,
         connected: reader.flag(&fields, "connected"),
         place: node.place.clone(),

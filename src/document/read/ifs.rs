@@ -14,7 +14,7 @@ use crate::kind::Kind;
 
 use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::{PARAMS, written};
-use super::set::{CONDENSATION, SET, pair, read_set};
+use super::set::{CONDENSATION, SET, pair, read_initial, read_set};
 
 /// Keys of an iterated function system.
 pub(in crate::document) const IFS: Shape = Shape {
@@ -102,9 +102,11 @@ const WAYS_TO_PLACE: [Way; 3] = [
 const VERTICES: Shape = Shape {
     what: "vertices",
     keys: &[&keys![
-        needed points: Form::List(&Form::Point, 1, None), "The vertices: a map towards each.";
+        needed points: Form::List(&Form::Point, 1, None), "The vertices: a map towards each."
+            => "there are no `points`";
         needed shrink: Form::Number,
-            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it.";
+            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it."
+            => "vertices need `shrink`: what is left of the way to one";
     ]],
     ways: &[],
     hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
@@ -116,7 +118,8 @@ const INTERPOLATION: Shape = Shape {
         needed points: // A name of a file; `Text` would admit only text that is not a number.
             Form::Either(&[Form::List(&Form::Point, 3, None), Form::Expression]),
             "The points that the curve runs through, from left to right; or the name of a file beside \
-             this one with a column of x and one of y.";
+             this one with a column of x and one of y."
+            => "there are no `points`";
         scale: Form::Either(&[Form::Number, Form::List(&Form::Number, 1, None)]),
             "By how much heights shrink from the whole to its pieces, between -1 and 1: one factor, or \
              one for each piece.";
@@ -135,12 +138,8 @@ pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Opti
     let fields = reader.fields(node, &IFS)?;
     let heading = read_heading(reader, &fields);
     let condensation = fields.take("condensation").map_or(&[][..], |node| {
-        let list = reader.list(node, "a list of condensation sets", CONDENSATION.hint);
-        if matches!(node.value, Value::Sequence(_)) && list.is_empty() {
-            let message = "there is no condensation set in this list";
-            reader.error_with_hint(&node.place, message, CONDENSATION.hint);
-        }
-        list
+        let what = "a list of condensation sets";
+        reader.filled(node, what, "condensation set", CONDENSATION.hint)
     });
     let condensation: Vec<_> = condensation
         .iter()
@@ -152,15 +151,11 @@ pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Opti
             })
         })
         .collect();
-    let initial = fields.take("initial").and_then(|node| {
-        let fields = reader.fields(node, &SET)?;
-        Some(read_set(reader, &fields))
-    });
     let mut ifs = IfsDocument {
         heading,
         maps: read_maps(reader, &fields),
         condensation,
-        initial,
+        initial: read_initial(reader, &fields),
         edges: fields
             .take("edges")
             .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
@@ -299,11 +294,7 @@ pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]
 fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
     let fields = reader.fields(node, &VERTICES)?;
     let points = read_points(reader, &fields, VERTICES.hint);
-    let shrink = fields.take("shrink").map(|node| reader.number(node));
-    if shrink.is_none() {
-        let message = "vertices need `shrink`: what is left of the way to one";
-        reader.error_with_hint(&node.place.first_line(), message, VERTICES.hint);
-    }
+    let shrink = reader.optional_number(fields.take("shrink"));
     Some(MapsDocument::Vertices {
         points: points?,
         shrink: shrink?,
@@ -320,26 +311,24 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
         _ => Scales::One(reader.number(node)),
     });
     let dimension = reader.optional_number(fields.take("dimension"));
-    if scale.is_some() == dimension.is_some() {
-        let message = "an interpolation needs `scale` or `dimension`, and not both";
-        reader.error_with_hint(&node.place.first_line(), message, INTERPOLATION.hint);
-        return None;
-    }
+    let scale = match (scale, dimension.map(Scales::Dimension)) {
+        (Some(scale), None) | (None, Some(scale)) => scale,
+        _ => {
+            let message = "an interpolation needs `scale` or `dimension`, and not both";
+            reader.error_with_hint(&node.place.first_line(), message, INTERPOLATION.hint);
+            return None;
+        }
+    };
     Some(InterpolationDocument {
         points: points?,
         scale,
-        dimension,
         place: node.place.clone(),
     })
 }
 
 /// Reads the required key `points`.
 fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
-    let Some(node) = fields.take("points") else {
-        let message = "there are no `points`";
-        reader.error_with_hint(&fields.place.first_line(), message, hint);
-        return None;
-    };
+    let node = fields.take("points")?;
     let list = reader.list(node, "a list of points", hint);
     if !matches!(node.value, Value::Sequence(_)) {
         return None;

@@ -16,7 +16,7 @@ use crate::kind::Kind;
 
 use super::metadata::{DESCRIPTION, LIKING, read_heading};
 use super::parameters::PARAMS;
-use super::set::{FORMS, OF_FRACTAL, SET, read_set};
+use super::set::{FORMS, OF_FRACTAL, SET, read_initial, read_set};
 use super::transform::{TRANSFORMS, read_transforms};
 
 /// Keys of an instancing structure.
@@ -36,8 +36,10 @@ const INSTANCING_ALONE: [Member; 6] = keys![
     =PARAMS;
     alone objects: Form::Names(&UNION_OF, 1),
         "The canonical objects, by name: each a union of instances. An object with a level is written \
-         `A(n)`, and `A(0)` for one level that is another.";
-    alone scene: UNION_OF, "The object that places the scene.";
+         `A(n)`, and `A(0)` for one level that is another."
+        => "the structure has no objects";
+    alone scene: UNION_OF, "The object that places the scene."
+        => "the structure has no scene", "scene: [A] places the object A";
     initial: Form::Mapping(&SET),
         "What stands for an object that has not been replaced yet. If left out, nothing does where \
          there are shapes, or else the box of the object's limit set.";
@@ -56,7 +58,8 @@ const UNION: Shape = Shape {
     what: "an object",
     keys: &[
         &keys![
-            needed union: INSTANCES, "The instances: names of objects, or mappings.";
+            needed union: INSTANCES, "The instances: names of objects, or mappings."
+                => "an object needs a `union` of instances";
         ],
         &TRANSFORMS,
     ],
@@ -83,7 +86,8 @@ const INSTANCE: Shape = Shape {
 const TINT: Shape = Shape {
     what: "a tint",
     keys: &[&keys![
-        needed color: Form::Colour, "The colour, as CSS writes it.";
+        needed color: Form::Colour, "The colour, as CSS writes it."
+            => "a tint needs a `color`";
         alpha: Form::Number,
             "How much it covers of what comes from further inside, from 0 to 1; all if left out.";
     ]],
@@ -108,30 +112,16 @@ pub(super) fn read_instancing(
             reader.mismatch(node, "a mapping of names to objects", UNION.hint);
             Vec::new()
         }
-        None => {
-            let message = "the structure has no objects";
-            reader.error_with_hint(&fields.place.first_line(), message, INSTANCING.hint);
-            Vec::new()
-        }
+        None => Vec::new(),
     };
-    let scene = match fields.take("scene") {
-        Some(node) => read_union(reader, node),
-        None => {
-            let message = "the structure has no scene";
-            let hint = "scene: [A] places the object A";
-            reader.error_with_hint(&fields.place.first_line(), message, hint);
-            None
-        }
-    };
-    let initial = fields.take("initial").and_then(|node| {
-        let fields = reader.fields(node, &SET)?;
-        Some(read_set(reader, &fields))
-    });
+    let scene = fields
+        .take("scene")
+        .and_then(|node| read_union(reader, node));
     let mut structure = InstancingDocument {
         heading,
         objects,
         scene,
-        initial,
+        initial: read_initial(reader, &fields),
         tells_colours: fields
             .take("style")
             .is_some_and(|style| style.get("color_by").is_some()),
@@ -193,14 +183,8 @@ fn read_union(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
         });
     }
     let fields = reader.fields(node, &UNION)?;
-    let instances = match fields.take("union") {
-        Some(node) => read_instances(reader, node),
-        None => {
-            let message = "an object needs a `union` of instances";
-            reader.error_with_hint(&node.place.first_line(), message, UNION.hint);
-            Vec::new()
-        }
-    };
+    let instances = fields.take("union");
+    let instances = instances.map_or_else(Vec::new, |node| read_instances(reader, node));
     Some(UnionDocument {
         instances,
         transforms: read_transforms(reader, &fields),
@@ -209,11 +193,7 @@ fn read_union(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
 }
 
 fn read_instances(reader: &mut Reader, node: &Node) -> Vec<InstanceDocument> {
-    let list = reader.list(node, "a list of instances", INSTANCE.hint);
-    if list.is_empty() && matches!(node.value, Value::Sequence(_)) {
-        let message = "there is no instance in this list";
-        reader.error_with_hint(&node.place, message, INSTANCE.hint);
-    }
+    let list = reader.filled(node, "a list of instances", "instance", INSTANCE.hint);
     list.iter()
         .map(|node| read_instance(reader, node))
         .collect()
@@ -233,10 +213,6 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
         instance.transforms = read_transforms(reader, &fields);
         instance.tint = fields.take("tint").and_then(|node| {
             let fields = reader.fields(node, &TINT)?;
-            if fields.take("color").is_none() {
-                let message = "a tint needs a `color`";
-                reader.error_with_hint(&node.place.first_line(), message, TINT.hint);
-            }
             Some(TintDocument {
                 colour: fields
                     .take("color")

@@ -31,10 +31,12 @@ const LSYSTEM_ALONE: [Member; 11] = keys![
     =PARAMS;
     alone axiom: Form::Text,
         "The word that all begins with: symbols, perhaps with arguments, such as `F` or `A(1, 10)`. \
-         Blanks mean nothing.";
+         Blanks mean nothing."
+            => "the L-system has no axiom", "axiom: F";
     alone productions: Form::Either(&[Form::Names(&Form::Either(&[Form::Text, Form::List(&Form::Either(&[Form::Text, Form::Mapping(&ALTERNATIVE)]), 1, None), Form::Mapping(&ALTERNATIVE)]), 0), Form::List(&Form::Either(&[Form::Text, Form::Mapping(&PRODUCTION)]), 0, None)]),
         "What replaces what: a mapping of symbols to words, or to lists of words of which one is \
-         drawn; or a list of productions such as `A(w) : w > 1 -> F[A(w/2)]` and `A < B > C -> AB`.";
+         drawn; or a list of productions such as `A(w) : w > 1 -> F[A(w/2)]` and `A < B > C -> AB`."
+            => "the L-system has no productions", "productions: {F: F+F--F+F}";
     angle: Form::Number,
         "By how much `+` turns counter-clockwise and `-` clockwise, in degrees; 90 if left out.";
     heading: Form::Number,
@@ -56,7 +58,8 @@ const WEIGHT: Member = key(
 const ALTERNATIVE: Shape = Shape {
     what: "an alternative",
     keys: &[&keys![
-        needed to: Form::Text, "The word that replaces the module.";
+        needed to: Form::Text, "The word that replaces the module."
+            => "this alternative has no word";
         =WEIGHT;
     ]],
     ways: &[],
@@ -66,7 +69,8 @@ const ALTERNATIVE: Shape = Shape {
 const PRODUCTION: Shape = Shape {
     what: "a production",
     keys: &[&keys![
-        needed production: Form::Text, "The production: `F -> F[+F]F`.";
+        needed production: Form::Text, "The production: `F -> F[+F]F`."
+            => "this entry has no production";
         weight: Form::Positive, "How often it is taken, relative to others with weights that fit.";
     ]],
     ways: &[],
@@ -88,16 +92,6 @@ pub(super) fn read_lsystem(
     let mut number = |key| reader.optional_number(fields.take(key));
     let (angle, start) = (number("angle"), number("heading"));
     let (length, thinning) = (number("length"), number("thinning"));
-    for (key, hint) in [
-        ("axiom", "axiom: F"),
-        ("productions", "productions: {F: F+F--F+F}"),
-    ] {
-        if fields.take(key).is_none() {
-            let place = fields.place.first_line();
-            let message = format!("the L-system has no {key}");
-            reader.error_with_hint(&place, message, hint);
-        }
-    }
     let mut words = Words::new(reader);
     let axiom = fields.take("axiom").and_then(|node| words.of(node));
     let productions = fields
@@ -175,15 +169,7 @@ fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocum
             }
             let fields = words.reader.fields(node, &PRODUCTION)?;
             let weight = words.reader.optional_number(fields.take("weight"));
-            let Some(text) = fields.take("production") else {
-                let message = "this entry has no production";
-                let place = node.place.first_line();
-                words
-                    .reader
-                    .error_with_hint(&place, message, PRODUCTION.hint);
-                return None;
-            };
-            (text, weight)
+            (fields.take("production")?, weight)
         }
         _ => (node, None),
     };
@@ -283,15 +269,7 @@ fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument,
     }
     let fields = words.reader.fields(node, &ALTERNATIVE)?;
     let weight = words.reader.optional_number(fields.take("weight"));
-    let Some(to) = fields.take("to") else {
-        let message = "this alternative has no word";
-        let place = node.place.first_line();
-        words
-            .reader
-            .error_with_hint(&place, message, ALTERNATIVE.hint);
-        return None;
-    };
-    Some((words.of(to)?, weight))
+    Some((words.of(fields.take("to")?)?, weight))
 }
 
 impl Words<'_> {

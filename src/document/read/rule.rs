@@ -34,7 +34,8 @@ const RULE_ALONE: [Member; 8] = keys![
     =PARAMS;
     alone initiator: Form::Either(&[Form::File(Shelf::Initiators), ELEMENTS, Form::Mapping(&INITIATOR)]),
         "What the growth starts from: a name from the library, a list of points and elements, or a \
-         mapping.";
+         mapping."
+        => "the rule has no initiator", "initiator: segment";
     generator: GENERATOR_OF,
         "What replaces an element at every step: a name from the library, a list of points and \
          elements from [0, 0] to [1, 0], or a mapping.";
@@ -54,11 +55,7 @@ pub(super) fn read_rule(reader: &mut Reader, node: &Node, complete: bool) -> Opt
     let fields = reader.fields(node, &RULE)?;
     let initiator = match fields.take("initiator") {
         Some(node) => read_initiator(reader, node),
-        None => {
-            let message = "the rule has no initiator";
-            reader.error_with_hint(&fields.place.first_line(), message, "initiator: segment");
-            InitiatorDocument::missing(fields.place)
-        }
+        None => InitiatorDocument::missing(fields.place),
     };
     let heading = read_heading(reader, &fields);
     let mut rule = RuleDocument {

@@ -30,7 +30,8 @@ const CASE: Shape = Shape {
         when: Form::Expression,
             "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, `step` \
              and `length`. The last case has none.";
-        needed use: Form::Text, "The generator that replaces the element.";
+        needed use: Form::Text, "The generator that replaces the element."
+            => "this case names no generator";
     ]],
     ways: &[],
     hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
@@ -57,12 +58,8 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
                 return (None, None);
             };
             let when = reader.optional_number(fields.take("when"));
-            let Some(name) = fields.take("use") else {
-                let place = entry.place.first_line();
-                reader.error_with_hint(&place, "this case names no generator", CASE.hint);
-                return (when, None);
-            };
-            (when, reader.name(name))
+            let name = fields.take("use");
+            (when, name.and_then(|name| reader.name(name)))
         });
         return SelectDocument::Cases(cases.collect(), node.place.clone());
     }
@@ -90,10 +87,7 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
 
 fn by_index(reader: &mut Reader, list: &Node) -> SelectDocument {
     let hint = "by_index: [gen0, gen1]";
-    let entries = reader.list(list, "a list of generators", hint);
-    if matches!(&list.value, Value::Sequence(list) if list.is_empty()) {
-        reader.error_with_hint(&list.place, "there is no generator in this list", hint);
-    }
+    let entries = reader.filled(list, "a list of generators", "generator", hint);
     let names: Vec<_> = entries
         .iter()
         .filter_map(|entry| reader.name(entry))

@@ -3,7 +3,7 @@
 use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, ShapeDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, Way, keys};
+use crate::document::shape::{Form, Member, Shape, Way, keys, way};
 use crate::document::{Number, Point, Written};
 use crate::expression::PARTS;
 use crate::kind::Kind;
@@ -63,64 +63,47 @@ pub(super) const OF_FRACTAL: [Member; 4] = keys![
     map: Form::Mapping(&PLACE), "Where the fractal stands, if not where its file has it.";
 ];
 
-const fn alone(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
-    Way { needs, excludes }
+/// Names of the keys of a set: those of [`FORMS`], then those of [`OF_FRACTAL`].
+const NAMES: [&str; 11] = {
+    let mut names = [""; 11];
+    let mut number = 0;
+    while number < names.len() {
+        names[number] = match number {
+            0..7 => FORMS[number].name,
+            _ => OF_FRACTAL[number - 7].name,
+        };
+        number += 1;
+    }
+    names
+};
+
+/// Returns the first `N` keys of a set but one.
+const fn others<const N: usize>(one: usize) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut number = 0;
+    while number < N {
+        names[number] = NAMES[if number < one { number } else { number + 1 }];
+        number += 1;
+    }
+    names
 }
 
 const WAYS: [Way; 7] = [
-    alone(
-        &["point"],
-        &[
-            "segment", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
-            "map",
-        ],
-    ),
-    alone(
-        &["segment"],
-        &[
-            "point", "polyline", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
-            "map",
-        ],
-    ),
-    alone(
-        &["polyline"],
-        &[
-            "point", "segment", "polygon", "disk", "ellipse", "fractal", "steps", "seed", "set",
-            "map",
-        ],
-    ),
-    alone(
-        &["polygon"],
-        &[
-            "point", "segment", "polyline", "disk", "ellipse", "fractal", "steps", "seed", "set",
-            "map",
-        ],
-    ),
-    alone(
-        &["disk"],
-        &[
-            "point", "segment", "polyline", "polygon", "ellipse", "fractal", "steps", "seed",
-            "set", "map",
-        ],
-    ),
-    alone(
-        &["ellipse"],
-        &[
-            "point", "segment", "polyline", "polygon", "disk", "fractal", "steps", "seed", "set",
-            "map",
-        ],
-    ),
-    alone(
-        &["fractal"],
-        &["point", "segment", "polyline", "polygon", "disk", "ellipse"],
-    ),
+    way(&[NAMES[0]], &others::<10>(0)),
+    way(&[NAMES[1]], &others::<10>(1)),
+    way(&[NAMES[2]], &others::<10>(2)),
+    way(&[NAMES[3]], &others::<10>(3)),
+    way(&[NAMES[4]], &others::<10>(4)),
+    way(&[NAMES[5]], &others::<10>(5)),
+    way(&[NAMES[6]], &others::<6>(6)),
 ];
 
 const DISK: Shape = Shape {
     what: "a disk",
     keys: &[&keys![
         centre: Form::Point, "Its centre; [0, 0] if left out.";
-        needed radius: Form::Positive, "Its radius, above 0.";
+        needed radius: Form::Positive, "Its radius, above 0."
+            => "a disk needs a radius";
     ]],
     ways: &[],
     hint: "disk: {centre: [0, 0], radius: 1}",
@@ -131,12 +114,19 @@ const ELLIPSE: Shape = Shape {
     keys: &[&keys![
         centre: Form::Point, "Its centre; [0, 0] if left out.";
         needed axes: Form::Either(&[Form::Number, Form::Point]),
-            "Its half axes: from the centre to the right, and upwards.";
+            "Its half axes: from the centre to the right, and upwards."
+            => "an ellipse needs its half axes";
         rotate: Form::Number, "By how much it is turned, in degrees, counter-clockwise.";
     ]],
     ways: &[],
     hint: "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}",
 };
+
+/// Reads the key `initial` of a file.
+pub(super) fn read_initial(reader: &mut Reader, fields: &Fields<'_>) -> Option<ShapeDocument> {
+    let fields = reader.fields(fields.take("initial")?, &SET)?;
+    Some(read_set(reader, &fields))
+}
 
 /// Reads a set from the one key that defines its geometry.
 pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocument {
@@ -196,10 +186,7 @@ fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocu
 
 fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
     let fields = reader.fields(node, &DISK)?;
-    let Some(radius) = reader.optional_number(fields.take("radius")) else {
-        reader.error_with_hint(&node.place.first_line(), "a disk needs a radius", DISK.hint);
-        return None;
-    };
+    let radius = reader.optional_number(fields.take("radius"))?;
     Some(FormDocument::Ellipse(Box::new(EllipseDocument {
         centre: read_centre(reader, &fields),
         axes: [radius.clone(), radius],
@@ -209,11 +196,7 @@ fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
 
 fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
     let fields = reader.fields(node, &ELLIPSE)?;
-    let Some(axes) = fields.take("axes").map(|node| pair(reader, node)) else {
-        let message = "an ellipse needs its half axes";
-        reader.error_with_hint(&node.place.first_line(), message, ELLIPSE.hint);
-        return None;
-    };
+    let axes = pair(reader, fields.take("axes")?);
     Some(FormDocument::Ellipse(Box::new(EllipseDocument {
         centre: read_centre(reader, &fields),
         axes,

@@ -1,7 +1,7 @@
 //! Reading of transforms, in the order in which they are written.
 
 use crate::document::instancing::TransformDocument;
-use crate::document::node::{Node, Value};
+use crate::document::node::Node;
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys};
 
@@ -75,11 +75,7 @@ pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<T
 }
 
 fn read_list(reader: &mut Reader, node: &Node) -> Vec<TransformDocument> {
-    let list = reader.list(node, "a list of transforms", TRANSFORM.hint);
-    if list.is_empty() && matches!(node.value, Value::Sequence(_)) {
-        let message = "there is no transform in this list";
-        reader.error_with_hint(&node.place, message, TRANSFORM.hint);
-    }
+    let list = reader.filled(node, "a list of transforms", "transform", TRANSFORM.hint);
     let mut transforms = Vec::new();
     for node in list {
         if let Some(fields) = reader.fields(node, &TRANSFORM) {
