@@ -214,11 +214,7 @@ impl Reader {
                     return Expression::unknown();
                 }
                 let place = node.within(error.range.clone());
-                let mut diagnostic = Diagnostic::error(error.message).at(&place);
-                if let Some(hint) = error.hint {
-                    diagnostic = diagnostic.hint(hint);
-                }
-                self.diagnostics.push(diagnostic);
+                self.diagnostics.push(error.at(&place));
                 Expression::unknown()
             }),
             _ => {

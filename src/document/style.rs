@@ -1,6 +1,5 @@
 //! Reading of `style` and `view`.
 
-use crate::diagnostic::Diagnostic;
 use crate::expression::Scope;
 use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, View, Width};
 
@@ -148,14 +147,12 @@ fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
     let number = reader.number(node);
     match number.value.compile(&Scope::new()) {
         Ok(program) => program.as_constant(),
-        Err(error) => {
-            let mut diagnostic = Diagnostic::error(error.message).at(&node.within(error.range));
-            if number.value.names().is_empty() {
-                diagnostic = error.hint.into_iter().fold(diagnostic, Diagnostic::hint);
-            } else {
-                diagnostic = diagnostic.hint("a style or view does not know the parameters");
+        Err(mut error) => {
+            if !number.value.names().is_empty() {
+                error.hint = Some("a style or view does not know the parameters".into());
             }
-            reader.diagnostics.push(diagnostic);
+            let place = node.within(error.range.clone());
+            reader.diagnostics.push(error.at(&place));
             None
         }
     }

@@ -42,6 +42,7 @@ pub(crate) use program::{Arithmetic, Doubles, Evaluation, Symbols, gcd};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 
+use crate::diagnostic::{Diagnostic, Place};
 use functions::{Function, Meaning};
 use operator::{One, Two};
 
@@ -80,6 +81,12 @@ impl ExpressionError {
             hint: Some(hint.into()),
             ..self
         }
+    }
+
+    /// Converts the mistake to a diagnostic at a place.
+    pub(crate) fn at(self, place: &Place) -> Diagnostic {
+        let diagnostic = Diagnostic::error(self.message).at(place);
+        self.hint.into_iter().fold(diagnostic, Diagnostic::hint)
     }
 }
 

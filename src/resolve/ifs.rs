@@ -37,15 +37,11 @@ impl Resolver<OfIfs> {
             .condensation
             .iter()
             .map(|set| {
-                let weight = set.weight.as_ref().map(|weight| self.constant(weight));
+                let weight = self.optional(set.weight.as_ref());
                 let shape = self.set(&set.shape);
-                let weight = match weight {
-                    None => None,
-                    Some(weight) => Some(weight?),
-                };
                 Some(Condensation {
+                    weight: weight?,
                     shape: shape?,
-                    weight,
                 })
             })
             .collect();
@@ -144,15 +140,12 @@ impl Resolver<OfIfs> {
 
     fn map(&mut self, document: &MapDocument) -> Option<(Map, Affine<Program>)> {
         let written = self.affine(document);
-        let weight = document.weight.as_ref().map(|it| self.constant(it));
+        let weight = self.optional(document.weight.as_ref());
         let written = written?;
         let map = Map {
             name: document.name.as_ref().map(|name| name.value.clone()),
             affine: written.as_constant()?,
-            weight: match weight {
-                None => None,
-                Some(weight) => Some(weight?),
-            },
+            weight: weight?,
         };
         Some((map, written))
     }
@@ -160,14 +153,11 @@ impl Resolver<OfIfs> {
     fn edge(&mut self, edge: &EdgeDocument, names: &[Option<&str>]) -> Option<Edge> {
         let from = self.map_called(&edge.from, names);
         let to = self.map_called(&edge.to, names);
-        let weight = edge.weight.as_ref().map(|weight| self.constant(weight));
+        let weight = self.optional(edge.weight.as_ref());
         Some(Edge {
             from: from?,
             to: to?,
-            weight: match weight {
-                None => None,
-                Some(weight) => Some(weight?),
-            },
+            weight: weight?,
         })
     }
 

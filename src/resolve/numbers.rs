@@ -1,6 +1,6 @@
 //! Compilation of expressions in a scope.
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::Place;
 use crate::document::{Number, Point};
 use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type};
 use crate::geometry::DVec2;
@@ -44,22 +44,23 @@ impl<K> Resolver<K> {
         })
     }
 
-    fn mistake(&mut self, number: &Number, mistake: ExpressionError) {
-        let place = within(number, mistake.range);
-        let diagnostic = Diagnostic::error(mistake.message).at(&place);
-        let hint = if ElementContext::NAMES.contains(&place.text()) {
-            Some("it is known in generators and in conditions, but not here".into())
-        } else {
-            mistake.hint
-        };
+    fn mistake(&mut self, number: &Number, mut mistake: ExpressionError) {
+        let place = within(number, mistake.range.clone());
+        if ElementContext::NAMES.contains(&place.text()) {
+            mistake.hint = Some("it is known in generators and in conditions, but not here".into());
+        }
         self.mistakes += 1;
-        self.diagnostics
-            .push(hint.into_iter().fold(diagnostic, Diagnostic::hint));
+        self.diagnostics.push(mistake.at(&place));
     }
 
     /// Evaluates a number in the scope of parameters. Returns `None` if its value is unknown.
     pub(super) fn constant(&mut self, number: &Number) -> Option<f64> {
         self.constant_program(number).as_constant()
+    }
+
+    /// Evaluates a number that may be left out. Returns `None` if its value is unknown.
+    pub(super) fn optional(&mut self, number: Option<&Number>) -> Option<Option<f64>> {
+        number.map_or(Some(None), |number| self.constant(number).map(Some))
     }
 
     /// Compiles a number in the scope of parameters. The program is a constant if its value is known.

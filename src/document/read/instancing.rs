@@ -270,10 +270,9 @@ impl Reader {
     /// Parses an expression that is part of a text; a mistake is reported and a placeholder is
     /// returned.
     fn expression(&mut self, text: &str, place: &Place) -> Number {
-        let value = Expression::parse(text).unwrap_or_else(|error| {
-            let message = error.message;
-            let hint = error.hint.unwrap_or_else(|| "A(n - 1), A(0)".into());
-            self.error_with_hint(place, message, hint);
+        let value = Expression::parse(text).unwrap_or_else(|mut error| {
+            error.hint.get_or_insert_with(|| "A(n - 1), A(0)".into());
+            self.diagnostics.push(error.at(place));
             Expression::unknown()
         });
         Written {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::Place;
 use crate::document::lsystem::{ModuleDocument, WordDocument};
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
@@ -215,9 +215,7 @@ impl<'r> Words<'r> {
         let value = Expression::parse(&text.text[part.clone()]).unwrap_or_else(|error| {
             let range = part.start + error.range.start..part.start + error.range.end;
             let place = text.at(if part.is_empty() { shown } else { range });
-            let diagnostic = Diagnostic::error(error.message).at(&place);
-            let diagnostic = error.hint.into_iter().fold(diagnostic, Diagnostic::hint);
-            self.reader.diagnostics.push(diagnostic);
+            self.reader.diagnostics.push(error.at(&place));
             Expression::unknown()
         });
         Written {
