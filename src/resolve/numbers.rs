@@ -73,8 +73,7 @@ impl<K> Resolver<K> {
 
     /// Evaluates a point in the scope of parameters. Returns `None` if a coordinate is unknown.
     pub(super) fn constant_point(&mut self, point: &Point) -> Option<DVec2> {
-        let [x, y] = self.point(point)?;
-        Some(DVec2::new(x.as_constant()?, y.as_constant()?))
+        value(&self.point(point)?)
     }
 
     /// Compiles points in the scope of parameters. Returns `None` if a coordinate is unknown.
@@ -112,13 +111,15 @@ impl<K> Resolver<K> {
     }
 }
 
-/// Returns the values of the coordinates of points; NaN for one that is not constant.
+/// Returns the value of a point if its coordinates are constants.
+pub(super) fn value([x, y]: &[Program; 2]) -> Option<DVec2> {
+    Some(DVec2::new(x.as_constant()?, y.as_constant()?))
+}
+
+/// Returns the values of points; NaN for one whose coordinates are not constants.
 pub(super) fn values(points: &[[Program; 2]]) -> Vec<DVec2> {
-    let value = |program: &Program| program.as_constant().unwrap_or(f64::NAN);
-    let points = points.iter();
-    points
-        .map(|[x, y]| DVec2::new(value(x), value(y)))
-        .collect()
+    let values = points.iter().map(value);
+    values.map(|it| it.unwrap_or(DVec2::NAN)).collect()
 }
 
 /// Returns the place of a part of a number, or of the whole number if its notation differs from its

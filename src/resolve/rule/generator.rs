@@ -5,10 +5,9 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Entry, GeneratorDocument, Number, Point, Written};
 use crate::expression::{Program, Scope};
-use crate::geometry::DVec2;
 
 use super::OfRule;
-use crate::resolve::Resolver;
+use crate::resolve::{Resolver, numbers};
 use crate::rule::{Generator, ListedElement, Origin, Part, Placement, Selection};
 
 impl Resolver<OfRule> {
@@ -103,8 +102,8 @@ impl Resolver<OfRule> {
     /// Warns of elements without length.
     fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
         for element in parts.iter().flat_map(|part| &part.elements) {
-            let from = constant_point(&points[element.from]);
-            if from.is_some() && from == constant_point(&points[element.to]) {
+            let from = numbers::value(&points[element.from]);
+            if from.is_some() && from == numbers::value(&points[element.to]) {
                 let warning = Diagnostic::warning("this element has no length")
                     .at(&written[element.to].place)
                     .hint("it ends where it starts");
@@ -115,7 +114,7 @@ impl Resolver<OfRule> {
 
     /// Collects warnings of fertile elements that are not shorter than those they replace.
     fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
-        let value = |number: usize| constant_point(&points[number]);
+        let value = |number: usize| numbers::value(&points[number]);
         let relative = parts
             .iter()
             .filter(|part| part.placement != Placement::SeedsAsInitiator);
@@ -159,7 +158,7 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
         let elements = relative.flat_map(|part| &part.elements);
         for element in elements.filter(|element| element.fertile) {
             let ends = [element.from, element.to];
-            let [Some(start), Some(end)] = ends.map(|it| constant_point(&generator.points[it]))
+            let [Some(start), Some(end)] = ends.map(|it| numbers::value(&generator.points[it]))
             else {
                 return false;
             };
@@ -181,10 +180,6 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
         }
         has_settled
     })
-}
-
-fn constant_point([x, y]: &[Program; 2]) -> Option<DVec2> {
-    Some(DVec2::new(x.as_constant()?, y.as_constant()?))
 }
 
 /// Returns whether the coordinates of a point are written as exactly these constants.
