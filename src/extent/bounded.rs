@@ -32,7 +32,7 @@ impl Fineness {
     };
 }
 
-/// What objects draw themselves, for hulls of their subtrees.
+/// Shapes of the objects themselves, for hulls of their subtrees.
 #[derive(Clone, Copy, Debug)]
 pub enum Own<'a> {
     /// Outlines, with a padding by object.

@@ -1,5 +1,5 @@
-//! How far things reach: boxes, hulls and radii of subtrees, contraction of maps, and limit sets, computed from
-//! the graph alone or by a search.
+//! Extents of subtrees, approximants and limit sets: boxes, hulls, radii and the contraction of maps, computed
+//! from the graph alone or by a search.
 //!
 //! Support functions along the axes yield the box of an approximant or of the limit set, exact to rounding;
 //! radii of balls about subtrees decide what a walk may leave out; polygons tighten both in the plane, where

@@ -11,8 +11,8 @@ pub const BEYOND: &str = "an element lies beyond the range of numbers";
 ///
 /// Graphs, walks, forecasts, bounds and draws know elements by this interface alone; [`Frame2`](super::Frame2)
 /// is the frame of the plane. In the unit frame an element runs from the origin to the unit point of the x
-/// axis.
-pub trait Frame: Copy + Debug + PartialEq + Send + Sync + 'static {
+/// axis. The default is the unit frame itself.
+pub trait Frame: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The points that frames map.
     type Point: Point;
     /// The shape that is drawn for an element, in the unit frame.

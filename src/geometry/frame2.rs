@@ -8,7 +8,7 @@ use super::{BaseElement, Corners2, Direction, Frame, Homothety};
 ///
 /// In the unit frame the element runs from (0, 0) to (1, 0). With the first and last point of traversal p0
 /// and p1 and the direction d, the map of a similarity is M(z) = p0 + (p1 − p0)·τ_d(z).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame2 {
     map: DAffine2,
     direction: Direction,

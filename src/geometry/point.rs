@@ -9,6 +9,7 @@ use super::{DVec2, DVec3};
 pub trait Point:
     Copy
     + Debug
+    + Default
     + PartialEq
     + Send
     + Sync
@@ -44,7 +45,9 @@ pub trait Point:
     fn max(self, other: Self) -> Self;
     /// Returns the point with the absolute values of the coordinates.
     #[must_use]
-    fn abs(self) -> Self;
+    fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
     /// Returns the largest coordinate.
     #[must_use]
     fn max_element(self) -> f64;
@@ -59,10 +62,14 @@ pub trait Point:
     fn dot(self, other: Self) -> f64;
     /// Returns the length of the vector.
     #[must_use]
-    fn length(self) -> f64;
+    fn length(self) -> f64 {
+        self.dot(self).sqrt()
+    }
     /// Returns `true` if no coordinate is infinite or NaN.
     #[must_use]
-    fn is_finite(self) -> bool;
+    fn is_finite(self) -> bool {
+        self.coordinates().iter().all(|value| value.is_finite())
+    }
     /// Returns the signed area of the triangle with the origin and another point; `None` in space, where a
     /// closed path encloses no area.
     #[must_use]
@@ -102,11 +109,6 @@ macro_rules! point {
             }
 
             #[inline]
-            fn abs(self) -> Self {
-                self.abs()
-            }
-
-            #[inline]
             fn max_element(self) -> f64 {
                 self.max_element()
             }
@@ -124,16 +126,6 @@ macro_rules! point {
             #[inline]
             fn dot(self, other: Self) -> f64 {
                 self.dot(other)
-            }
-
-            #[inline]
-            fn length(self) -> f64 {
-                self.length()
-            }
-
-            #[inline]
-            fn is_finite(self) -> bool {
-                self.is_finite()
             }
 
             #[inline]

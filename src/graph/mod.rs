@@ -108,7 +108,7 @@ pub struct Instance<F: Frame = Frame2> {
 }
 
 /// Sequence of instances.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Chain<F: Frame = Frame2> {
     /// Instances in the order of listing.
     pub instances: Vec<Instance<F>>,
@@ -127,7 +127,7 @@ pub struct Seed<F: Frame = Frame2> {
 }
 
 /// Instances that replace an element, and the new fractals that it seeds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Production<F: Frame = Frame2> {
     /// Instances that take the place of the element; empty if it vanishes.
     pub body: Chain<F>,
@@ -408,24 +408,6 @@ impl<F: Frame> Graph<F> {
             .objects
             .iter()
             .any(|object| matches!(object.replacement, Replacement::Evaluated(_)))
-    }
-}
-
-impl<F: Frame> Default for Chain<F> {
-    fn default() -> Self {
-        Self {
-            instances: Vec::new(),
-            meets_frame: [false; 2],
-        }
-    }
-}
-
-impl<F: Frame> Default for Production<F> {
-    fn default() -> Self {
-        Self {
-            body: Chain::default(),
-            seeds: Vec::new(),
-        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::instancing::Appearance;
 use super::Chain;
 
 /// Ancestry of the elements and fractals from which a graph starts in the middle of growth.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Roots<F: Frame = Frame2> {
     /// Ancestry of the elements of the initiator and of the [sown](Self::sown) chains, by position.
     pub(crate) elements: Vec<Root>,
@@ -41,15 +41,6 @@ pub(crate) struct Sown<F: Frame = Frame2> {
     pub(crate) born: u32,
     /// Roots that it consists of.
     pub(crate) chain: Chain<F>,
-}
-
-impl<F: Frame> Default for Roots<F> {
-    fn default() -> Self {
-        Self {
-            elements: Vec::new(),
-            sown: Vec::new(),
-        }
-    }
 }
 
 impl<F: Frame> Roots<F> {

@@ -36,19 +36,10 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
 }
 
 /// Buffers that evaluations reuse.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Buffers<F: Frame> {
     pub(crate) slots: Vec<f64>,
     pub(crate) points: Vec<F::Point>,
-}
-
-impl<F: Frame> Default for Buffers<F> {
-    fn default() -> Self {
-        Self {
-            slots: Vec::new(),
-            points: Vec::new(),
-        }
-    }
 }
 
 impl Source<Frame2> for Rule {

@@ -67,20 +67,13 @@ pub fn count<F: Frame>(
 }
 
 /// Visitor that counts elements and extends a box.
+#[derive(Clone, Copy)]
 struct Counter<'g, F: Frame> {
     graph: &'g Graph<F>,
     fertile: u64,
     length: f64,
     bounds: Bounds<F::Point>,
 }
-
-impl<F: Frame> Clone for Counter<'_, F> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<F: Frame> Copy for Counter<'_, F> {}
 
 impl<F: Frame> Visitor<F> for Counter<'_, F> {
     type Error = Infallible;

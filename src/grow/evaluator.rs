@@ -31,13 +31,8 @@ impl ReplacementContext {
 }
 
 /// Evaluator of productions, with buffers that are reused.
+#[derive(Default)]
 pub(crate) struct Evaluator<F: Frame = Frame2>(Buffers<F>);
-
-impl<F: Frame> Default for Evaluator<F> {
-    fn default() -> Self {
-        Self(Buffers::default())
-    }
-}
 
 impl<F: Frame> Evaluator<F> {
     /// Computes the production of an object that is [`Replacement::Evaluated`], and overwrites `production`.

@@ -29,6 +29,7 @@ pub(super) struct Position {
 }
 
 /// Consecutive part of a walk.
+#[derive(Default)]
 pub(super) struct Span<'w, F: Frame> {
     pub(super) from: Position,
     /// Position where it ends.
@@ -38,18 +39,6 @@ pub(super) struct Span<'w, F: Frame> {
     pub(super) size: u64,
     /// Number of visits above its subtrees.
     pub(super) visited: u64,
-}
-
-impl<F: Frame> Default for Span<'_, F> {
-    fn default() -> Self {
-        Self {
-            from: Position::default(),
-            to: Position::default(),
-            items: Vec::new(),
-            size: 0,
-            visited: 0,
-        }
-    }
 }
 
 impl<'w, F: Frame> Span<'w, F> {

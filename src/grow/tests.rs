@@ -23,7 +23,7 @@ use super::{
 };
 
 /// Frame in space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Frame3 {
     map: DAffine3,
     direction: Direction,
