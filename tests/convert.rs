@@ -317,7 +317,7 @@ generator:
             grows,
             Kind::Instancing,
             Keeps::Limit,
-            "its elements do not shrink",
+            "what is replaced does not shrink",
         ),
         (
             &forest,

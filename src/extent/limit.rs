@@ -16,13 +16,13 @@ pub enum NoLimit {
     #[error("the replacement of its elements depends on their index, which no map determines")]
     CountsIndex,
     /// The graph is resolved for a limited number of steps only.
-    #[error("the replacement of its elements changes from step to step without end")]
+    #[error("what replaces an element changes from step to step without end")]
     Endless,
     /// Seeds are placed as the initiator.
     #[error("it has no limit set: its seeds are placed as the initiator, so nothing shrinks")]
     Resets,
     /// Elements do not shrink.
-    #[error("it has no limit set: its elements do not shrink")]
+    #[error("there is no limit set: what is replaced does not shrink")]
     DoesNotShrink,
     /// No element is replaced infinitely often.
     #[error("nothing stays fertile")]

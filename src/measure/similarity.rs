@@ -35,7 +35,7 @@ impl Similarity {
 #[must_use]
 pub fn similarity_dimension(graph: &Graph) -> Similarity {
     if graph.draws() {
-        return Similarity::none(&NoLimit::Draws);
+        return Similarity::none(&"the ratios may depend on draws");
     }
     if let Err(reason) = graph.check_maps() {
         return Similarity::none(&reason);

@@ -160,7 +160,7 @@ fn what_has_no_limit_says_so() {
     let grows = text("initiator: segment\ngenerator: [[0, 0], [0, 1], [1, 0]]\n");
     assert_eq!(grows.dimensions, None);
     assert!(
-        grows.notes[0].contains("do not shrink"),
+        grows.notes[0].contains("does not shrink"),
         "{:?}",
         grows.notes
     );
