@@ -95,7 +95,7 @@ fn write_csv(bencher: Bencher) {
     let growth = Growth::steps(8);
     let one = NonZero::<usize>::MIN;
     let write = || {
-        let format = export::Format::Csv;
+        let format = export::TableFormat::Csv;
         export::write(&graph, &growth, format, one, &mut io::sink()).unwrap()
     };
     bencher

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use kfrac::Fractal;
-use kfrac::build::{Element, Elements, RuleBuilder};
+use kfrac::build::{ElementBuilder, ElementsBuilder, RuleBuilder};
 use kfrac::geometry::DVec2;
 use kfrac::model::Model;
 use kfrac::rule::{BaseElement, Piece, Rule};
@@ -30,10 +30,10 @@ fn polygons(sides: u32) -> Result<Rule, Box<dyn Error>> {
     let outline = corners.iter().skip(1).map(|&corner| Piece::Line(corner));
     let polygon =
         BaseElement::new(DVec2::ZERO, outline.collect(), true).ok_or("a polygon needs corners")?;
-    let mut copies = Elements::new();
+    let mut copies = ElementsBuilder::new();
     for &corner in &corners {
         let from = corner * (1.0 - ratio);
-        copies = copies.element(Element::to(from + DVec2::X * ratio).from(from));
+        copies = copies.element(ElementBuilder::to(from + DVec2::X * ratio).from(from));
     }
     let rule = RuleBuilder::new([(0, 0), (1, 0)])
         .base_element(&polygon)

@@ -23,20 +23,20 @@ use crate::style::Colour;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instancing {
     pub(crate) heading: Metadata,
-    pub(crate) objects: Vec<Object>,
-    pub(crate) scene: Vec<Instance>,
+    pub(crate) objects: Vec<ObjectDefinition>,
+    pub(crate) scene: Vec<ObjectInstance>,
     pub(crate) initial: Option<Shape>,
 }
 
 /// Canonical object: a union of instances.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Object {
+pub struct ObjectDefinition {
     /// Name, with the level if there is one: `A(3)`.
     pub name: String,
     /// Map that is applied to the whole object.
     pub map: DAffine2,
     /// Instances of which the object is the union.
-    pub instances: Vec<Instance>,
+    pub instances: Vec<ObjectInstance>,
     /// Maps whose product is `map`, as written, for the slots of the object.
     pub(crate) transforms: Arc<[Affine<Program>]>,
     /// Slots of the programs of the object and of its instances: its level, if it has one.
@@ -45,7 +45,7 @@ pub struct Object {
 
 /// Instance of an object or of a shape.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
+pub struct ObjectInstance {
     /// Map into the coordinates of the object that contains the instance.
     pub map: DAffine2,
     /// Object or shape that is instanced.
@@ -83,13 +83,13 @@ impl Instancing {
 
     /// Returns the objects that the scene reaches.
     #[must_use]
-    pub fn objects(&self) -> &[Object] {
+    pub fn objects(&self) -> &[ObjectDefinition] {
         &self.objects
     }
 
     /// Returns the instances of the scene.
     #[must_use]
-    pub fn scene(&self) -> &[Instance] {
+    pub fn scene(&self) -> &[ObjectInstance] {
         &self.scene
     }
 
@@ -103,7 +103,7 @@ impl Instancing {
     /// leads back to itself.
     #[must_use]
     pub fn depth(&self) -> Option<u32> {
-        let children = |instances: &[Instance]| -> Vec<usize> {
+        let children = |instances: &[ObjectInstance]| -> Vec<usize> {
             let masters = instances.iter().map(|instance| &instance.master);
             masters
                 .filter_map(|master| match master {
@@ -138,7 +138,7 @@ impl Instancing {
     }
 
     /// Returns the map of an instance, composed with the map that its object applies to itself.
-    pub(crate) fn map_of(&self, instance: &Instance) -> DAffine2 {
+    pub(crate) fn map_of(&self, instance: &ObjectInstance) -> DAffine2 {
         match instance.master {
             Master::Object(number) => instance.map * self.objects[number].map,
             Master::Shape(_) => instance.map,
@@ -169,12 +169,12 @@ impl Instancing {
 
     /// Returns whether the structure has a shape or an initial set.
     pub(crate) fn draws_anything(&self) -> bool {
-        let is_shape = |instance: &Instance| matches!(instance.master, Master::Shape(_));
+        let is_shape = |instance: &ObjectInstance| matches!(instance.master, Master::Shape(_));
         self.initial.is_some() || self.instances().any(is_shape)
     }
 
     /// Iterates over all instances, those of the scene first.
-    pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
+    pub(crate) fn instances(&self) -> impl Iterator<Item = &ObjectInstance> {
         let objects = self.objects.iter().flat_map(|object| &object.instances);
         self.scene.iter().chain(objects)
     }

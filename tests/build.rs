@@ -4,7 +4,7 @@ mod random;
 mod systems;
 
 use crate::common;
-use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
+use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, RuleBuilder};
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::metadata::Parameter;
@@ -92,9 +92,9 @@ fn generators_take_turns() {
 fn elements_have_directions() {
     let turned = |x: &str, y: &str, number| {
         let direction = Direction::from_number(number).unwrap();
-        Element::to((x, y)).direction(direction)
+        ElementBuilder::to((x, y)).direction(direction)
     };
-    let generator = Elements::new()
+    let generator = ElementsBuilder::new()
         .point((0, 0))
         .element(turned("1/6", "sqrt(3)/6", 2))
         .element(turned("1/3", "sqrt(3)/3", 3))
@@ -116,7 +116,7 @@ fn elements_have_directions() {
 
 #[test]
 fn elements_apart_have_a_closed_base_element() {
-    let mut cells = Elements::new().connected(false);
+    let mut cells = ElementsBuilder::new().connected(false);
     for (x, y) in [
         (0, 0),
         (1, 0),
@@ -128,7 +128,7 @@ fn elements_apart_have_a_closed_base_element() {
         (2, 2),
     ] {
         let corner = |x: i32| (f64::from(x) / 3.0, f64::from(y) / 3.0);
-        cells = cells.element(Element::to(corner(x + 1)).from(corner(x)));
+        cells = cells.element(ElementBuilder::to(corner(x + 1)).from(corner(x)));
     }
     let square = polygon(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)], true);
     let rule = segment()
@@ -145,16 +145,16 @@ fn random_functions_draw_from_parameters() {
         about: Some(about.into()),
         ..Parameter::new(name, value)
     };
-    let roof = Elements::new()
+    let roof = ElementsBuilder::new()
         .point((0, 0))
-        .element(Element::to((0, 1)).fertile(false))
+        .element(ElementBuilder::to((0, 1)).fertile(false))
         .point(("cos(foot)^2", "1 + sin(foot)*cos(foot)"))
         .point((1, 1))
-        .element(Element::to((1, 0)).fertile(false));
-    let generator = Generator::new()
+        .element(ElementBuilder::to((1, 0)).fertile(false));
+    let generator = GeneratorBuilder::new()
         .random("tilt", "uniform(-sway, sway)")
         .random("foot", "uniform(45 - spread, 45 + spread)")
-        .moves(Move::new().rotate("tilt").about((0.5, 1)))
+        .moves(MoveBuilder::new().rotate("tilt").about((0.5, 1)))
         .part(Placement::Stays, roof);
     let turn = "largest turn of the roof, degrees";
     let change = "largest change of the foot angle, degrees";
@@ -167,17 +167,17 @@ fn random_functions_draw_from_parameters() {
 
 #[test]
 fn parts_seed_where_they_stand() {
-    let side = Elements::from([("0", 0), ("1/3", 0), ("2/3", 0), ("1", 0)]);
+    let side = ElementsBuilder::from([("0", 0), ("1/3", 0), ("2/3", 0), ("1", 0)]);
     let third = [
         ("1/3", "1/3"),
         ("1/3", "2/3"),
         ("2/3", "2/3"),
         ("2/3", "1/3"),
     ];
-    let generator = Generator::new()
+    let generator = GeneratorBuilder::new()
         .part(Placement::Stays, side)
-        .part(Placement::Seeds, Elements::from(third).closed(true));
-    let square = Elements::from([(0, 0), (0, 1), (1, 1), (1, 0)]).closed(true);
+        .part(Placement::Seeds, ElementsBuilder::from(third).closed(true));
+    let square = ElementsBuilder::from([(0, 0), (0, 1), (1, 1), (1, 0)]).closed(true);
     let rule = RuleBuilder::new(square)
         .generator("generator", generator)
         .steps(3)
@@ -228,32 +228,32 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
         false,
     );
     let triangle = polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0)], true);
-    let elements = Elements::new()
+    let elements = ElementsBuilder::new()
         .point((0, 0))
-        .element(Element::to((0, 0.5)).fertile(false).visible(false))
-        .element(Element::to((0.5, "age/10")).generator("seed: all"))
-        .element(Element::to((1, 0)).base_element(&triangle));
-    let grow = Generator::new()
+        .element(ElementBuilder::to((0, 0.5)).fertile(false).visible(false))
+        .element(ElementBuilder::to((0.5, "age/10")).generator("seed: all"))
+        .element(ElementBuilder::to((1, 0)).base_element(&triangle));
+    let grow = GeneratorBuilder::new()
         .random("sway", "uniform(-tilt, tilt)")
         .random("size", "choice(0.5, 0.75)")
         .moves(
-            Move::new()
+            MoveBuilder::new()
                 .rotate("sway")
                 .scale(("size", 0.5))
                 .shift((0, 0.25))
                 .about((0.5, 0.5))
                 .points([1, 2]),
         )
-        .moves(Move::new().scale((0.75, 0.75)).all_points())
+        .moves(MoveBuilder::new().scale((0.75, 0.75)).all_points())
         .part(Placement::Stays, elements.connected(false));
-    let seed = Generator::new()
+    let seed = GeneratorBuilder::new()
         .random("left", "uniform(-reach, -2)")
         .part(Placement::SeedsAsInitiator, [("left", 0), ("left + 1", 0)]);
     let colours = ["#000000", "#ff000080"].map(|text| Colour::parse(text).unwrap());
-    let initiator = Elements::new()
+    let initiator = ElementsBuilder::new()
         .point((0, 0))
         .element(
-            Element::to((1, 0))
+            ElementBuilder::to((1, 0))
                 .direction(Direction::YReflected)
                 .connected(false),
         )
@@ -339,7 +339,7 @@ fn mistake(rule: &RuleBuilder) -> String {
 #[test]
 fn every_mistake_has_its_message() {
     let rule = || segment().generator("koch", koch());
-    let with = |generator: Generator| mistake(&segment().generator("g", generator));
+    let with = |generator: GeneratorBuilder| mistake(&segment().generator("g", generator));
     let none: [(i32, i32); 0] = [];
     let no_list = "there is no element in this list";
     assert_eq!(mistake(&segment()), "the rule has no generator");
@@ -347,15 +347,22 @@ fn every_mistake_has_its_message() {
         mistake(&RuleBuilder::new(none).generator("koch", koch())),
         no_list
     );
-    assert_eq!(with(Elements::new().into()), no_list);
+    assert_eq!(with(ElementsBuilder::new().into()), no_list);
     assert_eq!(with([(0, 0)].into()), no_list);
-    assert_eq!(with(Generator::new()), "there is no part in this list");
     assert_eq!(
-        with(Elements::new().element(Element::to((1, 0))).into()),
+        with(GeneratorBuilder::new()),
+        "there is no part in this list"
+    );
+    assert_eq!(
+        with(
+            ElementsBuilder::new()
+                .element(ElementBuilder::to((1, 0)))
+                .into()
+        ),
         "the first element does not say where it runs from"
     );
     assert_eq!(
-        with(Elements::from(SEGMENT).closed(true).into()),
+        with(ElementsBuilder::from(SEGMENT).closed(true).into()),
         "only a part that seeds can be closed"
     );
     assert_eq!(
@@ -398,7 +405,7 @@ fn every_mistake_has_its_message() {
         mistake(&rule().steps(u32::MAX)),
         "a number of steps is a whole number from 0 to 1,000,000"
     );
-    let moving = Generator::from(koch()).moves(Move::new().points([9]));
+    let moving = GeneratorBuilder::from(koch()).moves(MoveBuilder::new().points([9]));
     assert_eq!(
         with(moving),
         "there is no point 9: points are numbered 0 to 4"

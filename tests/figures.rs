@@ -5,7 +5,7 @@ mod svg;
 use crate::common::{document, document_of, resolved};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
-use kfrac::figure::rule::{self, Options};
+use kfrac::figure::rule::{self, RuleFigureOptions};
 use kfrac::model::Model;
 use kfrac::render::{Format, Labels, Size};
 use kfrac::rule::Rule;
@@ -21,10 +21,13 @@ fn names(shelf: Shelf) -> impl Iterator<Item = String> {
 fn figure(document: &Document, format: Format, size: Option<Size>) -> (Vec<u8>, [u32; 2]) {
     let model = document.resolve(&[]).unwrap().0;
     let title = model.metadata().description.title.clone();
-    let options = Options::default().format(format).size(size).labels(Labels {
-        title: title.unwrap_or_default(),
-        ..Labels::default()
-    });
+    let options = RuleFigureOptions::default()
+        .format(format)
+        .size(size)
+        .labels(Labels {
+            title: title.unwrap_or_default(),
+            ..Labels::default()
+        });
     let mut bytes = Vec::new();
     let size = rule::write(&model, document, None, &options, &mut bytes);
     (bytes, size.unwrap())

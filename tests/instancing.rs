@@ -5,7 +5,7 @@ use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::ifs::Shape;
-use kfrac::instancing::{Instance, Instancing, Master};
+use kfrac::instancing::{Instancing, Master, ObjectInstance};
 use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
 use proptest::prelude::*;
@@ -25,7 +25,7 @@ fn structure(text: &str) -> Instancing {
 /// recursion.
 fn expanded(
     structure: &Instancing,
-    instances: &[Instance],
+    instances: &[ObjectInstance],
     at: DAffine2,
     steps: u32,
     found: &mut Vec<(DAffine2, Option<Shape>)>,

@@ -13,7 +13,7 @@ use crate::common::{self, compiled, document, document_of, grown, resolved};
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::count::Count;
 use kfrac::document::node::{Node, Value};
-use kfrac::export::{self, Format};
+use kfrac::export::{self, TableFormat};
 use kfrac::geometry::{Bounds, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
@@ -83,7 +83,7 @@ fn svg_of_size(size: Size, name: &str, rule: &Rule, graph: &Graph, steps: u32) -
     bytes
 }
 
-fn table_of(graph: &Graph, steps: u32, format: Format) -> String {
+fn table_of(graph: &Graph, steps: u32, format: TableFormat) -> String {
     let mut bytes = Vec::new();
     let growth = Growth::steps(steps);
     export::write(
@@ -193,7 +193,7 @@ fn every_rule_grows_as_forecast() {
     for (name, rule) in rules() {
         for steps in steps(&rule) {
             let graph = compiled(&rule, steps);
-            let table = table_of(&graph, steps, Format::Csv);
+            let table = table_of(&graph, steps, TableFormat::Csv);
             let mut rows = table.lines();
             let header = "fractal,age,index,x0,y0,x1,y1,fertile,direction,visible";
             assert_eq!(rows.next().unwrap(), header);
@@ -218,9 +218,9 @@ fn every_rule_grows_as_forecast() {
 fn a_table_of_objects_has_the_same_rows() {
     for (name, rule) in rules() {
         let graph = compiled(&rule, 1);
-        let csv = table_of(&graph, 1, Format::Csv);
+        let csv = table_of(&graph, 1, TableFormat::Csv);
         let columns: Vec<_> = csv.lines().next().unwrap().split(',').collect();
-        let objects = table_of(&graph, 1, Format::JsonLines);
+        let objects = table_of(&graph, 1, TableFormat::JsonLines);
         assert_eq!(objects.lines().count(), csv.lines().count() - 1, "{name}");
         for (row, object) in csv.lines().skip(1).zip(objects.lines()) {
             let object: serde_json::Value = serde_json::from_str(object).unwrap();
@@ -342,7 +342,7 @@ fn two_runs_give_the_same_bytes() {
         let again = resolved(&document(&name), &[]);
         let steps = rule.steps().unwrap();
         let [one, two] = [&rule, &again].map(|rule| compiled(rule, steps));
-        let table = |graph| table_of(graph, steps, Format::Csv);
+        let table = |graph| table_of(graph, steps, TableFormat::Csv);
         assert!(table(&one) == table(&two), "{name}: tables differ");
         let pictures = [
             svg_of(&name, &rule, &one, steps),

@@ -369,12 +369,12 @@ fn tables_have_the_maps_of_elements() {
         String::from_utf8(bytes).unwrap()
     };
     assert_eq!(
-        table(export::Format::Csv),
+        table(export::TableFormat::Csv),
         "fractal,age,index,x0,y0,x1,y1,fertile,direction,visible,a,b,c,d,e,f\n\
          0,1,1,1,2,1.5,2,true,1,true,0.5,0,0.25,0.125,1,2\n"
     );
     assert!(
-        table(export::Format::JsonLines).ends_with(
+        table(export::TableFormat::JsonLines).ends_with(
             "\"visible\":true,\"a\":0.5,\"b\":0,\"c\":0.25,\"d\":0.125,\"e\":1,\"f\":2}\n"
         )
     );

@@ -257,7 +257,7 @@ fn files_of_the_library_do_not_depend_on_the_number_of_threads() {
                 assert!(many == one, "{name} as {what} on {number} threads");
             }
         };
-        for format in [export::Format::Csv, export::Format::JsonLines] {
+        for format in [export::TableFormat::Csv, export::TableFormat::JsonLines] {
             let write = |threads| {
                 let mut bytes = Vec::new();
                 export::write(&graph, &growth, format, threads, &mut bytes).unwrap();

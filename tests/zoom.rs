@@ -13,7 +13,7 @@ use kfrac::document::Document;
 use kfrac::draws::Path;
 use kfrac::extent::NoLimit;
 use kfrac::geometry::{DAffine2, DVec2, Frame2};
-use kfrac::graph::{Graph, Production, Replacement};
+use kfrac::graph::{Graph, Replacement, Successor};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::rule::{ElementContext, Rule};
@@ -195,7 +195,7 @@ fn assert_same(a: &Seen, b: &Seen, turn: &DAffine2, off: f64, what: &str) {
     assert!(count >= 20, "{what}: {count}");
 }
 
-fn production(graph: &Graph, object: usize) -> &Production {
+fn production(graph: &Graph, object: usize) -> &Successor {
     match &graph.objects()[object].replacement {
         Replacement::Fixed(production) => production,
         other => panic!("{other:?}"),

@@ -4,7 +4,7 @@ use crate::document::node::{Node, Value};
 use crate::geometry::Direction;
 use crate::rule::BaseElement;
 
-use super::Point;
+use super::PointText;
 use super::written::{self, Entries};
 
 /// A list of elements: an initiator, or a part of a generator.
@@ -13,25 +13,25 @@ use super::written::{self, Entries};
 /// to it. Any iterator of points converts to a list of elements.
 #[derive(Clone, Debug, Default)]
 #[must_use]
-pub struct Elements {
+pub struct ElementsBuilder {
     flags: Entries,
     list: Vec<Node>,
 }
 
-impl Elements {
+impl ElementsBuilder {
     /// Creates an empty list.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Appends a point.
-    pub fn point(mut self, point: impl Into<Point>) -> Self {
+    pub fn point(mut self, point: impl Into<PointText>) -> Self {
         self.list.push(point.into().0.into());
         self
     }
 
     /// Appends an element.
-    pub fn element(mut self, element: Element) -> Self {
+    pub fn element(mut self, element: ElementBuilder) -> Self {
         self.list.push(element.0.value().into());
         self
     }
@@ -73,7 +73,7 @@ impl Elements {
     }
 }
 
-impl<I: IntoIterator<Item: Into<Point>>> From<I> for Elements {
+impl<I: IntoIterator<Item: Into<PointText>>> From<I> for ElementsBuilder {
     fn from(points: I) -> Self {
         points.into_iter().fold(Self::new(), Self::point)
     }
@@ -82,11 +82,11 @@ impl<I: IntoIterator<Item: Into<Point>>> From<I> for Elements {
 /// An element with attributes.
 #[derive(Clone, Debug)]
 #[must_use]
-pub struct Element(Entries);
+pub struct ElementBuilder(Entries);
 
-impl Element {
+impl ElementBuilder {
     /// Creates an element from the end of the previous element to `point`.
-    pub fn to(point: impl Into<Point>) -> Self {
+    pub fn to(point: impl Into<PointText>) -> Self {
         Self(Entries::default().set("to", point.into().0))
     }
 
@@ -95,7 +95,7 @@ impl Element {
     }
 
     /// Sets the start point. The element joins the previous one if the two points are written alike.
-    pub fn from(self, point: impl Into<Point>) -> Self {
+    pub fn from(self, point: impl Into<PointText>) -> Self {
         self.set("from", point.into().0)
     }
 

@@ -4,33 +4,33 @@ use crate::document::node::{Node, Value};
 use crate::rule::Placement;
 
 use super::written::{self, Entries};
-use super::{Elements, Number, Point};
+use super::{ElementsBuilder, NumberText, PointText};
 
 /// A generator: the replacement of a fertile element. A list of elements or points converts to a
 /// generator of one part.
 #[derive(Clone, Debug, Default)]
 #[must_use]
-pub struct Generator {
+pub struct GeneratorBuilder {
     variables: Entries,
     moves: Vec<Node>,
-    parts: Vec<(Placement, Elements)>,
+    parts: Vec<(Placement, ElementsBuilder)>,
 }
 
-impl Generator {
+impl GeneratorBuilder {
     /// Creates a generator without parts.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Appends a part.
-    pub fn part(mut self, placement: Placement, elements: impl Into<Elements>) -> Self {
+    pub fn part(mut self, placement: Placement, elements: impl Into<ElementsBuilder>) -> Self {
         self.parts.push((placement, elements.into()));
         self
     }
 
     /// Adds a random variable, which is drawn for every replacement from `uniform(a, b)`, `normal(mean,
     /// deviation)` or `choice(a, b, ...)`.
-    pub fn random(self, name: impl Into<String>, distribution: impl Into<Number>) -> Self {
+    pub fn random(self, name: impl Into<String>, distribution: impl Into<NumberText>) -> Self {
         Self {
             variables: self.variables.add(name, distribution.into().0),
             ..self
@@ -38,7 +38,7 @@ impl Generator {
     }
 
     /// Appends a move, which acts after the previous ones.
-    pub fn moves(mut self, moving: Move) -> Self {
+    pub fn moves(mut self, moving: MoveBuilder) -> Self {
         self.moves.push(moving.0.value().into());
         self
     }
@@ -71,7 +71,7 @@ impl Generator {
     }
 }
 
-impl<E: Into<Elements>> From<E> for Generator {
+impl<E: Into<ElementsBuilder>> From<E> for GeneratorBuilder {
     fn from(elements: E) -> Self {
         Self::new().part(Placement::Stays, elements)
     }
@@ -80,9 +80,9 @@ impl<E: Into<Elements>> From<E> for Generator {
 /// A move of points of a generator: a scaling and a rotation about a centre, followed by a translation.
 #[derive(Clone, Debug, Default)]
 #[must_use]
-pub struct Move(Entries);
+pub struct MoveBuilder(Entries);
 
-impl Move {
+impl MoveBuilder {
     /// Creates the identity, which applies to all points but the first and the last one of what takes
     /// the element's place. Points of seed parts all move.
     pub fn new() -> Self {
@@ -90,22 +90,22 @@ impl Move {
     }
 
     /// Sets the angle of rotation in degrees, counter-clockwise. The default is 0.
-    pub fn rotate(self, angle: impl Into<Number>) -> Self {
+    pub fn rotate(self, angle: impl Into<NumberText>) -> Self {
         Self(self.0.set("rotate", angle.into().0))
     }
 
     /// Sets the scaling factors along x and y. The default is 1.
-    pub fn scale(self, factors: impl Into<Point>) -> Self {
+    pub fn scale(self, factors: impl Into<PointText>) -> Self {
         Self(self.0.set("scale", factors.into().0))
     }
 
     /// Sets the translation. The default is (0, 0).
-    pub fn shift(self, shift: impl Into<Point>) -> Self {
+    pub fn shift(self, shift: impl Into<PointText>) -> Self {
         Self(self.0.set("shift", shift.into().0))
     }
 
     /// Sets the centre of scaling and rotation. The default is (0, 0).
-    pub fn about(self, centre: impl Into<Point>) -> Self {
+    pub fn about(self, centre: impl Into<PointText>) -> Self {
         Self(self.0.set("about", centre.into().0))
     }
 

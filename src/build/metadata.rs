@@ -12,7 +12,7 @@ macro_rules! of_all_kinds {
                 max,
                 about,
             } = parameter;
-            let number = |value| Number::from(value).0;
+            let number = |value| NumberText::from(value).0;
             let entries = Entries::default()
                 .set("value", number(value))
                 .set_some("min", min.map(number))
@@ -30,12 +30,12 @@ macro_rules! of_all_kinds {
         }
 
         /// Sets the published similarity dimension.
-        pub fn dimension(self, dimension: impl Into<Number>) -> Self {
+        pub fn dimension(self, dimension: impl Into<NumberText>) -> Self {
             self.set("dimension", dimension.into().0)
         }
 
         /// Sets the published Hausdorff dimension, where it differs from the similarity dimension.
-        pub fn hausdorff_dimension(self, dimension: impl Into<Number>) -> Self {
+        pub fn hausdorff_dimension(self, dimension: impl Into<NumberText>) -> Self {
             self.set("hausdorff_dimension", dimension.into().0)
         }
 

@@ -31,21 +31,21 @@
 //! Trees on the sides of a triangle, whose walls are infertile and whose roofs have a random tilt:
 //!
 //! ```
-//! use kfrac::build::{Element, Elements, Generator, Move, RuleBuilder};
+//! use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, RuleBuilder};
 //! use kfrac::metadata::Parameter;
 //! use kfrac::rule::Placement;
 //!
-//! let roof = Elements::new()
+//! let roof = ElementsBuilder::new()
 //!     .point((0, 0))
-//!     .element(Element::to((0, 1)).fertile(false))
+//!     .element(ElementBuilder::to((0, 1)).fertile(false))
 //!     .point(("1/2", "3/2"))
 //!     .point((1, 1))
-//!     .element(Element::to((1, 0)).fertile(false));
-//! let swaying = Generator::new()
+//!     .element(ElementBuilder::to((1, 0)).fertile(false));
+//! let swaying = GeneratorBuilder::new()
 //!     .random("tilt", "uniform(-sway, sway)")
-//!     .moves(Move::new().rotate("tilt").about((0.5, 1)).points([2]))
+//!     .moves(MoveBuilder::new().rotate("tilt").about((0.5, 1)).points([2]))
 //!     .part(Placement::Stays, roof);
-//! let triangle = Elements::from([(0, 0), (1, 0), (0, 1)]).closed(true);
+//! let triangle = ElementsBuilder::from([(0, 0), (1, 0), (0, 1)]).closed(true);
 //! let document = RuleBuilder::new(triangle)
 //!     .parameter(Parameter { min: Some(0.0), ..Parameter::new("sway", 20.0) })
 //!     .generator("roof", swaying)
@@ -60,18 +60,18 @@
 //! structure:
 //!
 //! ```
-//! use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
+//! use kfrac::build::{InstanceBuilder, MapBuilder, SetBuilder, StructureBuilder, SystemBuilder, UnionBuilder};
 //! use kfrac::graph::Graph;
 //!
-//! let stem = Set::segment((0, 0), (0, 1));
+//! let stem = SetBuilder::segment((0, 0), (0, 1));
 //! let system = SystemBuilder::new()
-//!     .map(Map::scale(0.6).rotate(40).shift((0, 1)))
-//!     .map(Map::scale(0.6).rotate(-40).shift((0, 1)))
+//!     .map(MapBuilder::scale(0.6).rotate(40).shift((0, 1)))
+//!     .map(MapBuilder::scale(0.6).rotate(-40).shift((0, 1)))
 //!     .condensation(stem.clone())
 //!     .build()?;
-//! let twig = |angle| Instance::of("tree").scale(0.6).rotate(angle).translate((0, 1));
-//! let tree = Union::new().with(stem).with(twig(40)).with(twig(-40));
-//! let structure = StructureBuilder::new(Instance::of("tree"))
+//! let twig = |angle| InstanceBuilder::of("tree").scale(0.6).rotate(angle).translate((0, 1));
+//! let tree = UnionBuilder::new().with(stem).with(twig(40)).with(twig(-40));
+//! let structure = StructureBuilder::new(InstanceBuilder::of("tree"))
 //!     .object("tree", tree)
 //!     .build()?;
 //! let boxes = [Graph::of_system(&system), Graph::of_structure(&structure)]
@@ -90,12 +90,12 @@ mod structure;
 mod system;
 pub(crate) mod written;
 
-pub use elements::{Element, Elements};
-pub use generator::{Generator, Move};
-pub use map::Map;
-pub use number::{Number, Point};
-pub use set::Set;
-pub use structure::{Instance, StructureBuilder, Union};
+pub use elements::{ElementBuilder, ElementsBuilder};
+pub use generator::{GeneratorBuilder, MoveBuilder};
+pub use map::MapBuilder;
+pub use number::{NumberText, PointText};
+pub use set::SetBuilder;
+pub use structure::{InstanceBuilder, StructureBuilder, UnionBuilder};
 pub use system::SystemBuilder;
 
 use std::sync::Arc;
@@ -127,7 +127,7 @@ pub struct RuleBuilder {
 
 impl RuleBuilder {
     /// Creates a rule with an initiator, but without generators.
-    pub fn new(initiator: impl Into<Elements>) -> Self {
+    pub fn new(initiator: impl Into<ElementsBuilder>) -> Self {
         Self {
             entries: Entries::default().set("initiator", initiator.into().value()),
             parameters: Entries::default(),
@@ -144,7 +144,11 @@ impl RuleBuilder {
 
     /// Adds a generator. If there are several, either a selection or [every fertile
     /// element](Element::generator) names the generator that replaces an element.
-    pub fn generator(self, name: impl Into<String>, generator: impl Into<Generator>) -> Self {
+    pub fn generator(
+        self,
+        name: impl Into<String>,
+        generator: impl Into<GeneratorBuilder>,
+    ) -> Self {
         Self {
             generators: self.generators.add(name, generator.into().value()),
             ..self
@@ -161,7 +165,7 @@ impl RuleBuilder {
     /// Selects generators at random, with probabilities proportional to the weights.
     pub fn select_at_random(
         self,
-        weights: impl IntoIterator<Item = (impl Into<String>, impl Into<Number>)>,
+        weights: impl IntoIterator<Item = (impl Into<String>, impl Into<NumberText>)>,
     ) -> Self {
         let weights = weights.into_iter();
         let weights = weights.fold(Entries::default(), |all, (name, weight)| {

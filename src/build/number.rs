@@ -7,9 +7,9 @@ use super::written;
 
 /// A number: a value, or an expression as text.
 #[derive(Clone, Debug)]
-pub struct Number(pub(crate) Value);
+pub struct NumberText(pub(crate) Value);
 
-impl From<f64> for Number {
+impl From<f64> for NumberText {
     fn from(value: f64) -> Self {
         // YAML's notation for non-finite numbers, which the expression reader refuses.
         Self(if value.is_nan() {
@@ -23,19 +23,19 @@ impl From<f64> for Number {
     }
 }
 
-impl From<i32> for Number {
+impl From<i32> for NumberText {
     fn from(value: i32) -> Self {
         Self::from(f64::from(value))
     }
 }
 
-impl From<&str> for Number {
+impl From<&str> for NumberText {
     fn from(expression: &str) -> Self {
         Self(Value::Text(expression.into()))
     }
 }
 
-impl From<String> for Number {
+impl From<String> for NumberText {
     fn from(expression: String) -> Self {
         Self(Value::Text(expression))
     }
@@ -43,21 +43,21 @@ impl From<String> for Number {
 
 /// A point: x to the right and y upwards.
 #[derive(Clone, Debug)]
-pub struct Point(pub(crate) Value);
+pub struct PointText(pub(crate) Value);
 
-impl<X: Into<Number>, Y: Into<Number>> From<(X, Y)> for Point {
+impl<X: Into<NumberText>, Y: Into<NumberText>> From<(X, Y)> for PointText {
     fn from((x, y): (X, Y)) -> Self {
         Self(written::sequence([x.into().0, y.into().0]))
     }
 }
 
-impl<N: Into<Number>> From<[N; 2]> for Point {
+impl<N: Into<NumberText>> From<[N; 2]> for PointText {
     fn from([x, y]: [N; 2]) -> Self {
         Self::from((x, y))
     }
 }
 
-impl From<DVec2> for Point {
+impl From<DVec2> for PointText {
     fn from(point: DVec2) -> Self {
         Self::from((point.x, point.y))
     }

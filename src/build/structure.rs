@@ -12,7 +12,7 @@ use crate::style::{Colour, Style, View};
 
 use super::metadata::of_all_kinds;
 use super::written::{self, Entries, colour_text, sequence};
-use super::{Number, Point, Set, read, resolved};
+use super::{NumberText, PointText, SetBuilder, read, resolved};
 
 /// Transforms in the order of application.
 #[derive(Clone, Debug, Default)]
@@ -41,27 +41,27 @@ macro_rules! transforms {
         }
 
         /// Appends a scaling about (0, 0) by a factor.
-        pub fn scale(self, factor: impl Into<Number>) -> Self {
+        pub fn scale(self, factor: impl Into<NumberText>) -> Self {
             self.transformed("scale", factor.into().0)
         }
 
         /// Appends a scaling about (0, 0) along x and y, by one factor each.
-        pub fn scales(self, factors: impl Into<Point>) -> Self {
+        pub fn scales(self, factors: impl Into<PointText>) -> Self {
             self.transformed("scale", factors.into().0)
         }
 
         /// Appends a rotation about (0, 0) by an angle in degrees, counter-clockwise.
-        pub fn rotate(self, angle: impl Into<Number>) -> Self {
+        pub fn rotate(self, angle: impl Into<NumberText>) -> Self {
             self.transformed("rotate", angle.into().0)
         }
 
         /// Appends a translation.
-        pub fn translate(self, shift: impl Into<Point>) -> Self {
+        pub fn translate(self, shift: impl Into<PointText>) -> Self {
             self.transformed("translate", shift.into().0)
         }
 
         /// Appends a linear map, given by the rows of its matrix.
-        pub fn matrix(self, rows: [impl Into<Point>; 2]) -> Self {
+        pub fn matrix(self, rows: [impl Into<PointText>; 2]) -> Self {
             self.transformed("matrix", sequence(rows.map(|row| row.into().0)))
         }
     };
@@ -70,12 +70,12 @@ macro_rules! transforms {
 /// An instance of an object or of a set.
 #[derive(Clone, Debug)]
 #[must_use]
-pub struct Instance {
+pub struct InstanceBuilder {
     entries: Entries,
     transforms: Transforms,
 }
 
-impl Instance {
+impl InstanceBuilder {
     /// Creates an instance of an object by its name, with its level if it has one: `A(n - 1)`.
     pub fn of(object: impl Into<String>) -> Self {
         Self {
@@ -88,7 +88,7 @@ impl Instance {
 
     /// Tints the content of the instance with a colour; `alpha` is the strength of the tint, from 0 to
     /// 1.
-    pub fn tint(self, colour: Colour, alpha: impl Into<Number>) -> Self {
+    pub fn tint(self, colour: Colour, alpha: impl Into<NumberText>) -> Self {
         let tint = Entries::default()
             .set("color", colour_text(colour))
             .set("alpha", alpha.into().0);
@@ -99,8 +99,8 @@ impl Instance {
     }
 }
 
-impl From<Set> for Instance {
-    fn from(set: Set) -> Self {
+impl From<SetBuilder> for InstanceBuilder {
+    fn from(set: SetBuilder) -> Self {
         Self {
             entries: set.0,
             transforms: Transforms::default(),
@@ -111,20 +111,20 @@ impl From<Set> for Instance {
 /// An object: a union of instances.
 #[derive(Clone, Debug, Default)]
 #[must_use]
-pub struct Union {
+pub struct UnionBuilder {
     instances: Vec<Value>,
     transforms: Transforms,
 }
 
-impl Union {
+impl UnionBuilder {
     /// Creates an empty union.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Appends an instance.
-    pub fn with(mut self, instance: impl Into<Instance>) -> Self {
-        let Instance {
+    pub fn with(mut self, instance: impl Into<InstanceBuilder>) -> Self {
+        let InstanceBuilder {
             entries,
             transforms,
         } = instance.into();
@@ -140,8 +140,8 @@ impl Union {
     }
 }
 
-impl From<Instance> for Union {
-    fn from(instance: Instance) -> Self {
+impl From<InstanceBuilder> for UnionBuilder {
+    fn from(instance: InstanceBuilder) -> Self {
         Self::new().with(instance)
     }
 }
@@ -158,7 +158,7 @@ pub struct StructureBuilder {
 
 impl StructureBuilder {
     /// Creates a structure with a scene, but without objects.
-    pub fn new(scene: impl Into<Union>) -> Self {
+    pub fn new(scene: impl Into<UnionBuilder>) -> Self {
         let kind = Value::Text(Kind::Instancing.name().into());
         Self {
             entries: Entries::default()
@@ -177,7 +177,7 @@ impl StructureBuilder {
     }
 
     /// Adds an object: `A`, `A(n)` for all levels, or `A(0)` for a single level.
-    pub fn object(self, name: impl Into<String>, union: impl Into<Union>) -> Self {
+    pub fn object(self, name: impl Into<String>, union: impl Into<UnionBuilder>) -> Self {
         Self {
             objects: self.objects.add(name, union.into().value()),
             ..self
@@ -185,7 +185,7 @@ impl StructureBuilder {
     }
 
     /// Sets the set that is drawn in place of objects that are not replaced yet.
-    pub fn initial(self, set: Set) -> Self {
+    pub fn initial(self, set: SetBuilder) -> Self {
         self.set("initial", set.0.value())
     }
 

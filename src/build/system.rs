@@ -12,7 +12,7 @@ use crate::style::{Style, View};
 
 use super::metadata::of_all_kinds;
 use super::written::{self, Entries, sequence};
-use super::{Map, Number, Point, Set, read, resolved};
+use super::{MapBuilder, NumberText, PointText, SetBuilder, read, resolved};
 
 /// Builder of an iterated function system. Setting a key again replaces its value; maps, condensation
 /// sets and edges accumulate.
@@ -21,7 +21,7 @@ use super::{Map, Number, Point, Set, read, resolved};
 pub struct SystemBuilder {
     entries: Entries,
     parameters: Entries,
-    maps: Vec<Map>,
+    maps: Vec<MapBuilder>,
     condensation: Vec<Value>,
     edges: Entries,
 }
@@ -53,7 +53,7 @@ impl SystemBuilder {
     }
 
     /// Appends a map.
-    pub fn map(mut self, map: impl Into<Map>) -> Self {
+    pub fn map(mut self, map: impl Into<MapBuilder>) -> Self {
         self.maps.push(map.into());
         self
     }
@@ -62,8 +62,8 @@ impl SystemBuilder {
     /// place of other maps.
     pub fn vertices(
         self,
-        points: impl IntoIterator<Item = impl Into<Point>>,
-        shrink: impl Into<Number>,
+        points: impl IntoIterator<Item = impl Into<PointText>>,
+        shrink: impl Into<NumberText>,
     ) -> Self {
         let points = points.into_iter().map(|point| point.into().0);
         let vertices = Entries::default().set("points", sequence(points));
@@ -74,8 +74,8 @@ impl SystemBuilder {
     /// place of other maps. `scales` are the vertical scaling factors of the pieces.
     pub fn interpolate(
         self,
-        points: impl IntoIterator<Item = impl Into<Point>>,
-        scales: impl IntoIterator<Item = impl Into<Number>>,
+        points: impl IntoIterator<Item = impl Into<PointText>>,
+        scales: impl IntoIterator<Item = impl Into<NumberText>>,
     ) -> Self {
         let scales = scales.into_iter().map(|scale| scale.into().0);
         self.curve(points, "scale", sequence(scales))
@@ -85,15 +85,15 @@ impl SystemBuilder {
     /// the curve the box dimension `dimension`, from 1 to less than 2.
     pub fn interpolate_to_dimension(
         self,
-        points: impl IntoIterator<Item = impl Into<Point>>,
-        dimension: impl Into<Number>,
+        points: impl IntoIterator<Item = impl Into<PointText>>,
+        dimension: impl Into<NumberText>,
     ) -> Self {
         self.curve(points, "dimension", dimension.into().0)
     }
 
     fn curve(
         self,
-        points: impl IntoIterator<Item = impl Into<Point>>,
+        points: impl IntoIterator<Item = impl Into<PointText>>,
         key: &str,
         value: Value,
     ) -> Self {
@@ -103,13 +103,13 @@ impl SystemBuilder {
     }
 
     /// Appends a condensation set.
-    pub fn condensation(mut self, set: Set) -> Self {
+    pub fn condensation(mut self, set: SetBuilder) -> Self {
         self.condensation.push(set.0.value());
         self
     }
 
     /// Sets the initial set, which approximant 0 draws.
-    pub fn initial(self, set: Set) -> Self {
+    pub fn initial(self, set: SetBuilder) -> Self {
         self.set("initial", set.0.value())
     }
 
@@ -127,7 +127,7 @@ impl SystemBuilder {
     pub fn weighted_edges(
         self,
         from: impl ToString,
-        to: impl IntoIterator<Item = (impl ToString, impl Into<Number>)>,
+        to: impl IntoIterator<Item = (impl ToString, impl Into<NumberText>)>,
     ) -> Self {
         let to = to
             .into_iter()

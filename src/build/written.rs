@@ -5,7 +5,7 @@ use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Named, Palette, Style, View, Width};
 
-use super::{Number, Point};
+use super::{NumberText, PointText};
 
 /// A mapping under construction.
 #[derive(Clone, Debug, Default)]
@@ -72,16 +72,16 @@ pub(crate) fn base_element(element: &BaseElement) -> Value {
         pieces = others;
     }
     let pieces = pieces.iter().map(|piece| match *piece {
-        Piece::Line(end) => Point::from(end).0,
+        Piece::Line(end) => PointText::from(end).0,
         Piece::Cubic(a, b, end) => Entries::default()
-            .set("curve", Point::from(end).0)
+            .set("curve", PointText::from(end).0)
             .set(
                 "control",
-                sequence([a, b].map(|point| Point::from(point).0)),
+                sequence([a, b].map(|point| PointText::from(point).0)),
             )
             .value(),
     });
-    let points = [Point::from(start).0].into_iter().chain(pieces);
+    let points = [PointText::from(start).0].into_iter().chain(pieces);
     Entries::default()
         .set("points", sequence(points))
         .set("closed", Value::Bool(element.is_closed()))
@@ -109,9 +109,9 @@ pub(crate) fn style(style: &Style) -> Entries {
     let entries = |style: &Style| {
         let colour = |colour: Option<Colour>| colour.map(colour_text);
         let width = match style.width {
-            Width::Pixels(width) => Number::from(width).0,
+            Width::Pixels(width) => NumberText::from(width).0,
             Width::Relative(width) => Entries::default()
-                .set("relative", Number::from(width).0)
+                .set("relative", NumberText::from(width).0)
                 .value(),
         };
         Entries::default()
@@ -142,7 +142,7 @@ fn palette(palette: &Palette) -> Value {
 
 /// Returns the entries of a view that differ from the defaults.
 pub(crate) fn view(view: &View) -> Entries {
-    let number = |value| Number::from(value).0;
+    let number = |value| NumberText::from(value).0;
     let entries = |view: &View| {
         let window = view.window.map(|window| sequence(window.map(number)));
         Entries::default()

@@ -181,7 +181,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 fn draw(measured: &Measured, path: &Path, format: render::Format) -> Result<(), Failure> {
-    let options = dimension::Options {
+    let options = dimension::DimensionFigureOptions {
         format,
         unit: measured.unit,
         labels: Labels {

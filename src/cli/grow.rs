@@ -157,7 +157,7 @@ impl Arguments {
     fn list(
         &self,
         loaded: &Loaded,
-        format: export::Format,
+        format: export::TableFormat,
         path: &Path,
     ) -> Result<(String, u64), Failure> {
         let goal = Goal::asked(self.steps, None, loaded)?;

@@ -106,7 +106,7 @@ impl Arguments {
         loaded: &Loaded,
         alone: Option<Shelf>,
         format: render::Format,
-    ) -> rule::Options {
+    ) -> rule::RuleFigureOptions {
         let shown = match alone {
             Some(shelf) => format!("The {}", shelf.noun()),
             None => match loaded.model.kind() {
@@ -121,7 +121,7 @@ impl Arguments {
         options.extend(self.size.map(|size| ("size", size.to_string())));
         let background = self.background.map(|ink| ink.to_string());
         options.extend(background.map(|colour| ("background", colour)));
-        rule::Options {
+        rule::RuleFigureOptions {
             format,
             size: self.size,
             background: self.background.and_then(picture::Ink::colour),

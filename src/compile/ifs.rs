@@ -8,7 +8,7 @@ use crate::rule::{BaseElement, Piece};
 
 use super::instancing::instance;
 use crate::extent::{Bounded, Fineness, Own};
-use crate::graph::{Chain, Graph, Object, Production, Replacement};
+use crate::graph::{Chain, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of instances in a graph whose objects record the last map.
 const MOST_INSTANCES: usize = 4_000_000;
@@ -268,7 +268,7 @@ impl<'s> Compiler<'s> {
         map: Option<usize>,
         last_map: Option<usize>,
     ) -> impl Iterator<Item = Object> + '_ {
-        let vanishes = Arc::new(Production::default());
+        let vanishes = Arc::new(Successor::default());
         (0..self.outlines()).map(move |outline| Object {
             replacement: if outline < self.sets.len() {
                 Replacement::Kept
@@ -306,7 +306,7 @@ impl<'s> Compiler<'s> {
 
     /// Returns the production of the whole or of the set inside a map of a branch: images under some
     /// maps, and the condensation sets.
-    fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Production {
+    fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Successor {
         let mut instances = Vec::new();
         // The outermost map determines the branch.
         let branch = |map: usize| match place {
@@ -333,7 +333,7 @@ impl<'s> Compiler<'s> {
                 instances.push(instance(object, &affine, instances.len()));
             }
         }
-        Production {
+        Successor {
             body: Chain {
                 instances,
                 meets_frame: [self.chained; 2],

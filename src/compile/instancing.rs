@@ -9,7 +9,7 @@ use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
 
 use super::ifs::{filling, outline};
-use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
 
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MOST_BOXES: usize = 256;
@@ -85,7 +85,7 @@ impl Graph {
     /// Returns the bounding boxes of the subtrees of some objects of a structure, in their own
     /// coordinates; `None` where one is unknown.
     pub(crate) fn boxes_of(structure: &Instancing, objects: &[usize]) -> Vec<Option<Bounds>> {
-        let scene = objects.iter().map(|&number| instancing::Instance {
+        let scene = objects.iter().map(|&number| instancing::ObjectInstance {
             map: DAffine2::IDENTITY,
             master: Master::Object(number),
             tint: None,
@@ -162,7 +162,7 @@ impl<'s> Compiler<'s> {
     fn reach(&mut self) -> Chain {
         let initiator = self.chain(&self.structure.scene);
         // Graph objects of one canonical object share its production.
-        let mut made: BTreeMap<usize, Arc<Production>> = BTreeMap::new();
+        let mut made: BTreeMap<usize, Arc<Successor>> = BTreeMap::new();
         let mut behaviours: BTreeMap<Option<usize>, usize> = BTreeMap::new();
         let mut done = 0;
         while done < self.objects.len() {
@@ -175,7 +175,7 @@ impl<'s> Compiler<'s> {
                     None => {
                         let object = &self.structure.objects[canonical];
                         let body = self.chain(&object.instances);
-                        let production = Arc::new(Production {
+                        let production = Arc::new(Successor {
                             body,
                             seeds: Vec::new(),
                         });
@@ -200,7 +200,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn chain(&mut self, instances: &[instancing::Instance]) -> Chain {
+    fn chain(&mut self, instances: &[instancing::ObjectInstance]) -> Chain {
         let numbered = instances.iter().enumerate();
         Chain {
             instances: numbered
@@ -214,7 +214,7 @@ impl<'s> Compiler<'s> {
     }
 
     /// Returns the graph object of an instance, which is created if it is new.
-    fn object(&mut self, instance: &instancing::Instance) -> usize {
+    fn object(&mut self, instance: &instancing::ObjectInstance) -> usize {
         let kind = match &instance.master {
             Master::Object(number) => Kind::Canonical(*number),
             Master::Shape(shape) => Kind::Shape(self.base_element(shape)),

@@ -10,7 +10,7 @@ use crate::geometry::DVec2;
 use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
 
 use super::state::{Class, Dependences, State};
-use crate::graph::{Alternative, CompileError, Graph, Object, Production, Replacement};
+use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
 const MOST_OBJECTS: usize = 200_000;
@@ -124,7 +124,7 @@ impl<'r> Compiler<'r> {
         };
         let lengths = |_: usize| 1.0;
         let objects = self.place(rule.initiator(), None, &state, lengths)?;
-        let mut whole = Production::default();
+        let mut whole = Successor::default();
         let part = Part {
             placement: Placement::Stays,
             ..rule.initiator().clone()
@@ -394,7 +394,7 @@ impl<'r> Compiler<'r> {
             }
             let objects: Vec<usize> = of_parts.into_iter().flatten().collect();
             if decided && self.is_fixed(generator) {
-                let mut production = Production::default();
+                let mut production = Successor::default();
                 production.set(listed.parts(), &points, &objects);
                 return Ok(Replacement::Fixed(Arc::new(production)));
             }

@@ -1,6 +1,6 @@
 //! Notation of numbers that is read as the same double.
 
-use crate::build::Number;
+use crate::build::NumberText;
 use crate::build::written::sequence;
 use crate::document::node::Value;
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -16,7 +16,7 @@ const SHORT: usize = 6;
 pub(super) fn value(number: f64) -> Value {
     match fraction(number) {
         Some(fraction) => Value::Text(fraction),
-        None => Number::from(number + 0.0).0,
+        None => NumberText::from(number + 0.0).0,
     }
 }
 

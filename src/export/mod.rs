@@ -4,4 +4,4 @@ mod points;
 mod table;
 
 pub use points::write_points;
-pub use table::{Format, write};
+pub use table::{TableFormat, write};

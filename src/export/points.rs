@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::chaos::RandomPoint;
 use crate::grow::{Progress, WalkError};
 
-use super::Format;
+use super::TableFormat;
 
 /// Rows between two checks for cancellation.
 const MANY: u64 = 1 << 12;
@@ -21,12 +21,12 @@ const MANY: u64 = 1 << 12;
 /// Returns an error if the walk is cancelled, or if `out` fails.
 pub fn write_points(
     points: impl Iterator<Item = RandomPoint>,
-    format: Format,
+    format: TableFormat,
     cancel: Option<&AtomicBool>,
     progress: Option<&Progress>,
     out: &mut impl Write,
 ) -> Result<(), WalkError<io::Error>> {
-    if format == Format::Csv {
+    if format == TableFormat::Csv {
         writeln!(out, "x,y,map").map_err(WalkError::Visitor)?;
     }
     for (number, point) in (1u64..).zip(points) {
@@ -45,8 +45,8 @@ pub fn write_points(
         );
         let map = point.map + 1;
         match format {
-            Format::Csv => writeln!(out, "{x},{y},{map}"),
-            Format::JsonLines => writeln!(out, r#"{{"x":{x},"y":{y},"map":{map}}}"#),
+            TableFormat::Csv => writeln!(out, "{x},{y},{map}"),
+            TableFormat::JsonLines => writeln!(out, r#"{{"x":{x},"y":{y},"map":{map}}}"#),
         }
         .map_err(WalkError::Visitor)?;
     }

@@ -14,14 +14,14 @@ use crate::style::Named;
 /// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Format {
+pub enum TableFormat {
     /// Comma-separated values with a header.
     Csv,
     /// One JSON object per line.
     JsonLines,
 }
 
-impl Named for Format {
+impl Named for TableFormat {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("csv", Self::Csv),
         ("json", Self::JsonLines),
@@ -67,11 +67,11 @@ const WITHOUT_MAPS: usize = 10;
 pub fn write(
     graph: &Graph,
     growth: &Growth<'_>,
-    format: Format,
+    format: TableFormat,
     threads: NonZero<usize>,
     out: &mut impl Write,
 ) -> Result<Walked, WalkError<io::Error>> {
-    if format == Format::Csv {
+    if format == TableFormat::Csv {
         let columns = if graph.is_affine() {
             &COLUMNS[..]
         } else {
@@ -129,13 +129,13 @@ struct Row {
 
 /// Rows, and the text that is made of them.
 struct Rows {
-    format: Format,
+    format: TableFormat,
     rows: Vec<Row>,
     text: Vec<u8>,
 }
 
 impl Rows {
-    fn of(format: Format) -> Self {
+    fn of(format: TableFormat) -> Self {
         Self {
             format,
             rows: Vec::new(),
@@ -157,7 +157,7 @@ impl Rows {
 
 /// Writes the cells of rows as text.
 struct Cells<'t> {
-    format: Format,
+    format: TableFormat,
     text: &'t mut Vec<u8>,
 }
 
@@ -179,14 +179,14 @@ impl Cells<'_> {
                 self.coordinate(column, value);
             }
         }
-        if self.format == Format::JsonLines {
+        if self.format == TableFormat::JsonLines {
             self.text.push(b'}');
         }
         self.text.push(b'\n');
     }
 
     fn cell(&mut self, column: usize, text: &str) {
-        if self.format == Format::JsonLines {
+        if self.format == TableFormat::JsonLines {
             self.text
                 .extend_from_slice(if column == 0 { b"{\"" } else { b",\"" });
             self.text.extend_from_slice(COLUMNS[column].as_bytes());

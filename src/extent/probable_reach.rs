@@ -96,7 +96,7 @@ mod tests {
     use crate::catalogue::Catalogue;
     use crate::document::Document;
     use crate::geometry::DVec2;
-    use crate::graph::{Graph, Production, Replacement};
+    use crate::graph::{Graph, Replacement, Successor};
     use crate::grow::{Evaluator, ReplacementContext, Standing};
 
     /// Returns the largest distance of end points in the subtree of an element from its middle, down to
@@ -113,7 +113,7 @@ mod tests {
             if standing.frame.stretch() < 1e-2 {
                 continue;
             }
-            let mut made = Production::default();
+            let mut made = Successor::default();
             let production = match &graph.objects()[object].replacement {
                 Replacement::Fixed(production) => production,
                 Replacement::Evaluated(_) => {

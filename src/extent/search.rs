@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 
 use crate::geometry::{Bounds, Frame, Outline, Point};
-use crate::graph::{Graph, Production, Replacement};
+use crate::graph::{Graph, Replacement, Successor};
 
 use crate::grow::{
     Enter, Evaluator, Growth, ReplacementContext, Standing, Subtree, seed_placement,
@@ -91,7 +91,7 @@ pub(crate) fn search<F: Frame>(
         heap: BinaryHeap::new(),
     };
     let mut evaluator = Evaluator::default();
-    let mut drawn = Production::default();
+    let mut drawn = Successor::default();
     let mut work = 0;
     for &direction in F::Point::AXES {
         search.direction = direction;
@@ -139,7 +139,7 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
         min.dot(self.direction).max(max.dot(self.direction))
     }
 
-    fn replace(&mut self, node: &Node<F>, production: &Production<F>) {
+    fn replace(&mut self, node: &Node<F>, production: &Successor<F>) {
         let level = node.level + 1;
         for instance in &production.body.instances {
             let standing = node.standing.child(self.graph, instance);

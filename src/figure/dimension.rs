@@ -27,7 +27,7 @@ const SLOPES: [f64; 2] = [432.0, 600.0];
 /// Options of a plot.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Options {
+pub struct DimensionFigureOptions {
     /// Format of the file.
     pub format: Format,
     /// Unit of the sizes of boxes, such as "pixels"; `None` if they have no unit.
@@ -36,7 +36,7 @@ pub struct Options {
     pub labels: Labels,
 }
 
-setters!(Options {
+setters!(DimensionFigureOptions {
     format: Format,
     unit: Option<&'static str>,
     labels: Labels,
@@ -49,7 +49,7 @@ setters!(Options {
 /// Returns an error if `out` fails.
 pub fn write(
     counting: &BoxCounting,
-    options: &Options,
+    options: &DimensionFigureOptions,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
     pad::write(&Evidence { counting, options }, options, out)
@@ -57,7 +57,7 @@ pub fn write(
 
 struct Evidence<'a> {
     counting: &'a BoxCounting,
-    options: &'a Options,
+    options: &'a DimensionFigureOptions,
 }
 
 impl Plot for Evidence<'_> {

@@ -37,7 +37,7 @@ use block::Block;
 /// Options of a figure.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Options {
+pub struct RuleFigureOptions {
     /// Format of the file; SVG by default.
     pub format: Format,
     /// Size of the figure; by default, text has a font size of 13 pixels.
@@ -48,14 +48,14 @@ pub struct Options {
     pub labels: Labels,
 }
 
-setters!(Options {
+setters!(RuleFigureOptions {
     format: Format,
     size: Option<Size>,
     background: Option<Colour>,
     labels: Labels,
 });
 
-impl Default for Options {
+impl Default for RuleFigureOptions {
     fn default() -> Self {
         Self {
             format: Format::Svg,
@@ -78,7 +78,7 @@ pub fn write(
     model: &Model,
     document: &Document,
     alone: Option<Shelf>,
-    options: &Options,
+    options: &RuleFigureOptions,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
     let title = &options.labels.title;
@@ -111,7 +111,7 @@ impl Figure {
     /// Writes a page as a figure; returns width and height in pixels.
     fn write(
         page: Block,
-        options: &Options,
+        options: &RuleFigureOptions,
         out: &mut impl Write,
     ) -> Result<[u32; 2], RenderError> {
         let figure = Self {

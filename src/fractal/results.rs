@@ -113,7 +113,7 @@ impl Fractal {
             let options = self.options(format, self.size)?;
             return written(path, |out| self.draw(&options, out).map(|_| ()));
         }
-        let format = export::Format::from_name(&extension).ok_or_else(|| {
+        let format = export::TableFormat::from_name(&extension).ok_or_else(|| {
             let message = format!("'{}' has no format that is known", path.display());
             Diagnostic::error(message)
                 .hint("names end in .svg, .png, .pdf, .dxf, .csv, .json, .jsonl or .ndjson")

@@ -1,7 +1,7 @@
 //! The instancing graph (Hart 1992): objects, and the instances that replace them.
 //!
 //! Every description of a linear fractal is compiled to a [`Graph`]: objects with a base element of their
-//! own and a [`Production`], the instances that take an object's place one step later. All that the
+//! own and a [`Successor`], the instances that take an object's place one step later. All that the
 //! productions of an object yield in any number of steps, seeds included, is the *subtree* of the object.
 //! Dependence on the moment (on age, step, length or, modulo m, on the index) is resolved into more
 //! objects, so that the productions of a deterministic rule are lists of fixed maps. Where numbers are
@@ -75,7 +75,7 @@ pub enum Replacement<F: Frame = Frame2> {
     /// Infertile: the element is kept.
     Kept,
     /// Fixed instances.
-    Fixed(Arc<Production<F>>),
+    Fixed(Arc<Successor<F>>),
     /// Instances that are computed for each element, by one of these alternatives.
     Evaluated(Arc<[Alternative]>),
     /// Not resolved: the object is first reached at the depth for which the graph was compiled.
@@ -128,7 +128,7 @@ pub struct Seed<F: Frame = Frame2> {
 
 /// Instances that replace an element, and the new fractals that it seeds.
 #[derive(Clone, Debug, Default)]
-pub struct Production<F: Frame = Frame2> {
+pub struct Successor<F: Frame = Frame2> {
     /// Instances that take the place of the element; empty if it vanishes.
     pub body: Chain<F>,
     /// New fractals, in the order of their parts.
@@ -432,7 +432,7 @@ impl Graph {
     }
 }
 
-impl<F: Frame> Production<F> {
+impl<F: Frame> Successor<F> {
     /// Iterates over all instances with their placements: the body, then the seeds.
     pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         let body = self.body.instances.iter();
@@ -445,7 +445,7 @@ impl<F: Frame> Production<F> {
     }
 }
 
-impl Production {
+impl Successor {
     /// Overwrites the production with that of a generator whose points have been evaluated, and reuses
     /// its memory.
     ///

@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::{DVec2, Frame, Frame2};
 use crate::rule::{ElementContext, Extent, Part, Rule};
 
-use super::{Alternative, CompileError, Production};
+use super::{Alternative, CompileError, Successor};
 
 /// Source of instances that are computed for each element.
 pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
@@ -19,7 +19,7 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
         path: Path,
         context: &ElementContext,
         buffers: &mut Buffers<F>,
-        production: &mut Production<F>,
+        production: &mut Successor<F>,
     ) -> Result<(), CompileError>;
 
     /// Returns the parts of a generator; empty if all of its elements stay.
@@ -49,7 +49,7 @@ impl Source<Frame2> for Rule {
         path: Path,
         context: &ElementContext,
         Buffers { slots, points }: &mut Buffers<Frame2>,
-        production: &mut Production,
+        production: &mut Successor,
     ) -> Result<(), CompileError> {
         let alternative = if let [only] = alternatives {
             only

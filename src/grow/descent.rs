@@ -1,7 +1,7 @@
 //! Depth-first traversal of one fractal at one step.
 
 use crate::geometry::{Direction, Frame, Frame2, Outline};
-use crate::graph::{Chain, CompileError, Graph, Production, Replacement, Seed};
+use crate::graph::{Chain, CompileError, Graph, Replacement, Seed, Successor};
 
 use super::block::Blocks;
 use super::census::Census;
@@ -48,7 +48,7 @@ pub(super) struct Descent<'g, F: Frame = Frame2> {
     pub(super) census: Option<&'g Census>,
     /// Number of elements of the fractal so far.
     pub(super) index: u128,
-    pool: Vec<Production<F>>,
+    pool: Vec<Successor<F>>,
     free: Vec<usize>,
     evaluator: Evaluator<F>,
     /// Number of visits since the caller last reset it.
@@ -421,7 +421,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         rank: u64,
     ) -> Result<usize, CompileError> {
         let number = self.free.pop().unwrap_or_else(|| {
-            self.pool.push(Production::default());
+            self.pool.push(Successor::default());
             self.pool.len() - 1
         });
         let moment = ReplacementContext {

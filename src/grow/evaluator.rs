@@ -1,7 +1,7 @@
 //! Productions that are computed for each element.
 
 use crate::geometry::{Frame, Frame2};
-use crate::graph::{Buffers, CompileError, Graph, Production, Replacement};
+use crate::graph::{Buffers, CompileError, Graph, Replacement, Successor};
 use crate::rule;
 
 use super::start::Standing;
@@ -42,7 +42,7 @@ impl<F: Frame> Evaluator<F> {
         standing: &Standing<F>,
         object: usize,
         moment: ReplacementContext,
-        production: &mut Production<F>,
+        production: &mut Successor<F>,
     ) -> Result<(), CompileError> {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");

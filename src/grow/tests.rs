@@ -12,8 +12,8 @@ use crate::expression::Interval;
 use crate::extent::{Bounded, bounding_box};
 use crate::geometry::{Bounds, Corners, DVec3, Direction, Frame, Outline};
 use crate::graph::{
-    Alternative, Buffers, Chain, CompileError, Graph, Instance, Object, Production, Replacement,
-    Seed, Source,
+    Alternative, Buffers, Chain, CompileError, Graph, Instance, Object, Replacement, Seed, Source,
+    Successor,
 };
 use crate::rule::{ElementContext, Extent, Part, Placement};
 
@@ -220,7 +220,7 @@ fn graph(objects: Vec<Object<Frame3>>, start: Frame3) -> Graph<Frame3> {
 }
 
 fn sponge(start: Frame3) -> Graph<Frame3> {
-    let production = Production {
+    let production = Successor {
         body: chain(&cells(), 0),
         seeds: Vec::new(),
     };
@@ -407,7 +407,7 @@ impl Source<Frame3> for Coin {
         path: Path,
         _: &ElementContext,
         _: &mut Buffers<Frame3>,
-        production: &mut Production<Frame3>,
+        production: &mut Successor<Frame3>,
     ) -> Result<(), CompileError> {
         let drawn = pick_by_weight(path, [1.0, 2.0].into_iter());
         let is_corner = |cell: &DVec3| cell.to_array().iter().all(|at| *at != 1.0);
@@ -481,7 +481,7 @@ fn seeds_in_space_are_fractals() {
         placement,
         chain: chain(&[DVec3::splat(2.0)], 0),
     };
-    let production = Production {
+    let production = Successor {
         body: chain(&[DVec3::ZERO], 0),
         seeds: vec![seed(Placement::Seeds), seed(Placement::SeedsAsInitiator)],
     };

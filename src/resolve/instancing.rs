@@ -14,7 +14,7 @@ use crate::document::{
 use crate::expression::{Affine, Arithmetic, Doubles, Program, Scope, Symbols};
 use crate::geometry::DAffine2;
 use crate::ifs::Shape;
-use crate::instancing::{Instance, Instancing, Master, Object, Tint};
+use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
 use crate::metadata::Metadata;
 use crate::style::{ColorBy, Colour};
 
@@ -119,7 +119,7 @@ impl Resolver<OfInstancing> {
         while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
             let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
             let number = self.kind.reached[objects.len()].0;
-            objects.push(Object {
+            objects.push(ObjectDefinition {
                 name: match level {
                     Some(level) => format!("{}({level})", union.name),
                     None => union.name.clone(),
@@ -325,7 +325,7 @@ impl Resolver<OfInstancing> {
     }
 
     /// Returns the instances of a union at a level. New objects among them are marked as reached.
-    fn instances(&mut self, union: &Union, level: Option<f64>) -> Vec<Instance> {
+    fn instances(&mut self, union: &Union, level: Option<f64>) -> Vec<ObjectInstance> {
         let slots: Vec<f64> = level.into_iter().collect();
         let whole = product(&union.transforms, &slots);
         let mut instances = Vec::new();
@@ -368,7 +368,7 @@ impl Resolver<OfInstancing> {
                     _ => 1,
                 };
                 let transforms = Arc::clone(&prepared.transforms);
-                instances.push(Instance {
+                instances.push(ObjectInstance {
                     map,
                     master,
                     tint,

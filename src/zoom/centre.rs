@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::expression::Precise;
 use crate::geometry::DMat2;
-use crate::graph::{Graph, Instance, Production, Replacement};
+use crate::graph::{Graph, Instance, Replacement, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
 use crate::rule::Placement;
 use crate::saturating::whole;
@@ -73,7 +73,7 @@ pub(super) fn centre(
             rank: graph.objects()[object].index.into(),
         };
         let depth = level;
-        let evaluated: Production;
+        let evaluated: Successor;
         let production = match &graph.objects()[object].replacement {
             Replacement::Kept => {
                 return Err(ZoomError::Infertile {
@@ -84,7 +84,7 @@ pub(super) fn centre(
             Replacement::Unresolved => return Err(ZoomError::TooShallow { depth: level }),
             Replacement::Fixed(production) => Arc::as_ref(production),
             Replacement::Evaluated(_) => {
-                let mut made = Production::default();
+                let mut made = Successor::default();
                 evaluator.evaluate(graph, &standing, object, moment, &mut made)?;
                 evaluated = made;
                 &evaluated

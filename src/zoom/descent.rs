@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
-use crate::graph::{Chain, Graph, Instance, Production, Replacement, Seed};
+use crate::graph::{Chain, Graph, Instance, Replacement, Seed, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
 
 use super::clip::{self, Path};
@@ -270,7 +270,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let production = match &self.graph.objects()[node.object].replacement {
             Replacement::Fixed(production) => Arc::clone(production),
             Replacement::Evaluated(_) => {
-                let mut made = Production::default();
+                let mut made = Successor::default();
                 let evaluator = &mut self.evaluator;
                 evaluator.evaluate(self.graph, &node.standing, node.object, moment, &mut made)?;
                 Arc::new(made)
@@ -279,7 +279,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 return Err(ZoomError::TooShallow { depth: node.level });
             }
         };
-        let Production { body, seeds } = &*production;
+        let Successor { body, seeds } = &*production;
         let (map, exponent) = node.map.near();
         // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);

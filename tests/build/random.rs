@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use kfrac::build::{Element, Elements, Generator, Move, Number, RuleBuilder};
+use kfrac::build::{
+    ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, NumberText, RuleBuilder,
+};
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::graph::Graph;
 use kfrac::metadata::Parameter;
@@ -14,13 +16,13 @@ use proptest::prelude::*;
 use super::common;
 
 /// A number or expression, of which one in thirty is arbitrary text or an arbitrary number.
-fn number() -> impl Strategy<Value = Number> {
+fn number() -> impl Strategy<Value = NumberText> {
     prop_oneof![
-        12 => (-2..3i32).prop_map(Number::from),
-        12 => (-2.0..2.0).prop_map(Number::from),
-        4 => prop::sample::select(&["1/3", "cos(7)"][..]).prop_map(Number::from),
-        1 => prop::num::f64::ANY.prop_map(Number::from),
-        1 => ".{0,6}".prop_map(Number::from),
+        12 => (-2..3i32).prop_map(NumberText::from),
+        12 => (-2.0..2.0).prop_map(NumberText::from),
+        4 => prop::sample::select(&["1/3", "cos(7)"][..]).prop_map(NumberText::from),
+        1 => prop::num::f64::ANY.prop_map(NumberText::from),
+        1 => ".{0,6}".prop_map(NumberText::from),
     ]
 }
 
@@ -28,7 +30,7 @@ fn name() -> impl Strategy<Value = String> {
     prop_oneof![12 => Just("a".to_owned()), 1 => "(.|\n){0,6}"]
 }
 
-fn elements() -> impl Strategy<Value = Elements> {
+fn elements() -> impl Strategy<Value = ElementsBuilder> {
     let flags = (
         0..4usize,
         any::<[bool; 4]>(),
@@ -41,13 +43,13 @@ fn elements() -> impl Strategy<Value = Elements> {
         proptest::option::weighted(0.2, (number(), number())),
     );
     (vec(element, 0..4), 0..9u8).prop_map(|(list, ends)| {
-        let start = Elements::new().point((0, 0));
+        let start = ElementsBuilder::new().point((0, 0));
         let elements = list.into_iter().fold(start, |all, (x, y, flags, from)| {
             let (direction, [plain, fertile, visible, connected], generator) = flags;
             if plain {
                 return all.point((x, y));
             }
-            let mut element = Element::to((x, y))
+            let mut element = ElementBuilder::to((x, y))
                 .direction(Direction::ALL[direction])
                 .fertile(fertile)
                 .visible(visible)
@@ -67,7 +69,7 @@ fn elements() -> impl Strategy<Value = Elements> {
     })
 }
 
-fn generator() -> impl Strategy<Value = Generator> {
+fn generator() -> impl Strategy<Value = GeneratorBuilder> {
     let placement = prop::sample::select(
         &[
             Placement::Stays,
@@ -77,13 +79,13 @@ fn generator() -> impl Strategy<Value = Generator> {
     );
     let parts = vec((placement, elements()), 1..3);
     let distribution = prop_oneof![
-        9 => Just(Number::from("uniform(-1, 1)")),
+        9 => Just(NumberText::from("uniform(-1, 1)")),
         1 => number(),
     ];
     let variables = vec(("[s-z]", distribution), 0..2);
     let moves = vec((number(), number(), vec(0..5u32, 0..2)), 0..2);
     (parts, variables, moves).prop_map(|(parts, variables, moves)| {
-        let generator = Generator::new();
+        let generator = GeneratorBuilder::new();
         let generator = parts
             .into_iter()
             .fold(generator, |all, (placement, elements)| {
@@ -93,7 +95,12 @@ fn generator() -> impl Strategy<Value = Generator> {
             .into_iter()
             .fold(generator, |all, (name, number)| all.random(name, number));
         moves.into_iter().fold(generator, |all, (a, b, points)| {
-            all.moves(Move::new().rotate(a.clone()).scale((a, b)).points(points))
+            all.moves(
+                MoveBuilder::new()
+                    .rotate(a.clone())
+                    .scale((a, b))
+                    .points(points),
+            )
         })
     })
 }

@@ -1,6 +1,8 @@
 //! Systems and structures built in code are equal to those written in files.
 
-use kfrac::build::{Instance, Map, Set, StructureBuilder, SystemBuilder, Union};
+use kfrac::build::{
+    InstanceBuilder, MapBuilder, SetBuilder, StructureBuilder, SystemBuilder, UnionBuilder,
+};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::metadata::Parameter;
 use kfrac::model::Model;
@@ -45,33 +47,33 @@ initial: {polygon: [[0, 0], [1, 0], [0, 1]]}
 steps: 4
 dimension: 1.5
 ";
-    let placed = Map::scale(0.5).rotate("lean");
+    let placed = MapBuilder::scale(0.5).rotate("lean");
     let built = SystemBuilder::new()
         .parameter(Parameter::new("lean", 30.0))
         .map(
-            Map::scales((0.5, 0.6))
+            MapBuilder::scales((0.5, 0.6))
                 .rotate_axes(("lean", 20))
                 .shift((0, 1))
                 .weight(2)
                 .name("left"),
         )
         .map(
-            Map::times((0.3, -0.2))
+            MapBuilder::times((0.3, -0.2))
                 .conjugate()
                 .fixed((1, 1))
                 .weight(1)
                 .name("right"),
         )
-        .map(Map::matrix([("1/2", "0"), ("0.1", "1/3")]).weight("1/2"))
+        .map(MapBuilder::matrix([("1/2", "0"), ("0.1", "1/3")]).weight("1/2"))
         .edges("left", ["left", "right"])
         .weighted_edges("right", [("3", 2), ("left", 1)])
         .edges(3, ["left"])
-        .condensation(Set::ellipse((0, 1), (2, 1), 30).weight(3))
-        .condensation(Set::disk((0, 0), 0.5))
-        .condensation(Set::fractal("random-tree", 2).seed(5).placed(placed))
-        .condensation(Set::fractal("pythagoras", 2).parameters([("angle", "lean + 5")]))
-        .condensation(Set::point((1, 2)))
-        .initial(Set::polygon([(0, 0), (1, 0), (0, 1)]))
+        .condensation(SetBuilder::ellipse((0, 1), (2, 1), 30).weight(3))
+        .condensation(SetBuilder::disk((0, 0), 0.5))
+        .condensation(SetBuilder::fractal("random-tree", 2).seed(5).placed(placed))
+        .condensation(SetBuilder::fractal("pythagoras", 2).parameters([("angle", "lean + 5")]))
+        .condensation(SetBuilder::point((1, 2)))
+        .initial(SetBuilder::polygon([(0, 0), (1, 0), (0, 1)]))
         .steps(4)
         .dimension(1.5);
     assert_is_system(text, &built);
@@ -122,44 +124,48 @@ objects:
 scene: [tree(levels)]
 initial: {segment: [[0, 0], [0, 1]]}
 ";
-    let tree = Union::new()
-        .with(Instance::of("wood"))
+    let tree = UnionBuilder::new()
+        .with(InstanceBuilder::of("wood"))
         .with(
-            Instance::of("tree(n - 1)")
+            InstanceBuilder::of("tree(n - 1)")
                 .scale(0.7)
                 .rotate("10*n")
                 .translate((0, 1)),
         )
         .with(
-            Instance::of("tree(n - 1)")
+            InstanceBuilder::of("tree(n - 1)")
                 .translate((1, 0))
                 .scales((0.5, 0.6)),
         )
         .matrix([(1.0, 0.1), (0.0, 1.0)]);
-    let leaf = Instance::from(Set::disk((0, 0), 1)).tint(Colour::parse("teal").unwrap(), 0.5);
-    let built = StructureBuilder::new(Instance::of("tree(levels)"))
+    let leaf = InstanceBuilder::from(SetBuilder::disk((0, 0), 1))
+        .tint(Colour::parse("teal").unwrap(), 0.5);
+    let built = StructureBuilder::new(InstanceBuilder::of("tree(levels)"))
         .parameter(Parameter::new("levels", 3.0))
         .object(
             "wood",
-            Instance::from(Set::polyline([(0, 0), (0, 1), (1, 1)])),
+            InstanceBuilder::from(SetBuilder::polyline([(0, 0), (0, 1), (1, 1)])),
         )
         .object("tree(0)", leaf)
         .object("tree(n)", tree)
-        .initial(Set::segment((0, 0), (0, 1)));
+        .initial(SetBuilder::segment((0, 0), (0, 1)));
     assert_is_structure(text, &built);
 }
 
 #[test]
 fn mistakes_of_systems_and_structures_are_those_of_their_files() {
-    let diverges = SystemBuilder::new().map(Map::scale(2)).build().unwrap_err();
+    let diverges = SystemBuilder::new()
+        .map(MapBuilder::scale(2))
+        .build()
+        .unwrap_err();
     assert!(diverges.to_string().contains("contract"), "{diverges}");
     let nothing = SystemBuilder::new().build().unwrap_err();
     assert!(
         nothing.to_string().contains("the system has no maps"),
         "{nothing}"
     );
-    let missing = StructureBuilder::new(Instance::of("B"))
-        .object("A", Instance::from(Set::point((0, 0))))
+    let missing = StructureBuilder::new(InstanceBuilder::of("B"))
+        .object("A", InstanceBuilder::from(SetBuilder::point((0, 0))))
         .build()
         .unwrap_err();
     assert!(missing.to_string().contains("no object 'B'"), "{missing}");

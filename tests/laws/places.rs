@@ -5,7 +5,7 @@ use std::num::NonZero;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
-use kfrac::export::{self, Format};
+use kfrac::export::{self, TableFormat};
 use kfrac::geometry::{DVec2, Homothety};
 use kfrac::graph::{CompileError, Graph};
 use kfrac::grow::Growth;
@@ -115,7 +115,14 @@ fn picture(graph: &Graph, format: render::Format) -> Vec<u8> {
 fn rows(graph: &Graph) -> Vec<Vec<f64>> {
     let mut text = Vec::new();
     let threads = NonZero::<usize>::MIN;
-    export::write(graph, &Growth::steps(2), Format::Csv, threads, &mut text).unwrap();
+    export::write(
+        graph,
+        &Growth::steps(2),
+        TableFormat::Csv,
+        threads,
+        &mut text,
+    )
+    .unwrap();
     let text = String::from_utf8(text).unwrap();
     let number = |cell: &str| cell.parse().unwrap_or(f64::NAN);
     let rows = text.lines().skip(1);
@@ -256,7 +263,7 @@ fn what_grows_beyond_the_range_of_numbers_is_refused() {
         assert!(error.contains("beyond the range of numbers"), "{error}");
     }
     let (threads, growth) = (NonZero::<usize>::MIN, Growth::steps(40));
-    let error = export::write(&graph, &growth, Format::Csv, threads, &mut Vec::new());
+    let error = export::write(&graph, &growth, TableFormat::Csv, threads, &mut Vec::new());
     let error = error.unwrap_err().to_string();
     assert!(error.contains("beyond the range of numbers"), "{error}");
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use kfrac::geometry::DVec2;
-use kfrac::graph::{Chain, Graph, Production, Replacement};
+use kfrac::graph::{Chain, Graph, Replacement, Successor};
 use kfrac::grow::Growth;
 
 use super::common::grown;
@@ -29,7 +29,7 @@ fn is_like(graph: &Graph, chain: &Chain, listed: &[&Listed]) -> bool {
             })
 }
 
-fn is_production(graph: &Graph, production: &Production, generator: &[Listed]) -> bool {
+fn is_production(graph: &Graph, production: &Successor, generator: &[Listed]) -> bool {
     let part = |number| -> Vec<&Listed> {
         generator
             .iter()

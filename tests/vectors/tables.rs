@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 
-use kfrac::export::{self, Format};
+use kfrac::export::{self, TableFormat};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 
@@ -17,7 +17,7 @@ fn both_tables_say_the_same() {
         export::write(&graph, &Growth::steps(4), format, one, &mut bytes).unwrap();
         bytes
     };
-    let (comma, lines) = (table(Format::Csv), table(Format::JsonLines));
+    let (comma, lines) = (table(TableFormat::Csv), table(TableFormat::JsonLines));
     let mut reader = csv::Reader::from_reader(comma.as_slice());
     let names = reader.headers().unwrap().clone();
     let rows: Vec<_> = reader.records().map(Result::unwrap).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use kfrac::geometry::{DAffine2, DVec2, Frame2};
-use kfrac::graph::{Graph, Instance, Production, Replacement};
+use kfrac::graph::{Graph, Instance, Replacement, Successor};
 use kfrac::grow::{Element, Enter, FractalInfo, Subtree, Visitor, walk};
 use kfrac::model::Model;
 use kfrac::zoom::{ZoomOptions, zoom};
@@ -81,7 +81,7 @@ impl Visitor for Ordered {
     }
 }
 
-fn production(graph: &Graph, object: usize) -> &Production {
+fn production(graph: &Graph, object: usize) -> &Successor {
     match &graph.objects()[object].replacement {
         Replacement::Fixed(production) => production,
         other => panic!("{other:?}"),
@@ -90,7 +90,7 @@ fn production(graph: &Graph, object: usize) -> &Production {
 
 /// Returns an instance in an object, or in the parts that it seeds.
 fn child(graph: &Graph, object: usize, position: u32) -> &Instance {
-    let Production { body, seeds } = production(graph, object);
+    let Successor { body, seeds } = production(graph, object);
     let chains = std::iter::once(body).chain(seeds.iter().map(|seed| &seed.chain));
     let mut instances = chains.flat_map(|chain| &chain.instances);
     instances.find(|it| it.position == position).unwrap()

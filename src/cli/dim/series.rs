@@ -92,7 +92,7 @@ impl Series {
             .iter()
             .map(|(value, known)| (*value, similarity(known)))
             .collect();
-        let options = dimension::Options {
+        let options = dimension::DimensionFigureOptions {
             format,
             unit: None,
             labels: Labels {

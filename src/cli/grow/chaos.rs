@@ -306,7 +306,7 @@ impl<'a> ChaosGame<'a> {
     /// Lists the points and returns a summary.
     pub(super) fn list(
         &self,
-        format: export::Format,
+        format: export::TableFormat,
         progress: Option<&Progress>,
         out: &mut impl Write,
         path: &Path,

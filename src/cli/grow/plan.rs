@@ -13,7 +13,7 @@ use super::Arguments;
 /// File that is written.
 pub(super) enum Plan {
     /// Table of the elements of a step.
-    Table(export::Format),
+    Table(export::TableFormat),
     /// Picture of elements.
     Picture {
         format: render::Format,
@@ -22,7 +22,7 @@ pub(super) enum Plan {
         is_light: bool,
     },
     /// Points of random iteration: a PNG of their numbers, or a table of them.
-    Chaos(Option<export::Format>),
+    Chaos(Option<export::TableFormat>),
 }
 
 /// Part of a set that a picture of elements shows.
@@ -39,7 +39,7 @@ pub(super) enum Shown {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Picture(render::Format),
-    Table(export::Format),
+    Table(export::TableFormat),
 }
 
 impl Named for Format {
@@ -48,10 +48,10 @@ impl Named for Format {
         ("png", Self::Picture(render::Format::Png)),
         ("pdf", Self::Picture(render::Format::Pdf)),
         ("dxf", Self::Picture(render::Format::Dxf)),
-        ("csv", Self::Table(export::Format::Csv)),
-        ("json", Self::Table(export::Format::JsonLines)),
-        ("jsonl", Self::Table(export::Format::JsonLines)),
-        ("ndjson", Self::Table(export::Format::JsonLines)),
+        ("csv", Self::Table(export::TableFormat::Csv)),
+        ("json", Self::Table(export::TableFormat::JsonLines)),
+        ("jsonl", Self::Table(export::TableFormat::JsonLines)),
+        ("ndjson", Self::Table(export::TableFormat::JsonLines)),
     ];
 }
 

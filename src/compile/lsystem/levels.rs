@@ -14,7 +14,7 @@ use super::far::Far;
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, State};
 use super::words::{Words, Written};
-use crate::graph::{Alternative, Chain, Graph, Instance, Object, Production, Replacement};
+use crate::graph::{Alternative, Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::rule::Extent;
 
 /// Limit of the number of objects.
@@ -65,7 +65,7 @@ struct Leveller<'e> {
 
 /// Replacement of a kind.
 enum Made {
-    Fixed(Production),
+    Fixed(Successor),
     /// Words of which one is drawn, or whose modules are random.
     Drawn(Vec<Alternative>),
 }
@@ -163,7 +163,7 @@ impl Leveller<'_> {
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             let instances = self.instances(&reader.parts, left - 1, unit, colour)?;
             if is_exact {
-                return Ok(Made::Fixed(Production {
+                return Ok(Made::Fixed(Successor {
                     body: Chain {
                         instances,
                         meets_frame: reader.meets(),

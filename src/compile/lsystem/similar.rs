@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::draws::Path;
 use crate::geometry::{DVec2, Direction, Frame2};
-use crate::graph::{Chain, Graph, Instance, Object, Production, Replacement};
+use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
@@ -459,7 +459,7 @@ impl Edges {
             let next = behaviours.len();
             let behaves = (key.kind, key.colour);
             let replacement = match &shapes[key.kind] {
-                Some(shape) => Replacement::Fixed(Arc::new(Production {
+                Some(shape) => Replacement::Fixed(Arc::new(Successor {
                     body: shape.chain(self, &objects, key.colour)?,
                     seeds: Vec::new(),
                 })),

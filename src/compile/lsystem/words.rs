@@ -4,7 +4,7 @@
 use crate::draws::Path;
 use crate::expression::Interval;
 use crate::geometry::Frame2;
-use crate::graph::{Alternative, Buffers, CompileError, Instance, Production, Source};
+use crate::graph::{Alternative, Buffers, CompileError, Instance, Source, Successor};
 use crate::rule::{ElementContext, Extent, Part};
 
 use super::effects::Effects;
@@ -41,7 +41,7 @@ impl Words {
 
     /// Overwrites a production with the word that the draws of a path select among `words`, interpreted
     /// with the draws of the path.
-    fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Production) {
+    fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Successor) {
         production.seeds.clear();
         production.body.instances.clear();
         production.body.meets_frame = [false; 2];
@@ -85,7 +85,7 @@ impl Source<Frame2> for Words {
         path: Path,
         _: &ElementContext,
         _: &mut Buffers<Frame2>,
-        production: &mut Production,
+        production: &mut Successor,
     ) -> Result<(), CompileError> {
         self.evaluate(alternatives, path, production);
         Ok(())

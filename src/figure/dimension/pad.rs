@@ -12,7 +12,7 @@ use crate::render::{
 use crate::style::{Cap, Colour, Join};
 
 use super::super::text::{Anchor, Font};
-use super::Options;
+use super::DimensionFigureOptions;
 use super::axis::{Axis, Label};
 
 /// Left side of all panels, in pixels.
@@ -45,7 +45,7 @@ pub(super) trait Plot {
 /// Writes a plot on white, under its title; returns width and height in pixels.
 pub(super) fn write(
     plot: &(impl Plot + Sync),
-    options: &Options,
+    options: &DimensionFigureOptions,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
     let page = Page {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::geometry::DVec2;
 use crate::render::{RenderError, Surface};
 
-use super::Options;
+use super::DimensionFigureOptions;
 use super::axis::Axis;
 use super::pad::{self, LEFT, Pad, Plot, RIGHT, frame, orange};
 
@@ -21,7 +21,7 @@ const PANEL: [f64; 2] = [44.0, 420.0];
 pub fn write_series(
     parameter: &str,
     dimensions: &[(f64, Option<f64>)],
-    options: &Options,
+    options: &DimensionFigureOptions,
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
     let series = Series {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::compile::{filling, outline as base_element};
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::Graph;
-use crate::instancing::{Instance, Instancing, Master};
+use crate::instancing::{Instancing, Master, ObjectInstance};
 use crate::render::Paint;
 
 use super::super::text::Font;
@@ -124,12 +124,12 @@ struct Plan<'a> {
 /// A drawable instance, in the coordinates of the object that contains it.
 struct Drawn<'a> {
     outline: Outline,
-    instance: &'a Instance,
+    instance: &'a ObjectInstance,
 }
 
 impl<'a> Plan<'a> {
     /// Returns the panel of a list of instances, with sides of at most `side` pixels.
-    fn panel(&self, instances: &'a [Instance], side: f64) -> Block {
+    fn panel(&self, instances: &'a [ObjectInstance], side: f64) -> Block {
         let drawn = instances.iter().take(MOST_INSTANCES);
         let drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
         let bounds = drawn.iter().fold(Bounds::EMPTY, |mut bounds, drawn| {
@@ -164,7 +164,7 @@ impl<'a> Plan<'a> {
         )
     }
 
-    fn drawn(&self, instance: &'a Instance) -> Option<Drawn<'a>> {
+    fn drawn(&self, instance: &'a ObjectInstance) -> Option<Drawn<'a>> {
         let map = self.structure.map_of(instance);
         let own = match &instance.master {
             Master::Object(number) => outline(&filling(Some(*self.boxes.get(number)?))),

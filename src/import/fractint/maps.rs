@@ -1,7 +1,7 @@
 //! Conversion of Fractint's systems of maps: rows of `a b c d e f p`, for x' = a x + b y + e and y' = c x + d
 //! y + f.
 
-use crate::build::Number;
+use crate::build::NumberText;
 use crate::build::written::{Entries, sequence};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::node::Value;
@@ -69,7 +69,7 @@ fn number(word: &Word) -> Option<f64> {
 }
 
 fn map(matrix: [[f64; 2]; 2], shift: [f64; 2], weight: f64) -> Value {
-    let value = |number: f64| Number::from(number + 0.0).0;
+    let value = |number: f64| NumberText::from(number + 0.0).0;
     let row = |row: [f64; 2]| sequence(row.map(value));
     let map = Entries::default().set("matrix", sequence(matrix.map(row)));
     map.set_some("shift", (shift != [0.0; 2]).then(|| row(shift)))

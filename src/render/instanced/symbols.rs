@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::geometry::Direction;
-use crate::graph::{Chain, Graph, Instance, Production, Replacement};
+use crate::graph::{Chain, Graph, Instance, Replacement, Successor};
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
@@ -183,7 +183,7 @@ impl<'g> Symbols<'g> {
     }
 
     /// Returns the production that replaces a symbol's object.
-    pub(super) fn production(&self, symbol: &Symbol) -> Option<&'g Production> {
+    pub(super) fn production(&self, symbol: &Symbol) -> Option<&'g Successor> {
         match &self.graph.objects()[symbol.object].replacement {
             Replacement::Fixed(production) if symbol.aspect.steps > 0 => Some(production),
             _ => None,
