@@ -13,20 +13,20 @@ pub struct Written<T> {
 }
 
 /// A number as written: an expression.
-pub type Number = Written<Expression>;
+pub type WrittenNumber = Written<Expression>;
 
 /// A point as written.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct WrittenPoint {
     /// First coordinate, to the right.
-    pub x: Number,
+    pub x: WrittenNumber,
     /// Second coordinate, upwards.
-    pub y: Number,
+    pub y: WrittenNumber,
     /// Source span of the point.
     pub place: Place,
 }
 
-impl Point {
+impl WrittenPoint {
     /// Returns a placeholder for a point that cannot be read.
     pub(crate) fn unknown(place: &Place) -> Self {
         let unknown = || Written {

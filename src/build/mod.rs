@@ -143,7 +143,7 @@ impl RuleBuilder {
     }
 
     /// Adds a generator. If there are several, either a selection or [every fertile
-    /// element](Element::generator) names the generator that replaces an element.
+    /// element](ElementBuilder::generator) names the generator that replaces an element.
     pub fn generator(
         self,
         name: impl Into<String>,
@@ -191,7 +191,7 @@ impl RuleBuilder {
         self.set("select", written::sequence(cases.chain([otherwise])))
     }
 
-    /// Sets the base element of all elements without [their own](Element::base_element). The default is
+    /// Sets the base element of all elements without [their own](ElementBuilder::base_element). The default is
     /// a line.
     pub fn base_element(self, base_element: &BaseElement) -> Self {
         self.set("base_element", written::base_element(base_element))

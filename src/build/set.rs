@@ -69,12 +69,12 @@ impl SetBuilder {
         )
     }
 
-    /// Sets the seed of the random draws of a [fractal](Set::fractal).
+    /// Sets the seed of the random draws of a [fractal](SetBuilder::fractal).
     pub fn seed(self, seed: impl Into<NumberText>) -> Self {
         Self(self.0.set("seed", seed.into().0))
     }
 
-    /// Sets parameters of a [fractal](Set::fractal) by name.
+    /// Sets parameters of a [fractal](SetBuilder::fractal) by name.
     pub fn parameters(
         self,
         values: impl IntoIterator<Item = (impl Into<String>, impl Into<NumberText>)>,
@@ -86,7 +86,7 @@ impl SetBuilder {
         Self(self.0.set("set", values.value()))
     }
 
-    /// Sets the map that places a [fractal](Set::fractal).
+    /// Sets the map that places a [fractal](SetBuilder::fractal).
     pub fn placed(self, map: impl Into<MapBuilder>) -> Self {
         Self(self.0.set("map", map.into().entries.value()))
     }

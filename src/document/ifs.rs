@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Place;
 
-use super::{KindDocument, MetadataDocument, Number, Point, Written};
+use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An iterated function system as written.
 #[derive(Clone, Debug)]
@@ -30,9 +30,9 @@ pub enum MapsDocument {
     /// Contractions towards vertices by a common factor.
     Vertices {
         /// The vertices.
-        points: Vec<Point>,
+        points: Vec<WrittenPoint>,
         /// Contraction factor f of the maps x → f x + (1 − f) v.
-        shrink: Number,
+        shrink: WrittenNumber,
     },
     /// The maps of fractal interpolation.
     Interpolated(InterpolationDocument),
@@ -42,7 +42,7 @@ pub enum MapsDocument {
 #[derive(Clone, Debug)]
 pub struct InterpolationDocument {
     /// Interpolation points, from left to right.
-    pub points: Vec<Point>,
+    pub points: Vec<WrittenPoint>,
     /// Vertical scaling factors.
     pub scale: Scales,
     /// Source span of the interpolation.
@@ -53,11 +53,11 @@ pub struct InterpolationDocument {
 #[derive(Clone, Debug)]
 pub enum Scales {
     /// One factor for all pieces.
-    One(Number),
+    One(WrittenNumber),
     /// One factor for each piece.
-    Each(Vec<Number>),
+    Each(Vec<WrittenNumber>),
     /// One factor for all pieces, by the box dimension of the curve.
-    Dimension(Number),
+    Dimension(WrittenNumber),
 }
 
 /// An affine map as written.
@@ -68,11 +68,11 @@ pub struct MapDocument {
     /// Linear part; `None` if it cannot be read.
     pub linear: Option<LinearDocument>,
     /// Translation, which is added last.
-    pub shift: Option<Point>,
+    pub shift: Option<WrittenPoint>,
     /// Fixed point, as an alternative to the translation.
-    pub fixed: Option<Point>,
+    pub fixed: Option<WrittenPoint>,
     /// Relative probability in random iteration.
-    pub weight: Option<Number>,
+    pub weight: Option<WrittenNumber>,
     /// Source span of the map.
     pub place: Place,
 }
@@ -81,18 +81,18 @@ pub struct MapDocument {
 #[derive(Clone, Debug)]
 pub enum LinearDocument {
     /// Rows of a matrix.
-    Matrix([Point; 2]),
+    Matrix([WrittenPoint; 2]),
     /// Factors and angles of the two axes.
     Axes {
         /// Factors along x and y.
-        scale: [Number; 2],
+        scale: [WrittenNumber; 2],
         /// Angles of the images of the axes, in degrees; 0 if `None`.
-        rotate: Option<[Number; 2]>,
+        rotate: Option<[WrittenNumber; 2]>,
     },
     /// Multiplication by a complex number.
     Complex {
         /// The factor.
-        times: Point,
+        times: WrittenPoint,
         /// Whether the conjugate is taken before the multiplication.
         conjugate: bool,
     },
@@ -106,7 +106,7 @@ pub struct EdgeDocument {
     /// The map that may be applied next, by name or number.
     pub to: Written<String>,
     /// Relative probability of the edge.
-    pub weight: Option<Number>,
+    pub weight: Option<WrittenNumber>,
 }
 
 /// A condensation set as written.
@@ -115,7 +115,7 @@ pub struct CondensationDocument {
     /// The set.
     pub shape: ShapeDocument,
     /// Relative probability of a restart of random iteration in the set.
-    pub weight: Option<Number>,
+    pub weight: Option<WrittenNumber>,
 }
 
 /// A shape as written.
@@ -131,11 +131,11 @@ pub struct ShapeDocument {
 #[derive(Clone, Debug)]
 pub enum FormDocument {
     /// A point.
-    Point(Point),
+    Point(WrittenPoint),
     /// A polyline or a polygon.
     Outline {
         /// The points.
-        points: Vec<Point>,
+        points: Vec<WrittenPoint>,
         /// Whether the outline is closed and includes its interior.
         closed: bool,
     },
@@ -153,11 +153,11 @@ pub struct FractalDocument {
     /// Whether no errors are known in the file: otherwise the fractal is not grown.
     pub is_sound: bool,
     /// Number of steps; that of the file if `None`.
-    pub steps: Option<Number>,
+    pub steps: Option<WrittenNumber>,
     /// Seed of the random draws; 0 if `None`.
-    pub seed: Option<Number>,
+    pub seed: Option<WrittenNumber>,
     /// Parameters that are set, with their values.
-    pub set: Vec<(Written<String>, Number)>,
+    pub set: Vec<(Written<String>, WrittenNumber)>,
     /// Map that places the fractal.
     pub map: Option<MapDocument>,
     /// Source span of the fractal's name.
@@ -168,9 +168,9 @@ pub struct FractalDocument {
 #[derive(Clone, Debug)]
 pub struct EllipseDocument {
     /// Centre.
-    pub centre: Point,
+    pub centre: WrittenPoint,
     /// Half axes.
-    pub axes: [Number; 2],
+    pub axes: [WrittenNumber; 2],
     /// Angle from the x axis to the first half axis, in degrees.
-    pub rotate: Option<Number>,
+    pub rotate: Option<WrittenNumber>,
 }

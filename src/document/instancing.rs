@@ -6,7 +6,7 @@
 use crate::diagnostic::Place;
 use crate::style::Colour;
 
-use super::{MetadataDocument, Number, Point, ShapeDocument, Written};
+use super::{MetadataDocument, ShapeDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An instancing structure as written.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ pub enum LevelDocument {
     /// All levels, under the name of a variable: the `n` of `A(n)`.
     Any(Written<String>),
     /// One level: the 0 of `A(0)`.
-    One(Number),
+    One(WrittenNumber),
 }
 
 /// A union of instances as written.
@@ -75,7 +75,7 @@ pub enum MasterDocument {
         /// Name without the level.
         name: Written<String>,
         /// Level.
-        level: Option<Number>,
+        level: Option<WrittenNumber>,
     },
     /// A shape.
     Shape(Box<ShapeDocument>),
@@ -85,13 +85,13 @@ pub enum MasterDocument {
 #[derive(Clone, Debug)]
 pub enum TransformDocument {
     /// Scaling about (0, 0) by factors along x and y.
-    Scale([Number; 2]),
+    Scale([WrittenNumber; 2]),
     /// Rotation about (0, 0) by an angle in degrees, counter-clockwise.
-    Rotate(Number),
+    Rotate(WrittenNumber),
     /// Translation.
-    Translate(Point),
+    Translate(WrittenPoint),
     /// Linear map by the rows of its matrix.
-    Matrix([Point; 2]),
+    Matrix([WrittenPoint; 2]),
 }
 
 /// A tint as written.
@@ -100,5 +100,5 @@ pub struct TintDocument {
     /// Colour; `None` if it cannot be read.
     pub colour: Option<Colour>,
     /// Strength of the tint from 0 to 1; 1 if `None`.
-    pub alpha: Option<Number>,
+    pub alpha: Option<WrittenNumber>,
 }

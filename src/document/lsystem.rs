@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Place;
 
-use super::{MetadataDocument, Number};
+use super::{MetadataDocument, WrittenNumber};
 
 /// An L-system as written.
 #[derive(Clone, Debug)]
@@ -13,13 +13,13 @@ pub struct LSystemDocument {
     /// Metadata of the file.
     pub heading: MetadataDocument,
     /// Angle increment of `+` and `-`, in degrees.
-    pub angle: Option<Number>,
+    pub angle: Option<WrittenNumber>,
     /// Initial heading of the turtle, in degrees counter-clockwise from the x axis.
-    pub start: Option<Number>,
+    pub start: Option<WrittenNumber>,
     /// Step length of the turtle.
-    pub length: Option<Number>,
+    pub length: Option<WrittenNumber>,
     /// Factor by which `!` multiplies the width.
-    pub thinning: Option<Number>,
+    pub thinning: Option<WrittenNumber>,
     /// Axiom; `None` if it is missing.
     pub axiom: Option<WordDocument>,
     /// Productions, in the order of the file.
@@ -49,7 +49,7 @@ pub struct ModuleDocument {
     /// Symbol.
     pub character: char,
     /// Arguments.
-    pub arguments: Vec<Number>,
+    pub arguments: Vec<WrittenNumber>,
     /// Source span of the module.
     pub place: Place,
 }
@@ -64,11 +64,11 @@ pub struct ProductionDocument {
     /// Right context.
     pub right: Vec<ModuleDocument>,
     /// Condition.
-    pub condition: Option<Number>,
+    pub condition: Option<WrittenNumber>,
     /// Successor.
     pub successor: WordDocument,
     /// Weight of a stochastic production; 1 if it is one of a list of alternatives without a weight.
-    pub weight: Option<Number>,
+    pub weight: Option<WrittenNumber>,
 }
 
 /// The turtle's interpretation of a symbol, as written.
@@ -84,15 +84,15 @@ pub struct SymbolDocument {
 #[derive(Clone, Debug)]
 pub enum ActionDocument {
     /// Moves ahead by a number of steps (1 if `None`) and draws a line.
-    Draw(Option<Number>),
+    Draw(Option<WrittenNumber>),
     /// Moves ahead by a number of steps without drawing; adds a vertex to an open polygon.
-    Move(Option<Number>),
+    Move(Option<WrittenNumber>),
     /// Moves ahead by a number of steps without drawing and without adding a vertex.
-    Glide(Option<Number>),
+    Glide(Option<WrittenNumber>),
     /// Turns by an angle in degrees, clockwise after a reflection and counter-clockwise otherwise.
-    Turn(Number),
+    Turn(WrittenNumber),
     /// Turns counter-clockwise by an angle in degrees, also after a reflection.
-    Rotate(Number),
+    Rotate(WrittenNumber),
     /// Exchanges the heading and the second heading.
     Swap,
     /// Pushes the state.
@@ -102,15 +102,15 @@ pub enum ActionDocument {
     /// Reverses the sense of the turns that follow.
     Reflect,
     /// Multiplies the step length.
-    Scale(Number),
+    Scale(WrittenNumber),
     /// Multiplies the width.
-    Width(Number),
+    Width(WrittenNumber),
     /// Sets the width, as a multiple of the width of the file.
-    SetWidth(Number),
+    SetWidth(WrittenNumber),
     /// Sets the colour by its number in the palette.
-    Colour(Number),
+    Colour(WrittenNumber),
     /// Adds to the number of the colour.
-    ShiftColour(Number),
+    ShiftColour(WrittenNumber),
     /// Begins a polygon.
     Open,
     /// Ends the polygon.

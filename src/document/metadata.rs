@@ -5,7 +5,7 @@ use crate::expression::PARTS;
 use crate::metadata::Description;
 use crate::style::{Style, View};
 
-use super::{Number, Written};
+use super::{Written, WrittenNumber};
 
 /// Metadata of a file as written.
 #[derive(Clone, Debug)]
@@ -15,11 +15,11 @@ pub struct MetadataDocument {
     /// Parameters, in the order of the file.
     pub params: Vec<ParameterDocument>,
     /// Number of steps that the file proposes.
-    pub steps: Option<Number>,
+    pub steps: Option<WrittenNumber>,
     /// Published similarity dimension.
-    pub dimension: Option<Number>,
+    pub dimension: Option<WrittenNumber>,
     /// Published Hausdorff dimension, where overlaps make it smaller than the similarity dimension.
-    pub hausdorff_dimension: Option<Number>,
+    pub hausdorff_dimension: Option<WrittenNumber>,
     /// Style of the picture.
     pub style: Style,
     /// View: the window and the margin.
@@ -39,11 +39,11 @@ pub struct ParameterDocument {
     /// Name of the complex parameter to which this part belongs.
     pub whole: Option<Written<String>>,
     /// Value.
-    pub value: Number,
+    pub value: WrittenNumber,
     /// Lower limit of the value.
-    pub min: Option<Number>,
+    pub min: Option<WrittenNumber>,
     /// Upper limit of the value.
-    pub max: Option<Number>,
+    pub max: Option<WrittenNumber>,
     /// Description of the parameter.
     pub about: Option<String>,
 }

@@ -41,7 +41,7 @@ pub use rule::{
 
 pub use schema::{schema, schema_of_all};
 
-pub use crate::written::{Number, Point, Written};
+pub use crate::written::{Written, WrittenNumber, WrittenPoint};
 
 use std::collections::BTreeSet;
 use std::path::Path;

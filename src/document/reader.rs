@@ -9,7 +9,7 @@ use crate::style::Named;
 
 use super::node::{Node, Value};
 use super::shape::{Form, Member, Shape};
-use super::{Number, Point, Written};
+use super::{Written, WrittenNumber, WrittenPoint};
 
 /// A reader of values, which collects diagnostics.
 #[derive(Default)]
@@ -206,7 +206,7 @@ impl Reader {
     }
 
     /// Reads an expression. Reports a mistake and returns a placeholder.
-    pub(super) fn number(&mut self, node: &Node) -> Number {
+    pub(super) fn number(&mut self, node: &Node) -> WrittenNumber {
         let expression = match &node.value {
             Value::Number(value) => Expression::number(*value),
             Value::Text(text) => Expression::parse(text).unwrap_or_else(|error| {
@@ -246,14 +246,14 @@ impl Reader {
         }
     }
 
-    pub(super) fn optional_number(&mut self, node: Option<&Node>) -> Option<Number> {
+    pub(super) fn optional_number(&mut self, node: Option<&Node>) -> Option<WrittenNumber> {
         node.map(|node| self.number(node))
     }
 
     /// Reads a list of exactly two numbers.
-    pub(super) fn point(&mut self, node: &Node) -> Point {
+    pub(super) fn point(&mut self, node: &Node) -> WrittenPoint {
         let hint = "a point is written [x, y]";
-        let mut point = Point::unknown(&node.place);
+        let mut point = WrittenPoint::unknown(&node.place);
         let Value::Sequence(entries) = &node.value else {
             self.mismatch(node, "a point", hint);
             return point;
@@ -290,25 +290,25 @@ impl Reader {
             };
             self.error_with_hint(&node.place, message, hint);
         }
-        Point::unknown(&node.place)
+        WrittenPoint::unknown(&node.place)
     }
 
     /// Reads a point, or the name of a complex parameter.
-    pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<Point> {
+    pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<WrittenPoint> {
         let node = node?;
         match &node.value {
-            Value::Text(name) if is_name(name) => Some(Point::named(name, &node.place)),
+            Value::Text(name) if is_name(name) => Some(WrittenPoint::named(name, &node.place)),
             Value::Text(text) => {
                 let message = format!("'{text}' is neither a point nor a name");
                 let hint = "write [x, y], or the name of a complex parameter";
                 self.error_with_hint(&node.place, message, hint);
-                Some(Point::unknown(&node.place))
+                Some(WrittenPoint::unknown(&node.place))
             }
             _ => Some(self.point(node)),
         }
     }
 
-    pub(super) fn optional_point(&mut self, node: Option<&Node>) -> Option<Point> {
+    pub(super) fn optional_point(&mut self, node: Option<&Node>) -> Option<WrittenPoint> {
         node.map(|node| self.point(node))
     }
 

@@ -6,7 +6,7 @@
 use crate::diagnostic::Place;
 use crate::rule::Placement;
 
-use super::{MetadataDocument, Number, Point, Written};
+use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// A production rule as written, with its components inlined.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ impl InitiatorDocument {
 #[derive(Clone, Debug)]
 pub struct GeneratorDocument {
     /// Random variables with their distributions.
-    pub random: Vec<(Written<String>, Number)>,
+    pub random: Vec<(Written<String>, WrittenNumber)>,
     /// Moves of its points, in the order of application.
     pub moves: Vec<MoveDocument>,
     /// Parts.
@@ -80,7 +80,7 @@ pub struct PartDocument {
 #[derive(Clone, Debug)]
 pub enum Entry {
     /// A point: the start of the list, or the end of an element without further attributes.
-    Point(Point),
+    Point(WrittenPoint),
     /// An element with attributes.
     Element(Box<Listed>),
 }
@@ -89,11 +89,11 @@ pub enum Entry {
 #[derive(Clone, Debug)]
 pub struct Listed {
     /// Start point; the end of the previous entry if `None`.
-    pub from: Option<Point>,
+    pub from: Option<WrittenPoint>,
     /// End point.
-    pub to: Point,
+    pub to: WrittenPoint,
     /// Direction, 1 to 4.
-    pub direction: Option<Number>,
+    pub direction: Option<WrittenNumber>,
     /// Whether the element is replaced.
     pub fertile: bool,
     /// Whether the element is drawn.
@@ -112,13 +112,13 @@ pub struct Listed {
 #[derive(Clone, Debug)]
 pub struct MoveDocument {
     /// Angle in degrees, counter-clockwise.
-    pub rotate: Option<Number>,
+    pub rotate: Option<WrittenNumber>,
     /// Scaling factors along x and y.
-    pub scale: Option<[Number; 2]>,
+    pub scale: Option<[WrittenNumber; 2]>,
     /// Translation, which is applied last.
-    pub shift: Option<Point>,
+    pub shift: Option<WrittenPoint>,
     /// Centre of scaling and rotation.
-    pub about: Option<Point>,
+    pub about: Option<WrittenPoint>,
     /// Points that move.
     pub points: WhichPoints,
     /// Source span of the move.
@@ -133,18 +133,18 @@ pub enum WhichPoints {
     /// All points.
     All,
     /// The points of these numbers, from 0 in the order of their first occurrence.
-    Numbers(Vec<Number>),
+    Numbers(Vec<WrittenNumber>),
 }
 
 /// A selection of generators as written.
 #[derive(Clone, Debug)]
 pub enum SelectDocument {
     /// Conditions, which are tried in order, with generators. The last case has no condition.
-    Cases(Vec<(Option<Number>, Option<Written<String>>)>, Place),
+    Cases(Vec<(Option<WrittenNumber>, Option<Written<String>>)>, Place),
     /// By index of the element.
     ByIndex(Vec<Written<String>>, Place),
     /// At random, by weight.
-    AtRandom(Vec<(Written<String>, Number)>, Place),
+    AtRandom(Vec<(Written<String>, WrittenNumber)>, Place),
 }
 
 /// A base element as written.
@@ -155,9 +155,9 @@ pub struct BaseElementDocument {
     /// Whether the last point is connected to the first.
     pub closed: bool,
     /// Point of the outline that is mapped to (0, 0).
-    pub from: Option<Point>,
+    pub from: Option<WrittenPoint>,
     /// Point of the outline that is mapped to (1, 0).
-    pub to: Option<Point>,
+    pub to: Option<WrittenPoint>,
     /// Source span of the base element.
     pub place: Place,
 }
@@ -166,26 +166,26 @@ pub struct BaseElementDocument {
 #[derive(Clone, Debug)]
 pub enum PieceDocument {
     /// A straight line to a point.
-    Line(Point),
+    Line(WrittenPoint),
     /// A circular arc.
     Arc {
         /// End point.
-        to: Point,
+        to: WrittenPoint,
         /// A point on the arc.
-        through: Point,
+        through: WrittenPoint,
     },
     /// A Bézier curve.
     Curve {
         /// End point.
-        to: Point,
+        to: WrittenPoint,
         /// Control points: one of a quadratic curve, two of a cubic one.
-        control: Vec<Point>,
+        control: Vec<WrittenPoint>,
     },
 }
 
 impl PieceDocument {
     /// Returns the end point.
-    pub(crate) fn end(&self) -> &Point {
+    pub(crate) fn end(&self) -> &WrittenPoint {
         match self {
             Self::Line(to) | Self::Arc { to, .. } | Self::Curve { to, .. } => to,
         }

@@ -76,7 +76,7 @@ pub trait Point:
     fn triangle(self, other: Self) -> Option<f64>;
 }
 
-/// Implements [`Point`] for a vector type with methods of the same names.
+/// Implements [`WrittenPoint`] for a vector type with methods of the same names.
 macro_rules! point {
     ($vector:ident, $dimension:literal, [$($axis:ident),*], $triangle:expr) => {
         impl Point for $vector {

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place, did_you_mean, listed};
 use crate::document::{
-    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, Number, ObjectDocument,
-    ShapeDocument, TransformDocument, UnionDocument,
+    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
+    ShapeDocument, TransformDocument, UnionDocument, WrittenNumber,
 };
 use crate::expression::{Affine, Arithmetic, Doubles, Program, Scope, Symbols};
 use crate::geometry::DAffine2;
@@ -262,7 +262,8 @@ impl Resolver<OfInstancing> {
         documents: &[TransformDocument],
         scope: &Scope,
     ) -> Arc<[Affine<Program>]> {
-        let mut two = |x: &Number, y: &Number| [self.program(x, scope), self.program(y, scope)];
+        let mut two =
+            |x: &WrittenNumber, y: &WrittenNumber| [self.program(x, scope), self.program(y, scope)];
         let of = &mut Symbols;
         let transforms = documents.iter().map(|document| match document {
             TransformDocument::Scale([x, y]) => Affine::scaling(of, two(x, y)),

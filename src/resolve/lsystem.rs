@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{LSystemDocument, ModuleDocument, Number, ProductionDocument, WordDocument};
+use crate::document::{
+    LSystemDocument, ModuleDocument, ProductionDocument, WordDocument, WrittenNumber,
+};
 use crate::expression::{Program, Scope, is_reserved};
 use crate::lsystem::{Action, Context, LSystem, Module, Origin, Production, Symbol, Template};
 use crate::metadata::Metadata;
@@ -95,7 +97,7 @@ impl Resolver<OfLSystem> {
         Some(system)
     }
 
-    fn number_or(&mut self, number: Option<&Number>, default: f64) -> f64 {
+    fn number_or(&mut self, number: Option<&WrittenNumber>, default: f64) -> f64 {
         number.map_or(default, |number| self.constant(number).unwrap_or(default))
     }
 

@@ -1,6 +1,6 @@
 //! Resolution of metadata, which files of all kinds have.
 
-use crate::document::{MetadataDocument, Number, Setting};
+use crate::document::{MetadataDocument, Setting, WrittenNumber};
 use crate::metadata::{MOST_STEPS, Metadata};
 
 use super::{Resolver, numbers, whole_number};
@@ -30,7 +30,7 @@ impl<K> Resolver<K> {
         }
     }
 
-    pub(super) fn steps(&mut self, number: &Number) -> Option<u32> {
+    pub(super) fn steps(&mut self, number: &WrittenNumber) -> Option<u32> {
         let value = self.constant(number)?;
         let whole = whole_number(value, MOST_STEPS);
         if whole.is_none() {
@@ -48,7 +48,7 @@ impl<K> Resolver<K> {
         whole
     }
 
-    fn dimension(&mut self, number: Option<&Number>) -> Option<f64> {
+    fn dimension(&mut self, number: Option<&WrittenNumber>) -> Option<f64> {
         self.constant(number?)
     }
 }

@@ -1,7 +1,7 @@
 //! Compilation of expressions in a scope.
 
 use crate::diagnostic::Place;
-use crate::document::{Number, Point};
+use crate::document::{WrittenNumber, WrittenPoint};
 use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type};
 use crate::geometry::DVec2;
 use crate::rule::ElementContext;
@@ -10,19 +10,19 @@ use super::{MOST_MISTAKES, Resolver};
 
 impl<K> Resolver<K> {
     /// Compiles a number in a scope. Reports a mistake and returns an unknown program.
-    pub(super) fn program(&mut self, number: &Number, scope: &Scope) -> Program {
+    pub(super) fn program(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Number, scope)
     }
 
     /// Compiles a condition in a scope. Reports a mistake and returns an unknown program.
-    pub(super) fn condition(&mut self, number: &Number, scope: &Scope) -> Program {
+    pub(super) fn condition(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Condition, scope)
     }
 
     /// Compiles a part of an expression. Reports a mistake and returns an unknown program.
     pub(super) fn part(
         &mut self,
-        whole: &Number,
+        whole: &WrittenNumber,
         part: &Expression,
         result: Type,
         scope: &Scope,
@@ -44,7 +44,7 @@ impl<K> Resolver<K> {
         })
     }
 
-    fn mistake(&mut self, number: &Number, mut mistake: ExpressionError) {
+    fn mistake(&mut self, number: &WrittenNumber, mut mistake: ExpressionError) {
         let place = within(number, mistake.range.clone());
         if ElementContext::NAMES.contains(&place.text()) {
             mistake.hint = Some("it is known in generators and in conditions, but not here".into());
@@ -54,17 +54,17 @@ impl<K> Resolver<K> {
     }
 
     /// Evaluates a number in the scope of parameters. Returns `None` if its value is unknown.
-    pub(super) fn constant(&mut self, number: &Number) -> Option<f64> {
+    pub(super) fn constant(&mut self, number: &WrittenNumber) -> Option<f64> {
         self.constant_program(number).as_constant()
     }
 
     /// Evaluates a number that may be left out. Returns `None` if its value is unknown.
-    pub(super) fn optional(&mut self, number: Option<&Number>) -> Option<Option<f64>> {
+    pub(super) fn optional(&mut self, number: Option<&WrittenNumber>) -> Option<Option<f64>> {
         number.map_or(Some(None), |number| self.constant(number).map(Some))
     }
 
     /// Compiles a number in the scope of parameters. The program is a constant if its value is known.
-    pub(super) fn constant_program(&mut self, number: &Number) -> Program {
+    pub(super) fn constant_program(&mut self, number: &WrittenNumber) -> Program {
         let scope = std::mem::take(&mut self.constants);
         let program = self.program(number, &scope);
         self.constants = scope;
@@ -72,18 +72,18 @@ impl<K> Resolver<K> {
     }
 
     /// Evaluates a point in the scope of parameters. Returns `None` if a coordinate is unknown.
-    pub(super) fn constant_point(&mut self, point: &Point) -> Option<DVec2> {
+    pub(super) fn constant_point(&mut self, point: &WrittenPoint) -> Option<DVec2> {
         value(&self.point(point)?)
     }
 
     /// Compiles points in the scope of parameters. Returns `None` if a coordinate is unknown.
-    pub(super) fn points(&mut self, points: &[Point]) -> Option<Vec<[Program; 2]>> {
+    pub(super) fn points(&mut self, points: &[WrittenPoint]) -> Option<Vec<[Program; 2]>> {
         let points: Vec<_> = points.iter().map(|point| self.point(point)).collect();
         points.into_iter().collect()
     }
 
     /// Compiles a point in the scope of parameters. Returns `None` if a coordinate is unknown.
-    pub(super) fn point(&mut self, point: &Point) -> Option<[Program; 2]> {
+    pub(super) fn point(&mut self, point: &WrittenPoint) -> Option<[Program; 2]> {
         if let Some(name) = point.name()
             && !PARTS
                 .iter()
@@ -104,7 +104,7 @@ impl<K> Resolver<K> {
     }
 
     /// Compiles two numbers in the scope of parameters. Returns `None` if one is unknown.
-    pub(super) fn numbers(&mut self, numbers: [&Number; 2]) -> Option<[Program; 2]> {
+    pub(super) fn numbers(&mut self, numbers: [&WrittenNumber; 2]) -> Option<[Program; 2]> {
         let programs = numbers.map(|number| self.constant_program(number));
         let are_known = programs.iter().all(|it| it.as_constant().is_some());
         are_known.then_some(programs)
@@ -124,7 +124,7 @@ pub(super) fn values(points: &[[Program; 2]]) -> Vec<DVec2> {
 
 /// Returns the place of a part of a number, or of the whole number if its notation differs from its
 /// text, as with escapes or several lines.
-pub(super) fn within(number: &Number, range: std::ops::Range<usize>) -> Place {
+pub(super) fn within(number: &WrittenNumber, range: std::ops::Range<usize>) -> Place {
     let same = |read: Expression| read == number.value && read.range() == number.value.range();
     if Expression::parse(number.place.text()).is_ok_and(same) {
         number.place.within(range)
@@ -134,7 +134,7 @@ pub(super) fn within(number: &Number, range: std::ops::Range<usize>) -> Place {
 }
 
 /// Returns `, this is 7` for a number that is written as a formula, and nothing for a plain number.
-pub(super) fn but(number: &Number, value: f64) -> String {
+pub(super) fn but(number: &WrittenNumber, value: f64) -> String {
     if number.place.text().parse() == Ok(value) {
         String::new()
     } else {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::document::{MetadataDocument, Number, ParameterDocument, Setting, Written};
+use crate::document::{MetadataDocument, ParameterDocument, Setting, Written, WrittenNumber};
 use crate::expression::{PARTS, Program, Scope, is_name, is_reserved};
 use crate::metadata::Parameter;
 use crate::rule::ElementContext;
@@ -126,7 +126,7 @@ fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let mut needed_by = vec![Vec::new(); params.len()];
     let mut needs = vec![Vec::new(); params.len()];
     for (index, param) in params.iter().enumerate() {
-        let numbers_of = |number: &Number| -> Vec<usize> {
+        let numbers_of = |number: &WrittenNumber| -> Vec<usize> {
             let names = number.value.names().into_iter();
             names
                 .filter_map(|(name, _)| numbers.get(name).copied())

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::diagnostic::Place;
 use crate::expression::{Affine, Dependence, Doubles, Evaluation, Program};
 use crate::geometry::{DAffine2, DVec2, Direction};
-use crate::written::Point;
+use crate::written::WrittenPoint;
 
 use crate::draws::{Path, Variable};
 
@@ -139,7 +139,7 @@ pub struct Part {
 pub(crate) struct Origin {
     pub(crate) name: Place,
     /// Points as written.
-    pub(crate) points: Vec<Point>,
+    pub(crate) points: Vec<WrittenPoint>,
 }
 
 impl PartialEq for Origin {

@@ -1,6 +1,6 @@
 //! Reading of lists of elements and of initiators.
 
-use crate::document::Point;
+use crate::document::WrittenPoint;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{Entry, InitiatorDocument, Listed};
@@ -106,16 +106,16 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
         Value::Mapping(_) => {}
         _ => {
             reader.mismatch(node, "a point or an element", ELEMENT.hint);
-            return Entry::Point(Point::unknown(&node.place));
+            return Entry::Point(WrittenPoint::unknown(&node.place));
         }
     }
     let Some(fields) = reader.fields(node, &ELEMENT) else {
-        return Entry::Point(Point::unknown(&node.place));
+        return Entry::Point(WrittenPoint::unknown(&node.place));
     };
     let to = reader.optional_point(fields.take("to"));
     Entry::Element(Box::new(Listed {
         from: reader.optional_point(fields.take("from")),
-        to: to.unwrap_or_else(|| Point::unknown(&node.place)),
+        to: to.unwrap_or_else(|| WrittenPoint::unknown(&node.place)),
         direction: reader.optional_number(fields.take("direction")),
         fertile: reader.flag(&fields, "fertile"),
         visible: reader.flag(&fields, "visible"),

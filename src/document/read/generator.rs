@@ -5,7 +5,7 @@ use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{GeneratorDocument, MoveDocument, PartDocument, WhichPoints};
 use crate::document::shape::{Form, Shape, keys, way};
-use crate::document::{Number, Written};
+use crate::document::{Written, WrittenNumber};
 use crate::rule::Placement;
 
 use super::elements::{ABOUT_ELEMENTS, ELEMENTS, listed_entries, read_entries};
@@ -242,7 +242,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     })
 }
 
-fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>, Number)> {
+fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>, WrittenNumber)> {
     let Some(node) = node else { return Vec::new() };
     let Value::Mapping(entries) = &node.value else {
         let hint = "random: {tilt: \"uniform(-20, 20)\"}";

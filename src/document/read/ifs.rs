@@ -1,8 +1,8 @@
 //! Reading of iterated function systems.
 
 use crate::catalogue::Shelf;
-use crate::document::Point;
 use crate::document::Written;
+use crate::document::WrittenPoint;
 use crate::document::ifs::{
     CondensationDocument, EdgeDocument, IfsDocument, InterpolationDocument, LinearDocument,
     MapDocument, MapsDocument, Scales,
@@ -278,7 +278,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
 }
 
 /// Reads the rows of a matrix.
-pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[Point; 2]> {
+pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPoint; 2]> {
     let hint = "matrix: [[a, b], [c, d]]";
     let rows = reader.list(node, "a list of two rows", hint);
     if let [first, second] = rows {
@@ -327,7 +327,11 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
 }
 
 /// Reads the required key `points`.
-fn read_points(reader: &mut Reader, fields: &Fields<'_>, hint: &'static str) -> Option<Vec<Point>> {
+fn read_points(
+    reader: &mut Reader,
+    fields: &Fields<'_>,
+    hint: &'static str,
+) -> Option<Vec<WrittenPoint>> {
     let node = fields.take("points")?;
     let list = reader.list(node, "a list of points", hint);
     if !matches!(node.value, Value::Sequence(_)) {

@@ -10,7 +10,7 @@ use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::style::read_colour;
-use crate::document::{Number, Written};
+use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
@@ -253,7 +253,7 @@ fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocumen
 fn read_named(reader: &mut Reader, node: &Node) -> Option<MasterDocument> {
     let text = reader.text(node)?;
     let (name, level) = split(&text);
-    let level: Option<Number> = level.map(|(at, text)| {
+    let level: Option<WrittenNumber> = level.map(|(at, text)| {
         let place = node.within(at..at + text.len());
         reader.expression(text, &place)
     });
@@ -269,7 +269,7 @@ fn read_named(reader: &mut Reader, node: &Node) -> Option<MasterDocument> {
 impl Reader {
     /// Parses an expression that is part of a text; a mistake is reported and a placeholder is
     /// returned.
-    fn expression(&mut self, text: &str, place: &Place) -> Number {
+    fn expression(&mut self, text: &str, place: &Place) -> WrittenNumber {
         let value = Expression::parse(text).unwrap_or_else(|mut error| {
             error.hint.get_or_insert_with(|| "A(n - 1), A(0)".into());
             self.diagnostics.push(error.at(place));

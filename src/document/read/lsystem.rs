@@ -5,7 +5,7 @@ use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
 use crate::document::shape::{Form, Member, Shape, key, keys};
-use crate::document::{Number, Written};
+use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
@@ -248,7 +248,10 @@ fn read_entry(
 }
 
 /// Reads a successor, possibly with a weight.
-fn read_alternative(words: &mut Words<'_>, node: &Node) -> Option<(WordDocument, Option<Number>)> {
+fn read_alternative(
+    words: &mut Words<'_>,
+    node: &Node,
+) -> Option<(WordDocument, Option<WrittenNumber>)> {
     let Value::Mapping(entries) = &node.value else {
         if let Some(text) = Text::of(node)
             && let Some((before, _)) = text.at_arrow()

@@ -4,7 +4,7 @@ use crate::document::metadata::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
 use crate::document::shape::{Form, Member, Shape, key, keys};
-use crate::document::{Number, Point, Written};
+use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::expression::{Expression, PARTS};
 
 /// A real or complex number.
@@ -83,7 +83,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
             let message = format!("'{}' is complex, and this {what} of it is real", key.name);
             let hint = "write [real part, imaginary part]";
             reader.error_with_hint(&node.place, message, hint);
-            return Point::unknown(&node.place);
+            return WrittenPoint::unknown(&node.place);
         }
         reader.point(node)
     };
@@ -100,10 +100,10 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
 /// Splits a complex parameter with its value and limits into its two parts.
 fn parts(
     whole: ParameterDocument,
-    value: Point,
-    [min, max]: [Option<Point>; 2],
+    value: WrittenPoint,
+    [min, max]: [Option<WrittenPoint>; 2],
 ) -> Vec<ParameterDocument> {
-    let sides: [fn(Point) -> Number; 2] = [|point| point.x, |point| point.y];
+    let sides: [fn(WrittenPoint) -> WrittenNumber; 2] = [|point| point.x, |point| point.y];
     let both = PARTS.into_iter().zip(["real", "imaginary"]).zip(sides);
     both.map(|((suffix, which), side)| {
         let name = &whole.name.value;
@@ -132,7 +132,7 @@ pub(super) fn written(key: &Key) -> Written<String> {
     }
 }
 
-fn unknown(key: &Key) -> Number {
+fn unknown(key: &Key) -> WrittenNumber {
     Written {
         value: Expression::unknown(),
         place: key.place.clone(),

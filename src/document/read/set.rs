@@ -4,7 +4,7 @@ use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, Shape
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, keys, way};
-use crate::document::{Number, Point, Written};
+use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::expression::PARTS;
 use crate::kind::Kind;
 use crate::metadata::MOST_STEPS;
@@ -243,7 +243,7 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
 }
 
 /// Reads values of parameters by name.
-fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, Number)> {
+fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, WrittenNumber)> {
     match &node.value {
         Value::Mapping(values) => values
             .iter()
@@ -262,12 +262,12 @@ fn read_value(
     reader: &mut Reader,
     name: Written<String>,
     node: &Node,
-) -> Vec<(Written<String>, Number)> {
+) -> Vec<(Written<String>, WrittenNumber)> {
     if !matches!(node.value, Value::Sequence(_)) {
         return vec![(name, reader.number(node))];
     }
-    let Point { x, y, .. } = reader.point(node);
-    let part = |(part, number): (&str, Number)| {
+    let WrittenPoint { x, y, .. } = reader.point(node);
+    let part = |(part, number): (&str, WrittenNumber)| {
         let value = format!("{}{part}", name.value);
         let place = name.place.clone();
         (Written { value, place }, number)
@@ -275,14 +275,14 @@ fn read_value(
     PARTS.into_iter().zip([x, y]).map(part).collect()
 }
 
-fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> Point {
+fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> WrittenPoint {
     reader
         .optional_point(fields.take("centre"))
-        .unwrap_or_else(|| Point::origin(fields.place))
+        .unwrap_or_else(|| WrittenPoint::origin(fields.place))
 }
 
 /// Reads two numbers, or one number that stands for both.
-pub(super) fn pair(reader: &mut Reader, node: &Node) -> [Number; 2] {
+pub(super) fn pair(reader: &mut Reader, node: &Node) -> [WrittenNumber; 2] {
     if let Value::Sequence(_) = &node.value {
         let point = reader.point(node);
         return [point.x, point.y];

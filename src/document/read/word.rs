@@ -6,7 +6,7 @@ use crate::diagnostic::Place;
 use crate::document::lsystem::{ModuleDocument, WordDocument};
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
-use crate::document::{Number, Written};
+use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 
 /// Maximum number of modules in all words of a file.
@@ -29,7 +29,7 @@ pub(super) struct Head {
     pub(super) left: Vec<ModuleDocument>,
     pub(super) predecessor: ModuleDocument,
     pub(super) right: Vec<ModuleDocument>,
-    pub(super) condition: Option<Number>,
+    pub(super) condition: Option<WrittenNumber>,
 }
 
 /// A reader of the words of a file, which counts their modules.
@@ -177,7 +177,11 @@ impl<'r> Words<'r> {
 
     /// Reads the arguments, if there are any, at the beginning of a part of a text, and returns the
     /// offset of their end. Reports an unclosed parenthesis and returns `None`.
-    fn arguments(&mut self, text: Text<'_>, part: Range<usize>) -> Option<(Vec<Number>, usize)> {
+    fn arguments(
+        &mut self,
+        text: Text<'_>,
+        part: Range<usize>,
+    ) -> Option<(Vec<WrittenNumber>, usize)> {
         let rest = &text.text[part.clone()];
         let part = part.start + (rest.len() - rest.trim_start().len())..part.end;
         if !text.text[part.clone()].starts_with('(') {
@@ -208,7 +212,7 @@ impl<'r> Words<'r> {
     }
 
     /// Parses a part of a text as an expression.
-    fn number(&mut self, text: Text<'_>, part: Range<usize>) -> Number {
+    fn number(&mut self, text: Text<'_>, part: Range<usize>) -> WrittenNumber {
         let part = text.trimmed(part);
         // An empty expression is shown at the parenthesis or comma that follows it.
         let shown = part.start..part.end.max(part.start + 1);

@@ -2,8 +2,8 @@
 
 use crate::diagnostic::Place;
 use crate::document::{
-    GeneratorDocument, MoveDocument, Number, Point, RuleDocument, SelectDocument, WhichPoints,
-    Written,
+    GeneratorDocument, MoveDocument, RuleDocument, SelectDocument, WhichPoints, Written,
+    WrittenNumber, WrittenPoint,
 };
 use crate::expression::{Dependence, Expression};
 use crate::metadata::Parameter;
@@ -18,7 +18,7 @@ pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
         None if document.generators.len() > 1 => vec!["every side names its own".into()],
         None => Vec::new(),
         Some(SelectDocument::Cases(cases, _)) => {
-            let line = |(when, name): &(Option<Number>, Option<Written<String>>)| {
+            let line = |(when, name): &(Option<WrittenNumber>, Option<Written<String>>)| {
                 let name = name.as_ref().map_or("?", |name| name.value.as_str());
                 match when {
                     Some(when) => format!("{}: {name}", when.value),
@@ -142,7 +142,7 @@ fn moving(moving: &MoveDocument, points: &[usize]) -> String {
             names.collect::<Vec<_>>().join(", ")
         }
     };
-    let pair = |point: &Point| format!("({}, {})", point.x.value, point.y.value);
+    let pair = |point: &WrittenPoint| format!("({}, {})", point.x.value, point.y.value);
     let about = moving.about.as_ref();
     let about = about.map_or(String::new(), |point| format!(" about {}", pair(point)));
     let mut verbs = Vec::new();

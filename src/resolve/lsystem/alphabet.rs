@@ -1,6 +1,6 @@
 //! The turtle's interpretation of symbols.
 
-use crate::document::{ActionDocument, ModuleDocument, Number, SymbolDocument};
+use crate::document::{ActionDocument, ModuleDocument, SymbolDocument, WrittenNumber};
 use crate::expression::{Program, Scope};
 use crate::lsystem::{Action, Symbol};
 use crate::resolve::Resolver;
@@ -103,7 +103,7 @@ impl Resolver<OfLSystem> {
     }
 
     fn action(&mut self, document: &ActionDocument, scope: &Scope) -> Action {
-        let mut steps = |number: &Option<Number>| match number {
+        let mut steps = |number: &Option<WrittenNumber>| match number {
             Some(number) => self.program(number, scope),
             None => Program::constant(1.0),
         };
@@ -128,7 +128,7 @@ impl Resolver<OfLSystem> {
         }
     }
 
-    fn width(&mut self, number: &Number, scope: &Scope) -> Program {
+    fn width(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {
         let program = self.program(number, scope);
         if program.as_constant().is_some_and(|value| value < 0.0) {
             self.error(&number.place, "a width cannot be negative");

@@ -1,6 +1,6 @@
 //! Resolution of base elements.
 
-use crate::document::{BaseElementDocument, Point};
+use crate::document::{BaseElementDocument, WrittenPoint};
 use crate::geometry::{DVec2, Direction, Frame2};
 use crate::resolve::Resolver;
 
@@ -60,7 +60,7 @@ impl Resolver<OfRule> {
 
     /// Returns the frame that `from` and `to` define in the outline's own coordinates.
     fn base_frame(&mut self, document: &BaseElementDocument) -> Option<Frame2> {
-        let mut end = |point: &Option<Point>, default: DVec2| match point {
+        let mut end = |point: &Option<WrittenPoint>, default: DVec2| match point {
             Some(point) => self.constant_point(point),
             None => Some(default),
         };

@@ -1,6 +1,6 @@
 //! Resolution of lists of elements and of the initiator.
 
-use crate::document::{Entry, Listed, Point, RuleDocument};
+use crate::document::{Entry, Listed, RuleDocument, WrittenPoint};
 use crate::expression::Program;
 use crate::geometry::Direction;
 
@@ -11,7 +11,7 @@ use crate::rule::{ListedElement, Part, Placement};
 
 /// A point of a list, with its number.
 struct ListedPoint {
-    point: Point,
+    point: WrittenPoint,
     number: usize,
 }
 
@@ -24,13 +24,13 @@ impl Resolver<OfRule> {
         entries: &[Entry],
         closed: bool,
         connected: bool,
-        points: &mut Vec<Point>,
+        points: &mut Vec<WrittenPoint>,
         initiator: bool,
     ) -> Vec<ListedElement> {
         let mut elements: Vec<ListedElement> = Vec::new();
         let mut first: Option<ListedPoint> = None;
         let mut last: Option<ListedPoint> = None;
-        let add = |points: &mut Vec<Point>, point: &Point| {
+        let add = |points: &mut Vec<WrittenPoint>, point: &WrittenPoint| {
             points.push(point.clone());
             ListedPoint {
                 point: point.clone(),
@@ -60,7 +60,7 @@ impl Resolver<OfRule> {
                 }
                 (None, Some(last)) => last,
                 // The missing start has been reported.
-                (None, None) => add(points, &Point::unknown(&to.place)),
+                (None, None) => add(points, &WrittenPoint::unknown(&to.place)),
             };
             if first.is_none() {
                 first = Some(ListedPoint {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Entry, GeneratorDocument, Number, Point, Written};
+use crate::document::{Entry, GeneratorDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::{Program, Scope};
 
 use super::OfRule;
@@ -100,7 +100,7 @@ impl Resolver<OfRule> {
     }
 
     /// Warns of elements without length.
-    fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
+    fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[WrittenPoint]) {
         for element in parts.iter().flat_map(|part| &part.elements) {
             let from = numbers::value(&points[element.from]);
             if from.is_some() && from == numbers::value(&points[element.to]) {
@@ -113,7 +113,7 @@ impl Resolver<OfRule> {
     }
 
     /// Collects warnings of fertile elements that are not shorter than those they replace.
-    fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[Point]) {
+    fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[WrittenPoint]) {
         let value = |number: usize| numbers::value(&points[number]);
         let relative = parts
             .iter()
@@ -183,8 +183,8 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
 }
 
 /// Returns whether the coordinates of a point are written as exactly these constants.
-fn is_written(point: &Point, x: f64, y: f64) -> bool {
-    let is = |number: &Number, value: f64| {
+fn is_written(point: &WrittenPoint, x: f64, y: f64) -> bool {
+    let is = |number: &WrittenNumber, value: f64| {
         number
             .value
             .compile(&Scope::new())

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::document::{GeneratorDocument, MoveDocument, Number, Point, WhichPoints};
+use crate::document::{GeneratorDocument, MoveDocument, WhichPoints, WrittenNumber, WrittenPoint};
 use crate::expression::{Program, Scope, Type, is_name, is_reserved};
 
 use super::OfRule;
@@ -45,7 +45,7 @@ impl Resolver<OfRule> {
         variables
     }
 
-    fn distribution(&mut self, number: &Number, scope: &Scope) -> Distribution {
+    fn distribution(&mut self, number: &WrittenNumber, scope: &Scope) -> Distribution {
         let hint = "uniform(a, b), normal(mean, deviation) or choice(a, b, ...)";
         if number.value.is_unknown() {
             return Distribution::Choice(vec![Program::unknown()]);
@@ -104,7 +104,7 @@ impl Resolver<OfRule> {
 
     fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &Shared) -> Move {
         let zero = || Program::constant(0.0);
-        let mut pair = |point: &Option<Point>| {
+        let mut pair = |point: &Option<WrittenPoint>| {
             point.as_ref().map_or([zero(), zero()], |point| {
                 [self.program(&point.x, scope), self.program(&point.y, scope)]
             })

@@ -1,7 +1,7 @@
 //! Resolution of the selection of generators.
 
 use crate::diagnostic::{did_you_mean, listed};
-use crate::document::{Entry, Number, RuleDocument, SelectDocument, Written};
+use crate::document::{Entry, RuleDocument, SelectDocument, Written, WrittenNumber};
 use crate::expression::Scope;
 
 use super::OfRule;
@@ -10,7 +10,7 @@ use crate::resolve::{MOST_MISTAKES, Resolver};
 use crate::rule::Selection;
 
 /// A condition, if there is one, and the name of a generator, if it could be read.
-type Case = (Option<Number>, Option<Written<String>>);
+type Case = (Option<WrittenNumber>, Option<Written<String>>);
 
 impl Resolver<OfRule> {
     pub(super) fn generator_named(&mut self, name: &Written<String>) -> Option<usize> {
@@ -51,7 +51,7 @@ impl Resolver<OfRule> {
 
     fn at_random(
         &mut self,
-        weights: &[(Written<String>, Number)],
+        weights: &[(Written<String>, WrittenNumber)],
         place: &Place,
     ) -> Option<Selection> {
         let mut entries = Vec::new();
