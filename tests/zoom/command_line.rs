@@ -63,6 +63,19 @@ fn mistakes_are_told() {
             "--zoom applies to pictures only",
         ),
         (
+            &[
+                "barnsley-fern",
+                "--zoom",
+                "10",
+                "--at",
+                "0.(0)",
+                "--method",
+                "chaos",
+            ],
+            2,
+            "--zoom magnifies elements",
+        ),
+        (
             &["koch", "--zoom", "10", "--at", "0.(7)"],
             1,
             "no position 7 at depth 1, where there are 4",

@@ -70,6 +70,10 @@ impl Plan {
         if is_chaos {
             let message = "--detail applies to elements, and --method chaos draws points";
             refuse(has_detail, message)?;
+            refuse(
+                zoom.is_asked(),
+                "--zoom magnifies elements, and --method chaos draws points: --view shows a part of them",
+            )?;
             let lines = [
                 ("--plot", plot.is_asked()),
                 ("--svg instanced", svg.is_instanced()),

@@ -18,7 +18,7 @@ const SHORT: u64 = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PngEncoding {
-    /// Whether pixels are compressed in a fraction of the time, to larger files.
+    /// Whether pixels are compressed faster, to larger files.
     pub fast: bool,
     /// Whether pixels are grey levels of 8 bits, by luma (ITU-R BT.709), with an alpha channel of 8 bits unless all
     /// are opaque.
