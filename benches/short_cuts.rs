@@ -25,7 +25,7 @@ use kfrac::render::{self, Detail, Format, Options, ShortCut, Size};
 
 const RULES: [&str; 10] = [
     "dragon",
-    "koch",
+    "dragon-wreath",
     "gosper",
     "pythagoras",
     "terdragon-rose",

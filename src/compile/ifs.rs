@@ -206,7 +206,7 @@ impl<'s> Compiler<'s> {
 
     fn run(&self) -> Graph {
         let maps = self.ifs.maps().len();
-        let whole = self.production(None, &self.maps);
+        let whole = self.successor(None, &self.maps);
         let mut objects = vec![Object {
             replacement: Replacement::Fixed(Arc::new(whole)),
             ..self.object(INITIAL, None, None)
@@ -214,9 +214,9 @@ impl<'s> Compiler<'s> {
         for branch in 0..self.branches() {
             let last_map = self.tells_last.then_some(branch);
             for map in 0..maps {
-                let production = self.production(Some((branch, map)), &self.before[map]);
+                let successor = self.successor(Some((branch, map)), &self.before[map]);
                 objects.push(Object {
-                    replacement: Replacement::Fixed(Arc::new(production)),
+                    replacement: Replacement::Fixed(Arc::new(successor)),
                     ..self.object(INITIAL, Some(map), last_map)
                 });
             }
@@ -304,9 +304,9 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    /// Returns the production of the whole or of the set inside a map of a branch: images under some
+    /// Returns the successor of the whole or of the set inside a map of a branch: images under some
     /// maps, and the condensation sets.
-    fn production(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Successor {
+    fn successor(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Successor {
         let mut instances = Vec::new();
         // The outermost map determines the branch.
         let branch = |map: usize| match place {

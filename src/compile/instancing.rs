@@ -161,7 +161,7 @@ impl<'s> Compiler<'s> {
     /// Creates the objects that the scene reaches, and returns the scene as the initiator.
     fn reach(&mut self) -> Chain {
         let initiator = self.chain(&self.structure.scene);
-        // Graph objects of one canonical object share its production.
+        // Graph objects of one canonical object share its successor.
         let mut made: BTreeMap<usize, Arc<Successor>> = BTreeMap::new();
         let mut behaviours: BTreeMap<Option<usize>, usize> = BTreeMap::new();
         let mut done = 0;
@@ -170,20 +170,20 @@ impl<'s> Compiler<'s> {
             let next = behaviours.len();
             self.objects[done].behaviour = *behaviours.entry(of).or_insert(next);
             if let Some(canonical) = of {
-                let production = match made.get(&canonical) {
-                    Some(production) => Arc::clone(production),
+                let successor = match made.get(&canonical) {
+                    Some(successor) => Arc::clone(successor),
                     None => {
                         let object = &self.structure.objects[canonical];
                         let body = self.chain(&object.instances);
-                        let production = Arc::new(Successor {
+                        let successor = Arc::new(Successor {
                             body,
                             seeds: Vec::new(),
                         });
-                        made.insert(canonical, Arc::clone(&production));
-                        production
+                        made.insert(canonical, Arc::clone(&successor));
+                        successor
                     }
                 };
-                self.objects[done].replacement = Replacement::Fixed(production);
+                self.objects[done].replacement = Replacement::Fixed(successor);
             }
             done += 1;
         }

@@ -394,9 +394,9 @@ impl<'r> Compiler<'r> {
             }
             let objects: Vec<usize> = of_parts.into_iter().flatten().collect();
             if decided && self.is_fixed(generator) {
-                let mut production = Successor::default();
-                production.set(listed.parts(), &points, &objects);
-                return Ok(Replacement::Fixed(Arc::new(production)));
+                let mut successor = Successor::default();
+                successor.set(listed.parts(), &points, &objects);
+                return Ok(Replacement::Fixed(Arc::new(successor)));
             }
             alternatives.push(Alternative { generator, objects });
         }

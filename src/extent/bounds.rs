@@ -237,12 +237,12 @@ impl<F: Bounded> Graph<F> {
     /// kept object, or to visible objects for ever.
     pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
         let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
-            Replacement::Fixed(production) => {
-                let seeds = production
+            Replacement::Fixed(successor) => {
+                let seeds = successor
                     .seeds
                     .iter()
                     .flat_map(|seed| &seed.chain.instances);
-                let mut all = production.body.instances.iter().chain(seeds);
+                let mut all = successor.body.instances.iter().chain(seeds);
                 all.any(|instance| to[instance.object])
             }
             _ => false,
@@ -305,7 +305,7 @@ impl<F: Bounded> Graph<F> {
                 if hopeless || dead {
                     continue;
                 }
-                if let Replacement::Fixed(production) = &self.objects[state.object].replacement {
+                if let Replacement::Fixed(successor) = &self.objects[state.object].replacement {
                     // A state that is not certain to draw at this step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
@@ -321,11 +321,11 @@ impl<F: Bounded> Graph<F> {
                         }
                         continue;
                     }
-                    let seeds = production
+                    let seeds = successor
                         .seeds
                         .iter()
                         .flat_map(|seed| &seed.chain.instances);
-                    let all = production.body.instances.iter().chain(seeds);
+                    let all = successor.body.instances.iter().chain(seeds);
                     next.extend(
                         all.map(|instance| child(instance, state.vector, state.offset, state.lost)),
                     );

@@ -4,7 +4,7 @@
 //! Support functions along the axes yield the box of an approximant or of the limit set, exact to rounding;
 //! radii of balls about subtrees decide what a walk may leave out; polygons tighten both in the plane, where
 //! maps contract little or only in products. Where random draws are unbounded, radii hold for all but
-//! improbable draws. A [search](bounding_box()) finds the box of an approximant whose productions are computed
+//! improbable draws. A [search](bounding_box()) finds the box of an approximant whose successors are computed
 //! for each element.
 
 mod bounded;

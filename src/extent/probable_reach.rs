@@ -114,8 +114,8 @@ mod tests {
                 continue;
             }
             let mut made = Successor::default();
-            let production = match &graph.objects()[object].replacement {
-                Replacement::Fixed(production) => production,
+            let successor = match &graph.objects()[object].replacement {
+                Replacement::Fixed(successor) => successor,
                 Replacement::Evaluated(_) => {
                     let moment = ReplacementContext {
                         born,
@@ -128,7 +128,7 @@ mod tests {
                 }
                 _ => continue,
             };
-            for (placement, instance) in production.placed_instances() {
+            for (placement, instance) in successor.placed_instances() {
                 let born = if placement.seeds() { level + 1 } else { born };
                 open.push((
                     standing.child(graph, instance),

@@ -114,8 +114,8 @@ pub(crate) fn search<F: Frame>(
                 level: node.level,
                 rank: 0,
             };
-            let production = match &graph.objects()[node.object].replacement {
-                Replacement::Fixed(production) => production,
+            let successor = match &graph.objects()[node.object].replacement {
+                Replacement::Fixed(successor) => successor,
                 _ => {
                     let evaluated =
                         evaluator.evaluate(graph, &node.standing, node.object, moment, &mut drawn);
@@ -123,7 +123,7 @@ pub(crate) fn search<F: Frame>(
                     &drawn
                 }
             };
-            search.replace(&node, production);
+            search.replace(&node, successor);
         }
     }
     Some(search.bounds)
@@ -139,13 +139,13 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
         min.dot(self.direction).max(max.dot(self.direction))
     }
 
-    fn replace(&mut self, node: &Node<F>, production: &Successor<F>) {
+    fn replace(&mut self, node: &Node<F>, successor: &Successor<F>) {
         let level = node.level + 1;
-        for instance in &production.body.instances {
+        for instance in &successor.body.instances {
             let standing = node.standing.child(self.graph, instance);
             self.add(standing, instance.object, node.born, level);
         }
-        for seed in &production.seeds {
+        for seed in &successor.seeds {
             let start = seed_placement(self.graph, &node.standing, seed.placement);
             for instance in &seed.chain.instances {
                 let standing = start.child(self.graph, instance);

@@ -80,7 +80,7 @@ impl<F: Frame> Graph<F> {
     /// Returns, for every object, whether it leads to seeds.
     pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
         self.leading_to(|object| match &self.objects[object].replacement {
-            Replacement::Fixed(production) => !production.seeds.is_empty(),
+            Replacement::Fixed(successor) => !successor.seeds.is_empty(),
             Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
                 let parts = self.parts(alternative);
                 parts.iter().any(|part| part.placement.seeds())
@@ -111,16 +111,16 @@ impl<F: Frame> Graph<F> {
         &self,
         object: usize,
     ) -> impl Iterator<Item = (Placement, &Instance<F>)> {
-        let production = match &self.objects[object].replacement {
-            Replacement::Fixed(production) => Some(production),
+        let successor = match &self.objects[object].replacement {
+            Replacement::Fixed(successor) => Some(successor),
             _ => None,
         };
-        production
+        successor
             .into_iter()
-            .flat_map(|production| production.placed_instances())
+            .flat_map(|successor| successor.placed_instances())
     }
 
-    /// Iterates over all instances of fixed productions, with their placements.
+    /// Iterates over all instances of fixed successors, with their placements.
     pub(crate) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         (0..self.objects.len()).flat_map(|object| self.children(object))
     }
@@ -148,7 +148,7 @@ impl<F: Frame> Graph<F> {
 
     fn places_as_initiator(&self, object: usize) -> bool {
         match &self.objects[object].replacement {
-            Replacement::Fixed(production) => production
+            Replacement::Fixed(successor) => successor
                 .seeds
                 .iter()
                 .any(|seed| seed.placement == Placement::SeedsAsInitiator),

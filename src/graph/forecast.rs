@@ -36,7 +36,7 @@ pub struct Level {
 /// Sizes of successive approximants, from approximant 0 on.
 pub struct Forecast<'g, F: Frame = Frame2> {
     graph: &'g Graph<F>,
-    /// Whether every production is a list of fixed maps.
+    /// Whether every successor is a list of fixed maps.
     is_plain: bool,
     /// Whether all maps are similarities.
     is_similar: bool,
@@ -189,9 +189,7 @@ impl<F: Frame> Graph<F> {
         }
         let closed = |chain: &Chain<F>| chain.is_joined() && chain.is_ring();
         let seeds = |object: &Object<F>| match &object.replacement {
-            Replacement::Fixed(production) => {
-                production.seeds.iter().all(|seed| closed(&seed.chain))
-            }
+            Replacement::Fixed(successor) => successor.seeds.iter().all(|seed| closed(&seed.chain)),
             Replacement::Kept | Replacement::Unresolved => true,
             Replacement::Evaluated(_) => false,
         };
@@ -413,16 +411,16 @@ impl<'g, F: Frame> Forecast<'g, F> {
         for (number, mut tally) in self.standing_by_behaviour() {
             tally.sums.parted += std::mem::take(&mut tally.sums.beside);
             match &graph.objects[number].replacement {
-                Replacement::Fixed(production) => {
-                    self.path_area += tally.sums.signed * area_under(&production.body);
+                Replacement::Fixed(successor) => {
+                    self.path_area += tally.sums.signed * area_under(&successor.body);
                     let count = tally.count.to_f64();
                     let mut parent = tally.sums;
-                    if production.body.meets_frame != [true; 2] {
+                    if successor.body.meets_frame != [true; 2] {
                         parent.apart = count;
                         parent.parted = 0.0;
                     }
-                    self.add_chain(&tally.count, parent, &production.body);
-                    for seed in &production.seeds {
+                    self.add_chain(&tally.count, parent, &successor.body);
+                    for seed in &successor.seeds {
                         self.fractals += &tally.count;
                         let area = area_under(&seed.chain);
                         let orientation = if area < 0.0 { -1.0 } else { 1.0 };

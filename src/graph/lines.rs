@@ -29,8 +29,8 @@ impl<F: Frame> Graph<F> {
             object.visible
                 && self.base_elements()[object.base_element].ends_meet_frame() == [true; 2]
                 && match &object.replacement {
-                    Replacement::Fixed(production) => {
-                        let body = &production.body;
+                    Replacement::Fixed(successor) => {
+                        let body = &successor.body;
                         !body.instances.is_empty()
                             && body.meets_frame == [true; 2]
                             && body.is_joined()

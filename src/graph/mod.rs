@@ -2,9 +2,9 @@
 //!
 //! Every description of a linear fractal is compiled to a [`Graph`]: objects with a base element of their
 //! own and a [`Successor`], the instances that take an object's place one step later. All that the
-//! productions of an object yield in any number of steps, seeds included, is the *subtree* of the object.
+//! successors of an object yield in any number of steps, seeds included, is the *subtree* of the object.
 //! Dependence on the moment (on age, step, length or, modulo m, on the index) is resolved into more
-//! objects, so that the productions of a deterministic rule are lists of fixed maps. Where numbers are
+//! objects, so that the successors of a deterministic rule are lists of fixed maps. Where numbers are
 //! drawn, or where an index has to be counted, an object has [`Replacement::Evaluated`], and its
 //! instances are computed for each element. A rule in which the choice of a generator depends on such an
 //! index is *irregular*.
@@ -401,7 +401,7 @@ impl<F: Frame> Graph<F> {
         })
     }
 
-    /// Returns whether the graph is plain: whether every production is a list of fixed maps.
+    /// Returns whether the graph is plain: whether every successor is a list of fixed maps.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         !self
@@ -446,7 +446,7 @@ impl<F: Frame> Successor<F> {
 }
 
 impl Successor {
-    /// Overwrites the production with that of a generator whose points have been evaluated, and reuses
+    /// Overwrites the successor with that of a generator whose points have been evaluated, and reuses
     /// its memory.
     ///
     /// `objects` are the objects of the generator's elements by position.

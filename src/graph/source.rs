@@ -11,15 +11,15 @@ use super::{Alternative, CompileError, Successor};
 
 /// Source of instances that are computed for each element.
 pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
-    /// Computes the production that the draws of a path select among alternatives, and overwrites
-    /// `production`.
+    /// Computes the successor that the draws of a path select among alternatives, and overwrites
+    /// `successor`.
     fn evaluate(
         &self,
         alternatives: &[Alternative],
         path: Path,
         context: &ElementContext,
         buffers: &mut Buffers<F>,
-        production: &mut Successor<F>,
+        successor: &mut Successor<F>,
     ) -> Result<(), CompileError>;
 
     /// Returns the parts of a generator; empty if all of its elements stay.
@@ -49,7 +49,7 @@ impl Source<Frame2> for Rule {
         path: Path,
         context: &ElementContext,
         Buffers { slots, points }: &mut Buffers<Frame2>,
-        production: &mut Successor,
+        successor: &mut Successor,
     ) -> Result<(), CompileError> {
         let alternative = if let [only] = alternatives {
             only
@@ -65,7 +65,7 @@ impl Source<Frame2> for Rule {
         if !points.iter().all(|point: &DVec2| point.is_finite()) {
             return Err(CompileError::not_finite(generator.name(), context));
         }
-        production.set(generator.parts(), points, &alternative.objects);
+        successor.set(generator.parts(), points, &alternative.objects);
         Ok(())
     }
 

@@ -40,8 +40,8 @@ impl<F: Frame> Graph<F> {
                 }
             };
             match &object.replacement {
-                Replacement::Fixed(production) => {
-                    let instances = &production.body.instances;
+                Replacement::Fixed(successor) => {
+                    let instances = &successor.body.instances;
                     instances.iter().for_each(|instance| add(instance.object));
                 }
                 Replacement::Evaluated(alternatives) => {

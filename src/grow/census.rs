@@ -93,7 +93,7 @@ impl Census {
             }
             let mut next = Standing::new();
             for kind in standing.values_mut() {
-                let Replacement::Fixed(production) = &graph.objects()[kind.object].replacement
+                let Replacement::Fixed(successor) = &graph.objects()[kind.object].replacement
                 else {
                     continue;
                 };
@@ -105,7 +105,7 @@ impl Census {
                     continue;
                 }
                 kind.is_replaced = true;
-                for (_, instance) in production.placed_instances() {
+                for (_, instance) in successor.placed_instances() {
                     add(&mut next, kind, instance);
                 }
             }
@@ -138,11 +138,11 @@ impl Census {
             for kind in above[step].values_mut() {
                 let replacement = &graph.objects()[kind.object].replacement;
                 kind.becomes = match (replacement, below.first()) {
-                    (Replacement::Fixed(production), Some(below)) if kind.is_replaced => {
-                        for seed in &production.seeds {
+                    (Replacement::Fixed(successor), Some(below)) if kind.is_replaced => {
+                        for seed in &successor.seeds {
                             largest = largest.max(sum(below, kind, &seed.chain));
                         }
-                        sum(below, kind, &production.body)
+                        sum(below, kind, &successor.body)
                     }
                     // The replacement has no instances.
                     _ if kind.is_replaced => 0,

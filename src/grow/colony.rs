@@ -26,7 +26,7 @@ const TURNS: f64 = 1e6;
 #[derive(Clone, Copy, Debug)]
 pub struct Colony<'g, F: Frame = Frame2> {
     graph: &'g Graph<F>,
-    /// Index of the object that seeded it, and of the seed in its production.
+    /// Index of the object that seeded it, and of the seed in its successor.
     seed: [usize; 2],
     standing: Standing<F>,
     born: u32,
@@ -64,7 +64,7 @@ impl Taken {
 }
 
 impl<'g, F: Frame> Colony<'g, F> {
-    /// Creates the colony of a fractal in approximant `steps`; `None` unless a fixed production seeds it.
+    /// Creates the colony of a fractal in approximant `steps`; `None` unless a fixed successor seeds it.
     pub(super) fn of(graph: &'g Graph<F>, start: &Start<'g, F>, steps: u32) -> Option<Self> {
         let StartChain::Fixed { seed, .. } = start.chain else {
             return None;
@@ -125,7 +125,7 @@ impl Colony<'_> {
 
 fn seed_of<F: Frame>(graph: &Graph<F>, [object, number]: [usize; 2]) -> Option<&Seed<F>> {
     match &graph.objects()[object].replacement {
-        Replacement::Fixed(production) => production.seeds.get(number),
+        Replacement::Fixed(successor) => successor.seeds.get(number),
         _ => None,
     }
 }
@@ -190,7 +190,7 @@ type Fertile = BTreeMap<(usize, Direction, i64, [i64; 4]), (DMat2, u64)>;
 
 impl ColonyKinds {
     /// Computes the kinds for approximant `steps`, in which elements shorter than `shortest` are not
-    /// replaced. The result is empty if productions are not fixed, or if there are too many kinds.
+    /// replaced. The result is empty if successors are not fixed, or if there are too many kinds.
     pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Self {
         let tells = graph.seeds
             && graph.is_plain()
@@ -228,15 +228,15 @@ impl ColonyKinds {
             }
             let mut next = Fertile::new();
             for ((object, direction, ..), (linear, count)) in standing {
-                let Replacement::Fixed(production) = &graph.objects()[object].replacement else {
+                let Replacement::Fixed(successor) = &graph.objects()[object].replacement else {
                     continue;
                 };
                 if stretch(&linear) < shortest {
                     continue;
                 }
                 let from = (direction, linear, count);
-                add(&mut next, from, &production.body);
-                for (number, seed) in production.seeds.iter().enumerate() {
+                add(&mut next, from, &successor.body);
+                for (number, seed) in successor.seeds.iter().enumerate() {
                     add(&mut next, from, &seed.chain);
                     let frame = Frame2::new(DAffine2::from_mat2(linear), direction);
                     let sown = ColonyKind {

@@ -18,7 +18,7 @@ pub(super) const PATIENCE: u64 = 1 << 12;
 enum Source<'g, F: Frame> {
     Start,
     Fixed(&'g Chain<F>),
-    /// Chain in the pool of evaluated productions.
+    /// Chain in the pool of evaluated successors.
     Pooled(usize),
 }
 
@@ -133,7 +133,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         descent.stack.clear();
         descent.joined = true;
         if let Replacement::Fixed(_) = graph.objects()[object].replacement {
-            // Fixed productions need no evaluation, which could fail.
+            // Fixed successors need no evaluation, which could fail.
             let _ = descent.push(start.standing, object, 0, 0, true);
         }
         descent
@@ -374,7 +374,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         }
     }
 
-    /// Enters the production that replaces an element.
+    /// Enters the successor that replaces an element.
     fn push(
         &mut self,
         standing: Standing<F>,
@@ -384,7 +384,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         meets_end: bool,
     ) -> Result<(), CompileError> {
         let source = match &self.graph.objects()[object].replacement {
-            Replacement::Fixed(production) => Source::Fixed(&production.body),
+            Replacement::Fixed(successor) => Source::Fixed(&successor.body),
             _ => Source::Pooled(self.evaluate(&standing, object, level, rank)?),
         };
         let chain = match source {
@@ -412,7 +412,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         Ok(())
     }
 
-    /// Computes the production of an element into the pool, and returns its number there.
+    /// Computes the successor of an element into the pool, and returns its number there.
     fn evaluate(
         &mut self,
         standing: &Standing<F>,
@@ -429,9 +429,9 @@ impl<'g, F: Frame> Descent<'g, F> {
             level,
             rank,
         };
-        let production = &mut self.pool[number];
+        let successor = &mut self.pool[number];
         self.evaluator
-            .evaluate(self.graph, standing, object, moment, production)?;
+            .evaluate(self.graph, standing, object, moment, successor)?;
         Ok(number)
     }
 
@@ -447,7 +447,7 @@ impl<'g, F: Frame> Descent<'g, F> {
         };
         match &graph.objects()[found.object].replacement {
             Replacement::Kept => Ok(Vec::new()),
-            Replacement::Fixed(production) => Ok(production
+            Replacement::Fixed(successor) => Ok(successor
                 .seeds
                 .iter()
                 .enumerate()

@@ -30,25 +30,25 @@ impl ReplacementContext {
     }
 }
 
-/// Evaluator of productions, with buffers that are reused.
+/// Evaluator of successors, with buffers that are reused.
 #[derive(Default)]
 pub(crate) struct Evaluator<F: Frame = Frame2>(Buffers<F>);
 
 impl<F: Frame> Evaluator<F> {
-    /// Computes the production of an object that is [`Replacement::Evaluated`], and overwrites `production`.
+    /// Computes the successor of an object that is [`Replacement::Evaluated`], and overwrites `successor`.
     pub(crate) fn evaluate(
         &mut self,
         graph: &Graph<F>,
         standing: &Standing<F>,
         object: usize,
         moment: ReplacementContext,
-        production: &mut Successor<F>,
+        successor: &mut Successor<F>,
     ) -> Result<(), CompileError> {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");
         };
         let (path, context) = (standing.path, moment.seen(standing));
         let source = graph.source();
-        source.evaluate(alternatives, path, &context, &mut self.0, production)
+        source.evaluate(alternatives, path, &context, &mut self.0, successor)
     }
 }

@@ -101,7 +101,7 @@ impl<'g, F: Frame> Fractals<'g, F> {
         };
         let leads = |instance: &Instance<F>| leads_to_seeds[instance.object];
         let goes_on = |object: &Object<F>| match &object.replacement {
-            Replacement::Fixed(production) => production.body.instances.iter().any(leads),
+            Replacement::Fixed(successor) => successor.body.instances.iter().any(leads),
             _ => true,
         };
         let objects = graph.objects().iter().filter(|_| graph.seeds);

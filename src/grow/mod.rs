@@ -195,7 +195,7 @@ pub trait Visitor<F: Frame = Frame2> {
     }
 
     /// Returns the part of a colony that the visitor takes as a whole, in [`Visitor::colony`]. For this part
-    /// the methods for elements and fractals are not called. Only called for seeds of fixed productions.
+    /// the methods for elements and fractals are not called. Only called for seeds of fixed successors.
     fn takes(&self, _: &Colony<'_, F>) -> Taken {
         Taken::Nothing
     }

@@ -53,8 +53,8 @@ impl Sizes {
         let objects = graph.objects();
         let count = |object: &Object<F>, beyond: u64, now: &[u64]| match &object.replacement {
             Replacement::Kept => 1,
-            Replacement::Fixed(production) => {
-                let instances = production.body.instances.iter();
+            Replacement::Fixed(successor) => {
+                let instances = successor.body.instances.iter();
                 sum(instances.map(|instance| instance.object), now)
             }
             Replacement::Evaluated(alternatives) => evaluated(alternatives, now),

@@ -93,7 +93,7 @@ pub(super) struct Start<'g, F: Frame = Frame2> {
 pub(super) enum StartChain<'g, F: Frame = Frame2> {
     /// Initiator, or a fractal seeded before: its instances are roots.
     Initiator(&'g Chain<F>),
-    /// Seed of a fixed production, with the indices of the object and of the seed.
+    /// Seed of a fixed successor, with the indices of the object and of the seed.
     Fixed {
         chain: &'g Chain<F>,
         seed: [usize; 2],

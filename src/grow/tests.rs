@@ -220,12 +220,12 @@ fn graph(objects: Vec<Object<Frame3>>, start: Frame3) -> Graph<Frame3> {
 }
 
 fn sponge(start: Frame3) -> Graph<Frame3> {
-    let production = Successor {
+    let successor = Successor {
         body: chain(&cells(), 0),
         seeds: Vec::new(),
     };
     let object = Object {
-        replacement: Replacement::Fixed(Arc::new(production)),
+        replacement: Replacement::Fixed(Arc::new(successor)),
         ..Object::kept(0)
     };
     graph(vec![object], start)
@@ -407,7 +407,7 @@ impl Source<Frame3> for Coin {
         path: Path,
         _: &ElementContext,
         _: &mut Buffers<Frame3>,
-        production: &mut Successor<Frame3>,
+        successor: &mut Successor<Frame3>,
     ) -> Result<(), CompileError> {
         let drawn = pick_by_weight(path, [1.0, 2.0].into_iter());
         let is_corner = |cell: &DVec3| cell.to_array().iter().all(|at| *at != 1.0);
@@ -416,7 +416,7 @@ impl Source<Frame3> for Coin {
             0 => cells.collect(),
             _ => cells.filter(is_corner).collect(),
         };
-        production.body = chain(&cells, 0);
+        successor.body = chain(&cells, 0);
         Ok(())
     }
 
@@ -481,12 +481,12 @@ fn seeds_in_space_are_fractals() {
         placement,
         chain: chain(&[DVec3::splat(2.0)], 0),
     };
-    let production = Successor {
+    let successor = Successor {
         body: chain(&[DVec3::ZERO], 0),
         seeds: vec![seed(Placement::Seeds), seed(Placement::SeedsAsInitiator)],
     };
     let object = Object {
-        replacement: Replacement::Fixed(Arc::new(production)),
+        replacement: Replacement::Fixed(Arc::new(successor)),
         ..Object::kept(0)
     };
     let graph = Graph {

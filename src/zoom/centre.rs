@@ -74,7 +74,7 @@ pub(super) fn centre(
         };
         let depth = level;
         let evaluated: Successor;
-        let production = match &graph.objects()[object].replacement {
+        let successor = match &graph.objects()[object].replacement {
             Replacement::Kept => {
                 return Err(ZoomError::Infertile {
                     address: address(),
@@ -82,7 +82,7 @@ pub(super) fn centre(
                 });
             }
             Replacement::Unresolved => return Err(ZoomError::TooShallow { depth: level }),
-            Replacement::Fixed(production) => Arc::as_ref(production),
+            Replacement::Fixed(successor) => Arc::as_ref(successor),
             Replacement::Evaluated(_) => {
                 let mut made = Successor::default();
                 evaluator.evaluate(graph, &standing, object, moment, &mut made)?;
@@ -90,7 +90,7 @@ pub(super) fn centre(
                 &evaluated
             }
         };
-        let instances: Vec<_> = production.placed_instances().collect();
+        let instances: Vec<_> = successor.placed_instances().collect();
         let (placement, child) = found(&instances, position, depth + 1)?;
         let parent = Parent {
             standing: &standing,

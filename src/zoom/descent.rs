@@ -267,8 +267,8 @@ impl<'a, 'c> Descent<'a, 'c> {
             level: node.level,
             rank: self.graph.objects()[node.object].index.into(),
         };
-        let production = match &self.graph.objects()[node.object].replacement {
-            Replacement::Fixed(production) => Arc::clone(production),
+        let successor = match &self.graph.objects()[node.object].replacement {
+            Replacement::Fixed(successor) => Arc::clone(successor),
             Replacement::Evaluated(_) => {
                 let mut made = Successor::default();
                 let evaluator = &mut self.evaluator;
@@ -279,7 +279,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 return Err(ZoomError::TooShallow { depth: node.level });
             }
         };
-        let Successor { body, seeds } = &*production;
+        let Successor { body, seeds } = &*successor;
         let (map, exponent) = node.map.near();
         // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);

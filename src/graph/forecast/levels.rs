@@ -74,9 +74,9 @@ impl Totals {
                     joins: true,
                 };
             }
-            Replacement::Fixed(production) => {
-                self.add_chain(graph, &production.body, &mut total);
-                total.joins &= production.body.meets_frame[0];
+            Replacement::Fixed(successor) => {
+                self.add_chain(graph, &successor.body, &mut total);
+                total.joins &= successor.body.meets_frame[0];
             }
             Replacement::Evaluated(alternatives) => {
                 for &object in &alternatives[0].objects {
@@ -99,7 +99,7 @@ impl Totals {
                 tally.sums.apart += 1.0;
             }
             meets_end = match &graph.objects[object].replacement {
-                Replacement::Fixed(production) => production.body.meets_frame[1],
+                Replacement::Fixed(successor) => successor.body.meets_frame[1],
                 _ => true,
             };
         }

@@ -163,10 +163,10 @@ struct Leaves {
 impl Leaves {
     /// Replaces a leaf, and returns whether its instances are fixed and the limit of elements holds.
     fn replace<F: Frame>(&mut self, graph: &Graph<F>, leaf: Leaf, most: u64) -> bool {
-        let Replacement::Fixed(production) = &graph.objects()[leaf.object].replacement else {
+        let Replacement::Fixed(successor) = &graph.objects()[leaf.object].replacement else {
             return false;
         };
-        let instances = &production.body.instances;
+        let instances = &successor.body.instances;
         self.count += instances.len() as u64;
         self.count -= 1;
         self.steps = self.steps.max(leaf.steps + 1);

@@ -165,7 +165,7 @@ impl<'a> Drawing<'a> {
 
     /// Writes a symbol, unless it is empty.
     fn define(&mut self, symbol: &Symbol, ends: &mut Ends<'_>, text: &mut String) {
-        let Some(production) = self.symbols.production(symbol) else {
+        let Some(successor) = self.symbols.successor(symbol) else {
             let name = self.outline(symbol, text);
             let written = Written {
                 name,
@@ -179,8 +179,8 @@ impl<'a> Drawing<'a> {
         }
         let mut content = String::new();
         let of = &symbol.aspect;
-        let mut expanded = 1.0 + self.chain(&production.body, of, false, ends, &mut content);
-        for seed in &production.seeds {
+        let mut expanded = 1.0 + self.chain(&successor.body, of, false, ends, &mut content);
+        for seed in &successor.seeds {
             expanded += self.chain(&seed.chain, of, true, ends, &mut content);
         }
         if content.is_empty() {

@@ -60,7 +60,7 @@ impl<'g> Ends<'g> {
             let objects = self.graph.objects().iter().enumerate();
             let next = objects.map(|(number, object)| match &object.replacement {
                 Replacement::Kept => self.all[number],
-                Replacement::Fixed(production) => self.of_chain(&production.body),
+                Replacement::Fixed(successor) => self.of_chain(&successor.body),
                 Replacement::Evaluated(_) | Replacement::Unresolved => [None; 2],
             });
             self.all = next.collect();

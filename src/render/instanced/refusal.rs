@@ -61,14 +61,14 @@ pub(super) fn check(graph: &Graph, style: &Style, steps: u32) -> Result<(), NotI
     if !graph.is_plain() {
         return Err(NotInstanced::Evaluated);
     }
-    let productions = || {
+    let successors = || {
         let objects = graph.objects().iter();
         objects.filter_map(|object| match &object.replacement {
-            Replacement::Fixed(production) => Some(production),
+            Replacement::Fixed(successor) => Some(successor),
             _ => None,
         })
     };
-    let seeds = || productions().flat_map(|production| &production.seeds);
+    let seeds = || successors().flat_map(|successor| &successor.seeds);
     if seeds().any(|seed| seed.placement == Placement::SeedsAsInitiator) {
         return Err(NotInstanced::Resets);
     }

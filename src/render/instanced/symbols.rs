@@ -182,10 +182,10 @@ impl<'g> Symbols<'g> {
         self.symbol(instance.object, Aspect { steps, part, dress })
     }
 
-    /// Returns the production that replaces a symbol's object.
-    pub(super) fn production(&self, symbol: &Symbol) -> Option<&'g Successor> {
+    /// Returns the successor that replaces a symbol's object.
+    pub(super) fn successor(&self, symbol: &Symbol) -> Option<&'g Successor> {
         match &self.graph.objects()[symbol.object].replacement {
-            Replacement::Fixed(production) if symbol.aspect.steps > 0 => Some(production),
+            Replacement::Fixed(successor) if symbol.aspect.steps > 0 => Some(successor),
             _ => None,
         }
     }
@@ -208,8 +208,8 @@ impl<'g> Symbols<'g> {
             if all.len() + open.len() > most {
                 return None;
             }
-            if let Some(production) = self.production(&symbol) {
-                let instances = production.placed_instances();
+            if let Some(successor) = self.successor(&symbol) {
+                let instances = successor.placed_instances();
                 open.extend(instances.filter_map(|(placement, instance)| {
                     self.child(instance, &symbol.aspect, placement.seeds())
                 }));
