@@ -6,9 +6,8 @@ use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=library");
-    let library = env::current_dir()?.join("library");
     let mut files = Vec::new();
-    for folder in fs::read_dir(&library)? {
+    for folder in fs::read_dir("library")? {
         let folder = folder?;
         if folder.file_type()?.is_dir() {
             for file in fs::read_dir(folder.path())? {
@@ -21,8 +20,9 @@ fn main() -> io::Result<()> {
     files.sort();
     let mut table = String::from("&[\n");
     for file in files {
-        let path = library.join(&file);
-        writeln!(table, "({file:?}, include_str!({path:?})),").map_err(io::Error::other)?;
+        // The table stays valid when the folder of the crate is moved.
+        let path = format!(r#"concat!(env!("CARGO_MANIFEST_DIR"), "/library/", {file:?})"#);
+        writeln!(table, "({file:?}, include_str!({path})),").map_err(io::Error::other)?;
     }
     let out = env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?;
     fs::write(Path::new(&out).join("library.rs"), table + "]")

@@ -87,8 +87,9 @@
 //! [`import`] reads pictures and tables of points to be measured, and files of other programs, which become
 //! files of kfrac. Figures are drawn on the surfaces of `render`, and have all its formats. A model that a
 //! program [`build`]s is written as a file and read as such. The [`catalogue`] resolves names, mistakes in
-//! files are [`diagnostic`]s, numbers in files are [`expression`]s, and work is shared between threads. One thread walks down to subtrees of some thousand elements, any thread walks over these, and
-//! results, text included, are put together in order: the bytes do not depend on the number of threads.
+//! files are [`diagnostic`]s, numbers in files are [`expression`]s, and work is shared between threads. One
+//! thread walks down to subtrees of some thousand elements, any thread walks over these, and results, text
+//! included, are put together in order: the bytes do not depend on the number of threads.
 //!
 #![doc = include_str!("glossary.md")]
 

@@ -28,6 +28,7 @@ mod covered;
 mod culling;
 mod density;
 mod dxf;
+mod error;
 mod instanced;
 mod known;
 mod layout;
@@ -52,6 +53,7 @@ mod zoomed;
 pub use canvas::{Canvas, NoRoom, Size};
 pub(crate) use classes::Classes;
 pub use density::{Density, Shades, Tone, write_density};
+pub use error::{Remedy, RenderError};
 pub use instanced::{Instanced, NotInstanced};
 pub use layout::{Detail, NoDetail};
 pub use pixels::{Pixels, pixels};
@@ -66,18 +68,15 @@ pub(crate) use scene::Scene;
 pub(crate) use surface::{FINE, Paint, Pen, Position, Stroke, Surface, position};
 pub(crate) use tracer::Tracer;
 
-use std::convert::Infallible;
-use std::io::{self, Write};
+use std::io::Write;
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
 
 use crate::graph::Graph;
-use crate::grow::{Growth, WalkError};
+use crate::grow::Growth;
 use crate::metadata::Metadata;
-use crate::model::Kind;
 use crate::parallel::{Team, all_cores, with_team};
 use crate::style::{Colour, Named, Style, View, Width};
-use crate::zoom::ZoomError;
 
 use self::cells::Way;
 use self::pdf::Pdf;
@@ -279,99 +278,6 @@ pub struct Nearest {
     pub distance: f64,
     /// Largest magnification of a picture that shows the point at its edge.
     pub factor: f64,
-}
-
-/// Error of drawing.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// The walk ended early.
-    #[error(transparent)]
-    Walk(WalkError<Infallible>),
-    /// The picture has no room for the drawing.
-    #[error(transparent)]
-    NoRoom(#[from] NoRoom),
-    /// The detail cannot be reached.
-    #[error(transparent)]
-    NoDetail(#[from] NoDetail),
-    /// There is nothing to zoom into.
-    #[error(transparent)]
-    Zoom(#[from] ZoomError),
-    /// The colours are unknown at this magnification.
-    #[error(transparent)]
-    NoZoom(#[from] NoZoom),
-    /// The picture cannot be made of nested instances.
-    #[error(transparent)]
-    NotInstanced(#[from] NotInstanced),
-    /// The picture is too large for memory.
-    #[error(transparent)]
-    TooManyPixels(#[from] TooManyPixels),
-    /// There is no figure of a kind.
-    #[error("there is no figure of an {}'s productions", .0.noun())]
-    NoFigure(Kind),
-    /// The picture cannot be written.
-    #[error(transparent)]
-    Io(#[from] io::Error),
-}
-
-/// Change of [`Options`] or of the growth with which a picture can be drawn after all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Remedy {
-    /// Colours by a property that does not distinguish elements by number, or a single colour.
-    OtherColours,
-    /// No fill.
-    NoFill,
-    /// Round caps and round joins.
-    RoundEnds,
-    /// Stroke width in pixels.
-    PixelWidth,
-    /// Window of a step, in place of a zoom.
-    Window,
-}
-
-impl RenderError {
-    /// Returns the change of options with which the picture can be drawn, where there is one.
-    #[must_use]
-    pub fn remedy(&self) -> Option<Remedy> {
-        Some(match self {
-            Self::NotInstanced(NotInstanced::Colours { .. }) | Self::NoZoom(NoZoom::Numbers) => {
-                Remedy::OtherColours
-            }
-            Self::NotInstanced(NotInstanced::Areas) => Remedy::NoFill,
-            Self::NotInstanced(NotInstanced::Corners) => Remedy::RoundEnds,
-            Self::NotInstanced(NotInstanced::Flattened) | Self::Zoom(ZoomError::WideStroke) => {
-                Remedy::PixelWidth
-            }
-            Self::Zoom(
-                ZoomError::NoLimit(_)
-                | ZoomError::CountsIndex
-                | ZoomError::StartsAnew
-                | ZoomError::NoReach,
-            ) => Remedy::Window,
-            _ => return None,
-        })
-    }
-}
-
-impl From<WalkError<io::Error>> for RenderError {
-    fn from(error: WalkError<io::Error>) -> Self {
-        match error {
-            WalkError::Visitor(error) => Self::Io(error),
-            WalkError::TooManyElements { limit } => {
-                Self::Walk(WalkError::TooManyElements { limit })
-            }
-            WalkError::TooLong { limit } => Self::Walk(WalkError::TooLong { limit }),
-            WalkError::NotFinite(error) => Self::Walk(WalkError::NotFinite(error)),
-            WalkError::Cancelled => Self::Walk(WalkError::Cancelled),
-        }
-    }
-}
-
-impl From<WalkError<Infallible>> for RenderError {
-    fn from(error: WalkError<Infallible>) -> Self {
-        Self::Walk(error)
-    }
 }
 
 /// Drawing that any format takes.

@@ -27,10 +27,10 @@ pub(crate) use net::Layer;
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::thread;
 
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
+use crate::parallel::for_each;
 
 use self::field::TooFar;
 use self::net::{Edge, Net, Node};
@@ -390,20 +390,10 @@ fn looked_for<P: Sync, T: Send>(
     threads: usize,
     look: impl Fn(&P, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
-    let look = |points: &[P]| -> Vec<T> {
-        let mut found = Vec::new();
-        points.iter().for_each(|point| look(point, &mut found));
-        found
-    };
-    let mut parts = points.chunks(points.len().div_ceil(threads.max(1)).max(1));
-    let first = parts.next().unwrap_or_default();
-    thread::scope(|scope| {
-        let others: Vec<_> = { parts }.map(|part| scope.spawn(|| look(part))).collect();
-        let mut found = look(first);
-        for other in others {
-            let other = other.join();
-            found.extend(other.unwrap_or_else(|cause| std::panic::resume_unwind(cause)));
-        }
-        found
-    })
+    let parts = points.chunks(points.len().div_ceil(threads.max(1)).max(1));
+    let mut parts: Vec<_> = parts.map(|part| (part, Vec::new())).collect();
+    for_each(parts.iter_mut(), threads, |(part, found)| {
+        part.iter().for_each(|point| look(point, found));
+    });
+    parts.into_iter().flat_map(|(_, found)| found).collect()
 }

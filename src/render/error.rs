@@ -1,0 +1,105 @@
+//! Errors of drawing, with the changes that help.
+
+use std::convert::Infallible;
+use std::io;
+
+use crate::grow::WalkError;
+use crate::kind::Kind;
+use crate::zoom::ZoomError;
+
+#[cfg(doc)]
+use super::Options;
+use super::{NoDetail, NoRoom, NoZoom, NotInstanced, TooManyPixels};
+
+/// Error of drawing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The walk ended early.
+    #[error(transparent)]
+    Walk(WalkError<Infallible>),
+    /// The picture has no room for the drawing.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    /// The detail cannot be reached.
+    #[error(transparent)]
+    NoDetail(#[from] NoDetail),
+    /// There is nothing to zoom into.
+    #[error(transparent)]
+    Zoom(#[from] ZoomError),
+    /// The colours are unknown at this magnification.
+    #[error(transparent)]
+    NoZoom(#[from] NoZoom),
+    /// The picture cannot be made of nested instances.
+    #[error(transparent)]
+    NotInstanced(#[from] NotInstanced),
+    /// The picture is too large for memory.
+    #[error(transparent)]
+    TooManyPixels(#[from] TooManyPixels),
+    /// There is no figure of a kind.
+    #[error("there is no figure of an {}'s productions", .0.noun())]
+    NoFigure(Kind),
+    /// The picture cannot be written.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+/// Change of [`Options`] or of the growth with which a picture can be drawn after all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Colours by a property that does not distinguish elements by number, or a single colour.
+    OtherColours,
+    /// No fill.
+    NoFill,
+    /// Round caps and round joins.
+    RoundEnds,
+    /// Stroke width in pixels.
+    PixelWidth,
+    /// Window of a step, in place of a zoom.
+    Window,
+}
+
+impl RenderError {
+    /// Returns the change of options with which the picture can be drawn, where there is one.
+    #[must_use]
+    pub fn remedy(&self) -> Option<Remedy> {
+        Some(match self {
+            Self::NotInstanced(NotInstanced::Colours { .. }) | Self::NoZoom(NoZoom::Numbers) => {
+                Remedy::OtherColours
+            }
+            Self::NotInstanced(NotInstanced::Areas) => Remedy::NoFill,
+            Self::NotInstanced(NotInstanced::Corners) => Remedy::RoundEnds,
+            Self::NotInstanced(NotInstanced::Flattened) | Self::Zoom(ZoomError::WideStroke) => {
+                Remedy::PixelWidth
+            }
+            Self::Zoom(
+                ZoomError::NoLimit(_)
+                | ZoomError::CountsIndex
+                | ZoomError::StartsAnew
+                | ZoomError::NoReach,
+            ) => Remedy::Window,
+            _ => return None,
+        })
+    }
+}
+
+impl From<WalkError<io::Error>> for RenderError {
+    fn from(error: WalkError<io::Error>) -> Self {
+        match error {
+            WalkError::Visitor(error) => Self::Io(error),
+            WalkError::TooManyElements { limit } => {
+                Self::Walk(WalkError::TooManyElements { limit })
+            }
+            WalkError::TooLong { limit } => Self::Walk(WalkError::TooLong { limit }),
+            WalkError::NotFinite(error) => Self::Walk(WalkError::NotFinite(error)),
+            WalkError::Cancelled => Self::Walk(WalkError::Cancelled),
+        }
+    }
+}
+
+impl From<WalkError<Infallible>> for RenderError {
+    fn from(error: WalkError<Infallible>) -> Self {
+        Self::Walk(error)
+    }
+}
