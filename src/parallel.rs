@@ -157,14 +157,6 @@ pub(crate) fn pick(_: usize) -> usize {
     0
 }
 
-/// Returns `true` if the finished work of other threads is to be treated as unknown, which only an adversary
-/// does.
-#[cfg(not(test))]
-#[inline]
-pub(crate) fn is_too_early() -> bool {
-    false
-}
-
 /// Returns `true` if a piece of work is to be submitted while still small, which only an adversary does.
 #[cfg(not(test))]
 #[inline]
@@ -173,7 +165,7 @@ pub(crate) fn is_cut_short() -> bool {
 }
 
 #[cfg(test)]
-pub(crate) use adversary::{is_cut_short, is_too_early, pick};
+pub(crate) use adversary::{is_cut_short, pick};
 
 /// A pipeline: pieces of work that are in progress, and finished ones that wait for earlier ones.
 pub(crate) struct Line<'t, 'w, J> {

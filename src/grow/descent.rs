@@ -354,7 +354,6 @@ impl<'g, F: Frame> Descent<'g, F> {
                             },
                             size,
                             meets_end,
-                            last: self.index,
                         }));
                     }
                 }

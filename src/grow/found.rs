@@ -45,8 +45,6 @@ pub(super) struct FoundSubtree<F: Frame> {
     pub(super) size: u64,
     /// Whether its end point is also that of every replaced ancestor of which it is the last part.
     pub(super) meets_end: bool,
-    /// Rank of its last descendant, if a census is available.
-    pub(super) last: u128,
 }
 
 /// Next position of a descent.

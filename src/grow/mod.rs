@@ -49,7 +49,7 @@ pub(crate) use evaluator::{Evaluator, ReplacementContext};
 pub(crate) use spans::{Division, Ranks, walk_with};
 pub(crate) use start::{Standing, seed_placement};
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 
 use crate::geometry::{Frame, Frame2};
 use crate::graph::CompileError;
@@ -137,10 +137,6 @@ pub trait Visitor<F: Frame = Frame2> {
 
     /// Resumes a fractal that an earlier span of the walk began.
     fn go_on(&mut self, _: FractalInfo) {}
-
-    /// Announces the ranks that the visitor of a span receives. Called only if they are known before the
-    /// walk and belong to one fractal.
-    fn expect(&mut self, _: Range<u128>) {}
 
     /// Decides about an element that can be replaced. Walks for seeds repeat the call for an element; the
     /// result must be the same each time, unless the subtree of the element no longer matters.

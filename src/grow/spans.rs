@@ -7,7 +7,7 @@
 //! taken in order, with both.
 
 use std::num::NonZero;
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::geometry::Frame;
@@ -185,8 +185,6 @@ struct Job<'w, F: Frame, V: Visitor<F>> {
     blocks: Option<Arc<Blocks<F>>>,
     descent: Descent<'w, F>,
     span: Span<'w, F>,
-    /// Range of ranks that the visitor receives, if known before.
-    ranks: Option<Range<u128>>,
     visitor: V,
     outcome: Result<Outcome, WalkError<V::Error>>,
 }
@@ -217,9 +215,6 @@ impl<F: Frame, V: Visitor<F>> Job<'_, F, V> {
         let (mut born, mut joined) = (from.born, true);
         if self.span.goes_on() {
             self.visitor.go_on(from.fractal);
-        }
-        if let Some(ranks) = &self.ranks {
-            self.visitor.expect(ranks.clone());
         }
         let mut visiting = Visiting::new(self.graph, &mut self.visitor);
         self.descent.index = from.before;
@@ -355,18 +350,13 @@ where
             blocks: self.blocks.clone(),
             descent: Descent::over_subtrees(self.graph, self.steps).counting(self.census),
             span: Span::default(),
-            ranks: None,
             visitor: (self.fresh)(),
             outcome: Ok(Outcome::default()),
         });
         std::mem::swap(&mut job.span, &mut self.span);
         self.span.follow(&job.span);
-        let (from, to) = (job.span.from, job.span.to);
-        let is_known = self.census.is_some() && from.fractal.number == to.fractal.number;
-        job.ranks = is_known.then_some(from.before..to.before);
         if let Some((&before, later)) = self.told.split_first() {
             job.span.from.before = before;
-            job.ranks = later.first().map(|&after| before..after.max(before));
             self.told = later;
         }
         let order = &mut self.order;
@@ -422,20 +412,16 @@ where
 
     fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error> {
         self.make_room()?;
-        let (item, size, ranks) = match next {
-            Next::Element(found) => (Item::Element(found), 1, [found.index; 2]),
+        let (item, size, rank) = match next {
+            Next::Element(found) => (Item::Element(found), 1, found.index),
             Next::Subtree(subtree) => {
-                let size = 1 + subtree.size;
-                let ranks = [subtree.root.index, subtree.last];
-                (Item::Subtree(subtree), size, ranks)
+                let (size, rank) = (1 + subtree.size, subtree.root.index);
+                (Item::Subtree(subtree), size, rank)
             }
             Next::Run(_) | Next::Pause | Next::End => unreachable!("blocks are left to spans"),
         };
-        if self.census.is_some() {
-            if self.span.items.is_empty() {
-                self.span.from.before = ranks[0] - 1;
-            }
-            self.span.to.before = ranks[1];
+        if self.census.is_some() && self.span.items.is_empty() {
+            self.span.from.before = rank - 1;
         }
         self.span.push(item, size);
         Ok(())

@@ -1,26 +1,17 @@
-//! Adversarial scheduling for tests: arbitrary orders in which threads might work, and arbitrary delays in
-//! what they know of each other, simulated on one thread and reproducible. A test thereby finds errors of
-//! timing reliably.
+//! Adversarial scheduling for tests: arbitrary orders in which threads might work, simulated on one thread and
+//! reproducible. A test thereby finds errors of timing reliably.
 
 use std::cell::Cell;
 
-/// State of the generator, and the number of 256 queries for which the work of other threads is treated as
-/// unknown.
-#[derive(Clone, Copy)]
-struct Adversary {
-    state: u64,
-    late: u64,
-}
-
 thread_local! {
-    static ADVERSARY: Cell<Option<Adversary>> = const { Cell::new(None) };
+    /// State of the generator.
+    static ADVERSARY: Cell<Option<u64>> = const { Cell::new(None) };
 }
 
-/// Runs `body` with teams that execute jobs in an order determined by `seed`, and with `late` in 256 queries
-/// answered as if the work of other threads were not yet known.
-pub(crate) fn with_adversary<T>(seed: u64, late: u64, body: impl FnOnce() -> T) -> T {
+/// Runs `body` with teams that execute jobs in an order determined by `seed`.
+pub(crate) fn with_adversary<T>(seed: u64, body: impl FnOnce() -> T) -> T {
     let state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    let before = ADVERSARY.replace(Some(Adversary { state, late }));
+    let before = ADVERSARY.replace(Some(state));
     let result = body();
     ADVERSARY.set(before);
     result
@@ -39,12 +30,6 @@ pub(crate) fn pick(count: usize) -> usize {
     }
 }
 
-/// Returns `true` if the work of other threads is to be treated as unknown.
-pub(crate) fn is_too_early() -> bool {
-    let late = ADVERSARY.get().map_or(0, |adversary| adversary.late);
-    late > 0 && next().is_some_and(|number| number % 256 < late)
-}
-
 /// Returns `true` if a piece of work is to be submitted while still small.
 pub(crate) fn is_cut_short() -> bool {
     next().is_some_and(|number| number % 16 == 0)
@@ -52,10 +37,10 @@ pub(crate) fn is_cut_short() -> bool {
 
 /// Returns the next number of the generator (xorshift; Marsaglia 2003), or `None` without an adversary.
 fn next() -> Option<u64> {
-    let mut adversary = ADVERSARY.get()?;
-    adversary.state ^= adversary.state << 13;
-    adversary.state ^= adversary.state >> 7;
-    adversary.state ^= adversary.state << 17;
-    ADVERSARY.set(Some(adversary));
-    Some(adversary.state >> 20)
+    let mut state = ADVERSARY.get()?;
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    ADVERSARY.set(Some(state));
+    Some(state >> 20)
 }

@@ -186,14 +186,6 @@ impl Classes {
         Some(style.palette.at(class as f64 / last as f64))
     }
 
-    /// Returns the common class of all elements in a range of ranks, from 0, if the colour depends on ranks and
-    /// the class is unique.
-    pub(super) fn of_ranks(&self, ranks: &Range<u128>) -> Option<u64> {
-        let class = self.of_value(ranks.start);
-        let is_one = self.by == ColorBy::Index && self.of_value(ranks.end) == class;
-        is_one.then_some(class)
-    }
-
     /// Returns whether classes never decrease in the order of a walk.
     pub(super) fn come_in_order(&self, graph: &Graph) -> bool {
         match self.by {

@@ -149,13 +149,6 @@ impl Culling {
         longest.is_none_or(|longest| length * longest >= self.shortest)
     }
 
-    /// Returns a number of steps after which no descendant of an element of a given length is replaced any
-    /// more, if one is known.
-    pub(super) fn steps_of(&self, length: f64) -> Option<u32> {
-        let steps = 0..u32::try_from(self.longest.len()).ok()?;
-        steps.into_iter().find(|&steps| !self.lasts(length, steps))
-    }
-
     /// Returns what a walk does with a replaceable element.
     #[inline]
     pub(super) fn enter(&self, subtree: &Subtree) -> Enter {

@@ -80,7 +80,6 @@ pub(super) fn write(
         size: canvas.size(),
         steps,
         elements: prepass.elements,
-        has_more: false,
         fractals: prepass.fractals,
         is_part: false,
         empty: None,

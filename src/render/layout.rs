@@ -2,14 +2,12 @@
 
 use crate::geometry::Bounds;
 use crate::graph::Graph;
-use crate::grow::{Growth, WalkError};
+use crate::grow::Growth;
 use crate::style::Width;
 
 use super::culling::{Culling, NEARLY};
 use super::prepass::overhang;
-use super::{
-    Canvas, Empty, Format, Options, Picture, Plotted, Prepass, RenderError, Scene, ShortCut,
-};
+use super::{Canvas, Empty, Options, Picture, Plotted, Prepass, RenderError, Scene, ShortCut};
 
 /// Size down to which elements are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,9 +52,6 @@ const FIRST_LOOK: f64 = 1.0 / 8.0;
 /// Maximum number of further estimates, each finer by that fraction, while nothing is visible.
 const MOST_LOOKS: u32 = 4;
 
-/// Number of elements up to which they are counted by a walk even if occlusion may shorten the drawing.
-const WORTH_COUNTING: u64 = 1 << 21;
-
 /// Maximum number of iterations. The detail determines the bounding box, which determines the scale and
 /// thereby the length of the detail.
 const MOST_ROUNDS: u32 = 8;
@@ -94,7 +89,6 @@ impl<'a> Layout<'a> {
             size: self.canvas.size(),
             steps: self.growth.steps,
             elements: prepass.elements,
-            has_more: prepass.has_more,
             fractals: prepass.fractals,
             is_part: prepass.culling().is_bounded(),
             empty: prepass.shows_nothing().then(Empty::default),
@@ -264,41 +258,15 @@ impl<'a> Surveyor<'a> {
 
     /// Completes a prepass.
     fn completed(&self, prepass: Prepass<'a>) -> Result<Prepass<'a>, RenderError> {
-        let prepass = if prepass.is_bounded {
-            self.counted(prepass)?
-        } else {
+        let prepass = if !prepass.is_bounded {
             prepass
+        } else if let Some(counted) = prepass.counted(&self.growth)? {
+            counted
+        } else {
+            prepass.walked(&self.growth, self.options.threads)?
         };
         self.check(&prepass)?;
         Ok(prepass)
-    }
-
-    /// Counts the elements to be drawn. If covered elements need not be walked, a large number is counted in
-    /// part only; the limit then applies to the elements visited while drawing.
-    fn counted(&self, prepass: Prepass<'a>) -> Result<Prepass<'a>, RenderError> {
-        let Options {
-            threads,
-            format,
-            plot,
-            ..
-        } = *self.options;
-        let hides = format == Format::Png && !plot && prepass.may_hide();
-        let limited = |most_elements: u64| Growth {
-            most_elements,
-            ..self.growth
-        };
-        let most = self.growth.most_elements;
-        if let Some(counted) = prepass.counted(&limited(if hides { u64::MAX } else { most }))? {
-            return Ok(counted);
-        }
-        let uncounted = prepass.uncounted(WORTH_COUNTING);
-        match uncounted.filter(|_| hides && most > WORTH_COUNTING) {
-            None => Ok(prepass.walked(&self.growth, threads)?),
-            Some(uncounted) => match prepass.walked(&limited(WORTH_COUNTING), threads) {
-                Err(WalkError::TooManyElements { .. }) => Ok(uncounted),
-                walked => Ok(walked?),
-            },
-        }
     }
 
     /// Makes the prepass of the set down to a detail in pixels.

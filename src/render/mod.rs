@@ -11,10 +11,9 @@
 //! Limit sets are drawn without a walk, by `cells`, where a detail takes more elements than there are pixels, or
 //! elements have no area.
 //!
-//! Walks leave out subtrees that cannot be seen: outside a window, below a detail, or where everything is covered
-//! in their colour already; and where colours distinguish steps, maps or generators, subtrees without
-//! elements of the class that is painted. None of this changes a pixel, whichever thread draws first: neither
-//! threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
+//! Walks leave out subtrees that cannot be seen, outside a window or below a detail; and where colours distinguish
+//! steps, maps or generators, subtrees without elements of the class that is painted. None of this changes a
+//! pixel, and neither threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
 //! drawn as sprites, with small differences: see `sprites`.
 
 mod bands;
@@ -24,7 +23,6 @@ mod cells;
 mod census;
 mod classes;
 mod contribution;
-mod covered;
 mod culling;
 mod density;
 mod dxf;
@@ -33,7 +31,6 @@ mod instanced;
 mod known;
 mod layout;
 mod level_of_detail;
-mod occlusion;
 mod painter;
 mod pdf;
 mod pixels;
@@ -239,8 +236,7 @@ impl Options {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Number of steps: that of the growth, or the one that a detail took; an upper bound of the latter where
-    /// not all elements were counted.
+    /// Number of steps: that of the growth, or the one that a detail took.
     pub steps: u32,
     /// Number of elements, without those outside a window that were not visited; of a limit set, that of the
     /// lines and dots that it is drawn with.
@@ -248,8 +244,6 @@ pub struct Picture {
     /// Whether the limit set itself is drawn, by the cells of a grid within pixels that it meets, because its
     /// elements are too many or become flat.
     pub is_limit: bool,
-    /// Whether there are more elements: in a PNG to a detail, occluded ones are not grown.
-    pub has_more: bool,
     /// Number of fractals, with the same limits.
     pub fractals: u64,
     /// Whether elements outside a window may not have been visited.

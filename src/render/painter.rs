@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::sync::Arc;
 
 use crate::grow::Seam;
 use crate::style::{Cap, Colour, Join, Width};
@@ -10,9 +9,7 @@ use crate::style::{Cap, Colour, Join, Width};
 use super::ShortCut;
 use super::batch::BatchBuilder;
 use super::contribution::ContributionMask;
-use super::covered::CoveredPixels;
 use super::level_of_detail::LevelOfDetail;
-use super::occlusion::Occlusion;
 use super::pen;
 use super::scene::{Pass, Scene};
 use super::sketch::{Kind, Line, Mark, PaintKey, SPECK_WIDTHS, Sketch, class_width};
@@ -40,8 +37,6 @@ pub(super) struct Painter<'a, 's, S> {
     colour: Option<Colour>,
     /// Current class, if one walk paints all classes.
     class: Option<u64>,
-    /// Layer of the first class, if classes are layers.
-    first_layer: Option<u64>,
     tracer: Tracer<'s, S>,
     look: Option<PaintKey>,
     previous: Option<Previous>,
@@ -61,7 +56,6 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 Pass::Class(class) => scene.classes.colour(class, scene.style),
             },
             class: None,
-            first_layer: None,
             tracer: Tracer::new(surface),
             look: None,
             previous: None,
@@ -99,81 +93,48 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         (is_taken && below > 0.0).then(|| BatchBuilder::new(width, stroke.pen, below))
     }
 
-    /// Creates the occlusion of a pass, if everything is covered in one opaque colour per class.
-    pub(super) fn hidden(&mut self, pass: Pass) -> Option<Occlusion> {
-        if !Occlusion::may_be(self.scene, pass) {
+    /// Creates the sprites of a pass, if every class is painted in one opaque colour, or in two of which that of
+    /// strokes lies on top.
+    pub(super) fn sprites(&mut self, pass: Pass, aim: &ContributionMask) -> Option<Sprites<'a>> {
+        if !Sprites::may_be(self.scene, pass) {
             return None;
         }
         let Scene { classes, style, .. } = self.scene;
         let kinds = self.kinds();
-        let mut filled: Option<Arc<CoveredPixels>> = None;
-        let mut inks = BTreeSet::new();
+        // Areas lie below the strokes of their own path only.
+        let is_one_path = kinds.len() == 1 && pass != Pass::Along && self.scene.has_one_width();
+        let most = if is_one_path { 2 } else { 1 };
         let all = match pass {
             Pass::Along => classes.all(),
             Pass::Areas | Pass::Class(_) => 0..1,
         };
-        for class in all {
+        let mut stencil: Option<SpritePaint> = None;
+        for class in all.rev() {
             if pass == Pass::Along {
                 self.colour = classes.colour(class, style);
             }
-            inks.clear();
+            let mut inks = BTreeSet::new();
             for &kind in &kinds {
                 let paint = self.paint(PaintKey {
                     kind,
                     ..PaintKey::TUFTS
                 });
+                let own = self.tracer.stencil(&paint)?;
+                stencil = Some(match stencil {
+                    None => own,
+                    Some(all) => SpritePaint {
+                        pen: all.pen.or(own.pen),
+                        outlines: all.outlines || own.outlines,
+                    },
+                });
                 let stroke = paint.stroke.map(|stroke| stroke.colour);
                 inks.extend([paint.fill, stroke].into_iter().flatten().map(Colour::rgba));
-                let known = self.tracer.filled(&paint)?;
-                if filled.is_some_and(|filled| !Arc::ptr_eq(&filled, &known)) {
-                    return None;
-                }
-                filled = Some(known);
             }
-            // Areas lie below the strokes of their own path only.
-            let is_one_path = kinds.len() == 1 && pass != Pass::Along && self.scene.has_one_width();
-            let most = if is_one_path { 2 } else { 1 };
-            if inks.is_empty() || inks.len() > most {
+            if inks.len() > most {
                 return None;
             }
         }
-        let hidden = Occlusion::new(self.scene, filled?);
-        self.first_layer = Some(hidden.first);
-        if let Pass::Class(class) = pass {
-            self.begin_layer(class);
-        }
-        Some(hidden)
-    }
-
-    /// Creates the sprites of a pass, if they may be put in one opaque colour per class: under the conditions
-    /// of occlusion.
-    pub(super) fn sprites(
-        &mut self,
-        pass: Pass,
-        aim: &ContributionMask,
-        hidden: Option<&Arc<Occlusion>>,
-    ) -> Option<Sprites<'a>> {
-        let hidden = hidden?;
-        if pass == Pass::Along {
-            self.colour = self.scene.classes.colour(0, self.scene.style);
-        }
-        let mut stencils = self.kinds().into_iter().map(|kind| {
-            let paint = self.paint(PaintKey {
-                kind,
-                ..PaintKey::TUFTS
-            });
-            self.tracer.stencil(&paint)
-        });
-        let first = stencils.next()??;
-        let stencil = stencils.try_fold(first, |all, stencil| {
-            let stencil = stencil?;
-            Some(SpritePaint {
-                pen: all.pen.or(stencil.pen),
-                outlines: all.outlines || stencil.outlines,
-            })
-        })?;
-        let painted = aim.painted(self.scene, pass);
-        Sprites::new(self.scene, stencil, painted, Arc::clone(hidden))
+        Sprites::new(self.scene, stencil?, aim.painted(self.scene, pass))
     }
 
     /// Returns the kinds of the paths that are drawn.
@@ -184,13 +145,6 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         let closed: BTreeSet<bool> = drawn.map(|object| is_closed(object.base_element)).collect();
         let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
         closed.into_iter().map(kind).collect()
-    }
-
-    /// Declares that the following paths belong to the layer of a class.
-    fn begin_layer(&mut self, class: u64) {
-        if let Some(first) = self.first_layer {
-            self.tracer.layer(first + class);
-        }
     }
 
     /// Ends the open path.
@@ -307,7 +261,6 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             return Ok(());
         }
         self.end_path()?;
-        self.begin_layer(class);
         self.class = Some(class);
         self.colour = self.scene.classes.colour(class, self.scene.style);
         Ok(())

@@ -24,12 +24,11 @@ pub(super) use split::ROWS as BAND_ROWS;
 use std::convert::Infallible;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::sync::Arc;
 
 pub(super) use tiny_skia::Pixmap;
 
 use crate::parallel::{Line, Team};
-use crate::style::{Cap, Colour, Join};
+use crate::style::Colour;
 
 use self::chunk::Chunk;
 use self::coverage::{HairPen, bounding, flattened, has_room};
@@ -38,16 +37,12 @@ use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
 use super::Options;
-use super::covered::CoveredPixels;
 use super::surface::{
     FINE, Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
 };
 
 /// Deviation that outlines are permitted, in pixels: twice that of rounding.
 const GRAIN: f64 = 1.0 / FINE;
-
-/// Maximum width of strokes of round pens that are drawn as coverage, in pixels.
-pub(super) const WIDEST_COVERED: f64 = *RoundPen::WIDTHS.end();
 
 /// Maximum number of pixels of a picture: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;
@@ -94,8 +89,6 @@ pub(super) struct Png<'t, 'w> {
     /// Pipeline that covers chunks.
     line: Line<'t, 'w, Chunk>,
     threads: usize,
-    /// Layer of the paths.
-    layer: u64,
     strokers: Strokers,
     /// Stroker of the path, if its strokes are drawn as coverage.
     stroker: Option<Stroker>,
@@ -159,7 +152,6 @@ impl<'t, 'w> Png<'t, 'w> {
             chunk: Chunk::default(),
             line: team.line(Chunk::cover),
             threads: team.threads().get(),
-            layer: 0,
             strokers: Strokers::default(),
             stroker: None,
             trail: Trail::default(),
@@ -252,7 +244,6 @@ impl Surface for Png<'_, '_> {
             self.chunk.stroker(stroker.clone());
             self.stroker = Some(stroker);
             (self.covers, self.is_outlined) = (false, false);
-            self.part.begin_layer(self.layer);
             return Ok(());
         }
         if self.part.settles_before(paint) {
@@ -273,7 +264,6 @@ impl Surface for Png<'_, '_> {
         );
         if self.covers || strokes {
             self.part.begin(inks, self.threads);
-            self.part.begin_layer(self.layer);
         }
         if let Some(stroker) = &self.stroker {
             self.chunk.stroker(stroker.clone());
@@ -420,31 +410,15 @@ impl Surface for Png<'_, '_> {
             Some(Some(Stroker::Round(pen))) => Some(pen),
             Some(Some(Stroker::Hair(_) | Stroker::Flat(_)) | None) => return None,
         };
+        let stroke = paint.stroke.map(|stroke| stroke.colour);
+        let mut inks = [paint.fill, stroke].into_iter().flatten().peekable();
+        let draws = inks.peek().is_some() && inks.all(|ink| ink == ink.opaque());
         let outlines = paint.fill.is_some() && pen.is_some();
-        let draws = paint.fill.is_some() || pen.is_some();
         (draws && self.part.may_cover()).then_some(SpritePaint { pen, outlines })
     }
 
     fn sprites(&mut self, sprites: &[PlacedSprite]) {
         self.chunk.sprites(sprites);
-    }
-
-    fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
-        let is_round = |stroke: &Stroke| {
-            let pen = stroke.pen;
-            pen.cap == Cap::Round && pen.join == Join::Round && pen.dash == 0.0
-        };
-        let is_covered = paint.stroke.as_ref().is_none_or(is_round);
-        let inks = inks(paint.fill, paint.stroke.map(|stroke| stroke.colour));
-        let mut all = inks.iter().flatten();
-        let is_opaque = inks[0].is_some() && all.all(|ink| *ink == ink.opaque());
-        let top = usize::from(inks[1].is_some());
-        let is_known = is_covered && is_opaque && self.part.may_cover();
-        is_known.then(|| self.part.filled(top, self.threads))
-    }
-
-    fn layer(&mut self, layer: u64) {
-        self.layer = layer;
     }
 
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {

@@ -81,10 +81,8 @@ pub(crate) struct Prepass<'g> {
     pub bounds: Bounds,
     /// Whether any outline is stroked.
     pub strokes: bool,
-    /// Number of elements; a lower bound if there are more than have been counted.
+    /// Number of elements.
     pub elements: u64,
-    /// Whether there are more elements than have been counted.
-    pub(super) has_more: bool,
     /// Whether a visible element lies beyond the range of numbers.
     pub(super) is_beyond: bool,
     /// Number of fractals.
@@ -127,7 +125,6 @@ impl<'g> Prepass<'g> {
             bounds: Bounds::EMPTY,
             strokes: false,
             elements: 0,
-            has_more: false,
             is_beyond: false,
             fractals: 0,
             largest_index: 0,
@@ -217,7 +214,7 @@ impl<'g> Prepass<'g> {
     #[must_use]
     pub(crate) fn classes(&self) -> (Classes, Vec<u64>) {
         let classes = self.classes.after_survey(self.fractals, self.largest_index);
-        if classes.need_no_survey() && !self.has_more {
+        if classes.need_no_survey() {
             let used = (0..).zip(&self.used).filter(|(_, used)| **used);
             let used: BTreeSet<u64> = used.map(|(value, _)| classes.of_value(value)).collect();
             return (classes, used.into_iter().collect());
@@ -297,34 +294,6 @@ impl<'g> Prepass<'g> {
         };
         self.is_bounded = true;
         Some(self)
-    }
-
-    /// Returns whether elements that are covered may be left out of the walk, on surfaces that report covered
-    /// pixels.
-    pub(super) fn may_hide(&self) -> bool {
-        let numbers_change = match self.style.color_by {
-            ColorBy::Index | ColorBy::Fractal => true,
-            ColorBy::Tint => self.graph.tints(),
-            _ => false,
-        };
-        !numbers_change && !self.graph.seeds
-    }
-
-    /// Returns the prepass of at least `elements` elements, if nothing else needs to be known about them: if
-    /// they have one colour, or if objects determine it.
-    pub(super) fn uncounted(&self, elements: u64) -> Option<Self> {
-        let is_one = self.classes.count() == 1;
-        let is_told = |object: &Object| is_one || self.classes.of_object(object).is_some();
-        let start = self.graph.initiator(0).instances.iter();
-        let longest = start.map(|instance| instance.frame.stretch());
-        let steps = self.culling.steps_of(longest.fold(0.0, f64::max))?;
-        self.graph.objects().iter().all(is_told).then(|| Self {
-            elements,
-            has_more: true,
-            fractals: 1,
-            steps,
-            ..self.clone()
-        })
     }
 
     /// Returns the radius of every object's subtree, with strokes: see [`Graph::reaches`].

@@ -17,7 +17,7 @@ use super::prepass::{Ranks, span};
 use super::sketch::{Means, Sketcher};
 use super::sprites::USES;
 use super::surface::{Pen, Surface};
-use super::{Canvas, Classes, Drawing, Prepass, RenderError, ShortCut, ShortCuts};
+use super::{Canvas, Classes, Drawing, Prepass, RenderError, ShortCuts};
 
 /// Approximant on its canvas.
 pub(crate) struct Scene<'a> {
@@ -133,15 +133,13 @@ impl Drawing for Scene<'_> {
         }
         for &pass in &self.passes {
             let mut painter = Painter::new(self, pass, surface);
-            let hidden = painter.hidden(pass).map(Arc::new);
             let aim = Arc::new(ContributionMask::of(self, pass));
-            let sprites = painter.sprites(pass, &aim, hidden.as_ref());
+            let sprites = painter.sprites(pass, &aim);
             let means = Means {
                 comb: painter.comb().map(Arc::new),
                 coarse: painter.coarse(),
                 broadens: painter.broadens(),
                 sprites: sprites.map(Arc::new),
-                hidden: hidden.filter(|_| self.short_cuts.has(ShortCut::Occlusion)),
                 aim,
             };
             let fresh = || Sketcher::new(self, pass, means.clone());
@@ -304,7 +302,6 @@ mod tests {
                 comb: None,
                 coarse: None,
                 broadens: false,
-                hidden: None,
                 sprites: None,
                 aim,
             };

@@ -14,14 +14,13 @@ pub(super) use speck::SPECK_WIDTHS;
 use std::sync::Arc;
 
 use crate::geometry::DVec2;
-use crate::grow::{Element, FractalInfo, Subtree};
+use crate::grow::{Element, FractalInfo};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
 use super::batch::BatchBuilder;
 use super::contribution::ContributionMask;
 use super::level_of_detail::LevelOfDetail;
-use super::occlusion::Occlusion;
 use super::scene::{Pass, Scene};
 use super::sprites::Sprites;
 use super::surface::{FINE, Position, position};
@@ -63,8 +62,6 @@ pub(super) struct Means<'a> {
     pub(super) coarse: Option<&'a LevelOfDetail>,
     /// Whether closed base elements that are narrower than a pixel are stroked.
     pub(super) broadens: bool,
-    /// Occlusion.
-    pub(super) hidden: Option<Arc<Occlusion>>,
     /// Sprites of congruent runs and colonies.
     pub(super) sprites: Option<Arc<Sprites<'a>>>,
     /// Contribution mask of the pass.
@@ -78,8 +75,6 @@ pub(super) struct Sketcher<'a> {
     fractal: FractalInfo,
     pub(super) sketch: Sketch,
     means: Means<'a>,
-    /// Class of all elements of the span, if it is known.
-    whole: Option<u64>,
     /// Current class of the sketch, if it holds all classes.
     class: Option<u64>,
     /// Index of the mark of the line or area that the next element may continue.
@@ -96,10 +91,6 @@ impl<'a> Sketcher<'a> {
             fractal: FractalInfo::default(),
             sketch: Sketch::default(),
             means,
-            whole: match pass {
-                Pass::Class(class) => Some(class),
-                Pass::Areas | Pass::Along => None,
-            },
             class: None,
             open: None,
             width: (f64::NAN, 0),
@@ -114,9 +105,6 @@ impl<'a> Sketcher<'a> {
         self.sketch.sprites.clear();
         self.class = None;
         self.open = None;
-        if self.pass == Pass::Along {
-            self.whole = None;
-        }
     }
 
     #[inline]
@@ -365,15 +353,6 @@ impl<'a> Sketcher<'a> {
         is_tinted.then(|| element.appearance.on(own))
     }
 
-    /// Returns whether all descendants of an element are occluded.
-    #[inline]
-    fn is_hidden(&self, subtree: &Subtree) -> bool {
-        let (Some(hidden), Some(class)) = (&self.means.hidden, self.whole) else {
-            return false;
-        };
-        hidden.hides(self.scene, subtree, class)
-    }
-
     fn kind(&self) -> Kind {
         if self.scene.fills_strokes {
             Kind::Ring
@@ -404,9 +383,6 @@ impl<'a> Sketcher<'a> {
             }
         };
         match (is_drawn, is_closed) {
-            (true, _) if self.means.coarse.is_some() && self.is_hidden(&element.subtree()) => {
-                self.pass_by(Mark::Break);
-            }
             (true, true) => self.polygon(element, base_element),
             (true, false) => self.line(element, base_element),
             (false, false) if object.visible => {

@@ -22,15 +22,17 @@ use crate::fast_hash::FastMap;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::Element;
 use crate::rule::Piece;
+use crate::style::{ColorBy, Width};
 
 use self::colonies::Colonies;
 pub(super) use self::colonies::Put;
 use self::runs::Runs;
 use super::ShortCut;
-use super::occlusion::Occlusion;
+use super::culling::own_reach;
 use super::png::{Sprite, SpriteSheet};
-use super::scene::Scene;
-use super::sketch::Kind;
+use super::prepass::overhang;
+use super::scene::{Pass, Scene};
+use super::sketch::{Kind, stands_alone};
 use super::surface::{FINE, PlacedSprite, Position, SpritePaint, position};
 
 /// Steps per pixel in which linear parts are quantised.
@@ -43,6 +45,10 @@ const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
 /// Maximum size of a run that is stamped, in pixels.
 const LARGEST: f64 = 32.0;
+
+/// Upper bound of the distance, in pixels, by which filled shapes are drawn beyond their outlines: shapes
+/// narrower than a pixel are drawn a pixel wide.
+const BROADENED: f64 = 0.75;
 
 /// Minimum average number of uses of a sprite.
 pub(super) const USES: u64 = 3;
@@ -99,40 +105,85 @@ impl Painted {
 /// Sprites of a pass.
 pub(super) struct Sprites<'a> {
     stencil: SpritePaint,
-    hidden: Arc<Occlusion>,
+    reach: Reach,
     runs: Option<Runs>,
     colonies: Option<Colonies<'a>>,
     tables: Vec<RwLock<FastMap<Key, Arc<Places>>>>,
     bytes: AtomicUsize,
 }
 
+/// Extent of the descendants of elements about the centres of their frames.
+struct Reach {
+    /// By object, radius without strokes in pixels, as a multiple of its length.
+    radii: Vec<f64>,
+    /// Distance, in pixels, by which drawing may exceed that radius.
+    overhang: f64,
+}
+
+impl Reach {
+    fn of(scene: &Scene<'_>) -> Self {
+        let Scene { graph, style, .. } = scene;
+        Self {
+            radii: graph.reaches(|object| own_reach(graph, object, style)),
+            overhang: match style.width {
+                Width::Pixels(width) => width * graph.widest().unwrap_or(1.0) * overhang(style),
+                Width::Relative(_) => 0.0,
+            }
+            .max(BROADENED),
+        }
+    }
+
+    /// Returns the distance, in pixels, at which a set may be drawn whose radius is given as a multiple of
+    /// its length.
+    fn pixels(&self, scene: &Scene<'_>, radius: f64, length: f64) -> f64 {
+        radius * scene.canvas.scale() * length + self.overhang
+    }
+}
+
 impl<'a> Sprites<'a> {
+    /// Returns whether runs or colonies of a pass may be drawn as sprites: no line leads to elements of
+    /// another class, and colours do not depend on the elements before.
+    pub(super) fn may_be(scene: &Scene<'_>, pass: Pass) -> bool {
+        let Scene { graph, style, .. } = scene;
+        let numbers_change = match style.color_by {
+            // If classes occur in order, runs of one class are recognised.
+            ColorBy::Index => pass != Pass::Along,
+            ColorBy::Fractal => graph.seeds,
+            ColorBy::Tint => graph.tints(),
+            _ => false,
+        };
+        scene.is_to_detail
+            && pass != Pass::Areas
+            && !numbers_change
+            && !scene.fills_strokes
+            && stands_alone(scene)
+    }
+
     /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
         stencil: SpritePaint,
         painted: Option<Painted>,
-        hidden: Arc<Occlusion>,
     ) -> Option<Self> {
         let Scene { graph, .. } = scene;
         let drawn = graph.objects().iter().filter(|object| object.visible);
         let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
         let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
-        let is_large =
-            scene.is_to_detail && scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
+        let is_large = scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
         if !is_large || graph.has_appearances() {
             return None;
         }
         let has_pen = stencil.pen.is_some();
+        let reach = Reach::of(scene);
         let has = |short_cut| scene.short_cuts.has(short_cut);
         let painted =
             painted.filter(|_| !scene.culling.is_bounded() && has(ShortCut::ColonySprites));
-        let colonies = painted.and_then(|painted| Colonies::of(scene, &hidden, painted, has_pen));
+        let colonies = painted.and_then(|painted| Colonies::of(scene, &reach, painted, has_pen));
         let runs = Runs::of(scene, &stencil, worth).filter(|_| has(ShortCut::RunSprites));
         let is_any = runs.is_some() || colonies.is_some();
         is_any.then(|| Self {
             stencil,
-            hidden,
+            reach,
             runs,
             colonies,
             tables: (0..TABLES).map(|_| RwLock::default()).collect(),

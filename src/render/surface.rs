@@ -6,7 +6,6 @@ use std::sync::Arc;
 use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
-use super::covered::CoveredPixels;
 use super::png::{RoundPen, Sprite};
 
 /// Position on a picture, in hundredths of a pixel from the upper left corner, with y down.
@@ -167,15 +166,6 @@ pub(crate) trait Surface {
     }
     /// Draws sprites, within a path whose paint permits them.
     fn sprites(&mut self, _: &[PlacedSprite]) {}
-
-    /// Returns the index of completely covered pixels, if paths with this paint are drawn in layers, each of
-    /// one opaque colour, or of two, of which that of strokes lies on top and is indexed. `None` unless
-    /// overridden.
-    fn filled(&mut self, _: &Paint) -> Option<Arc<CoveredPixels>> {
-        None
-    }
-    /// Declares that the following paths belong to a layer.
-    fn layer(&mut self, _: u64) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are relative to it,
     /// and nothing is drawn outside. Returns whether any of it is visible; otherwise the part does not begin.

@@ -1,9 +1,7 @@
 //! Tracing of paths onto a surface, without redundant vertices.
 
 use std::io;
-use std::sync::Arc;
 
-use crate::render::covered::CoveredPixels;
 use crate::render::surface::{
     Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
 };
@@ -145,16 +143,6 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     /// Returns [`Surface::tufts_below`].
     pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
         self.surface.tufts_below(stroke)
-    }
-
-    /// Returns [`Surface::covered`].
-    pub(crate) fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
-        self.surface.filled(paint)
-    }
-
-    /// Calls [`Surface::layer`].
-    pub(crate) fn layer(&mut self, layer: u64) {
-        self.surface.layer(layer);
     }
 
     /// Draws tufts, regardless of the position of the pen.

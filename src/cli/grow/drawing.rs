@@ -314,9 +314,6 @@ fn summary(picture: &Picture, unit: Unit) -> String {
         }
         None => readable::counted(&picture.elements.into(), "element"),
     };
-    if picture.has_more {
-        summary.insert_str(0, "more than ");
-    }
     if picture.is_part {
         summary.push_str(" visited");
     }

@@ -233,7 +233,6 @@ impl<'a> Cells<'a> {
             size: self.canvas.size(),
             steps: self.steps,
             elements: self.count,
-            has_more: false,
             fractals: 1,
             is_part: false,
             empty: (self.count == 0).then(Empty::default),

@@ -1,12 +1,11 @@
 //! Coverage buffers of a part of a picture, which threads fill in parallel.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use crate::parallel::{for_each, pick};
-use crate::render::covered::CoveredPixels;
 
-use super::coverage::{CoverageBuffer, Drain, MARGIN};
+use super::coverage::{CoverageBuffer, Drain};
 
 /// Maximum total number of pixels of the buffers other than the first.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -21,7 +20,6 @@ pub(super) struct CoverageBuffers {
     rows: Range<u32>,
     /// Buffers; `None` while nothing is covered.
     planes: Vec<Mutex<Option<CoverageBuffer>>>,
-    filled: Arc<CoveredPixels>,
     /// Number of threads that colour pixels.
     threads: usize,
 }
@@ -41,7 +39,6 @@ impl CoverageBuffers {
         Self {
             picture,
             planes: std::iter::repeat_with(Mutex::default).take(count).collect(),
-            filled: Arc::new(CoveredPixels::new(picture[0], rows.clone(), MARGIN, count)),
             rows,
             threads,
         }
@@ -55,12 +52,10 @@ impl CoverageBuffers {
         let Self {
             picture, threads, ..
         } = self;
-        let filled = CoveredPixels::new(picture[0], rows.clone(), MARGIN, self.planes.len());
-        let planes = (0..).zip(self.planes).map(|(number, plane)| {
+        let planes = self.planes.into_iter().map(|plane| {
             let mut plane = plane.into_inner().unwrap_or_else(PoisonError::into_inner);
             if let Some(plane) = &mut plane {
                 plane.move_to(rows.start);
-                filled.add(number, plane.cells());
             }
             Mutex::new(plane)
         });
@@ -68,48 +63,27 @@ impl CoverageBuffers {
             picture,
             rows: rows.clone(),
             planes: planes.collect(),
-            filled: Arc::new(filled),
             threads,
         })
     }
 
     /// Covers something on a buffer on which no other thread draws.
     pub(super) fn with_one(&self, cover: impl FnOnce(&mut CoverageBuffer)) {
-        let planes = (0..).zip(&self.planes);
-        let planes = planes.skip(pick(self.planes.len()));
-        let mut free = planes.filter_map(|(number, plane)| match plane.try_lock() {
-            Ok(plane) => Some((number, plane)),
-            Err(TryLockError::Poisoned(poisoned)) => Some((number, poisoned.into_inner())),
+        let planes = self.planes.iter().skip(pick(self.planes.len()));
+        let mut free = planes.filter_map(|plane| match plane.try_lock() {
+            Ok(plane) => Some(plane),
+            Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => None,
         });
-        let (number, mut plane) = free.next().unwrap_or_else(|| (0, lock(&self.planes[0])));
-        CoveredPixels::draw();
-        cover(self.made(number, &mut plane));
-    }
-
-    /// Returns the index of the pixels that are covered completely.
-    pub(super) fn filled(&self) -> &Arc<CoveredPixels> {
-        &self.filled
-    }
-
-    /// Returns a buffer, which is created if it does not exist yet.
-    fn made<'p>(
-        &self,
-        number: usize,
-        plane: &'p mut Option<CoverageBuffer>,
-    ) -> &'p mut CoverageBuffer {
-        plane.get_or_insert_with(|| {
-            let plane = CoverageBuffer::of_rows(self.picture, self.rows.clone());
-            self.filled.add(number, plane.cells());
-            plane
-        })
+        let mut plane = free.next().unwrap_or_else(|| lock(&self.planes[0]));
+        let made = || CoverageBuffer::of_rows(self.picture, self.rows.clone());
+        cover(plane.get_or_insert_with(made));
     }
 
     /// Calls `paint` with every covered pixel and its coverage, in any order on all threads, and clears the
     /// buffers. `pixels` are those of the rows, row by row.
     pub(super) fn drain<T: Send>(&self, pixels: &mut [T], paint: impl Fn(&mut T, u32) + Sync) {
         let mut planes: Vec<_> = self.planes.iter().map(lock).collect();
-        self.filled.end();
         let made = planes.iter_mut().filter_map(|plane| plane.as_mut());
         if let Some(drain) = Drain::of(made) {
             let blocks = drain.blocks(pixels);

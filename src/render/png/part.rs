@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
-use crate::render::covered::CoveredPixels;
 use crate::render::surface::Paint;
 use crate::style::Colour;
 
@@ -131,20 +130,6 @@ impl Part {
             self.made_planes(number, threads);
             self.layers[number].ink = ink;
         }
-    }
-
-    /// Declares that the following paths belong to a layer.
-    #[inline]
-    pub(super) fn begin_layer(&self, layer: u64) {
-        for planes in self.layers.iter().filter_map(|it| it.planes.as_ref()) {
-            planes.filled().begin(layer);
-        }
-    }
-
-    /// Returns the index of pixels that are completely covered by paths (layer 0), or by the strokes on top
-    /// (1).
-    pub(super) fn filled(&mut self, layer: usize, threads: usize) -> Arc<CoveredPixels> {
-        Arc::clone(self.made_planes(layer, threads).filled())
     }
 
     fn made_planes(&mut self, layer: usize, threads: usize) -> &Arc<CoverageBuffers> {

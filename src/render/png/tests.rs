@@ -1,10 +1,9 @@
-//! Tests of PNG drawing: threads, chunks, tufts and occlusion do not change pixels.
+//! Tests of PNG drawing: threads, chunks and tufts do not change pixels.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 use std::io;
 use std::num::NonZero;
-use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
@@ -12,14 +11,15 @@ use crate::document::Document;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
-use crate::render::covered::CoveredPixels;
 use crate::render::layout::Layout;
 use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
 use crate::render::{Drawing, Options, Scene, Size};
-use crate::style::{Cap, ColorBy, Colour, Join, Style, Width};
+use crate::style::{Cap, Colour, Join, Style, Width};
 
 use super::skia::Outline;
 use super::{Pixmap, Png};
+
+mod threads;
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -301,60 +301,36 @@ fn long_outlines_are_those_of_the_reference() {
     }
 }
 
-/// Surface on which every line is drawn by itself, and on which nothing is hidden unless `hides` is set.
-struct Plain<'p, 't, 'w> {
-    png: &'p mut Png<'t, 'w>,
-    hides: bool,
-    /// Number of vertices.
-    drawn: usize,
-}
-
-impl<'p, 't, 'w> Plain<'p, 't, 'w> {
-    fn new(png: &'p mut Png<'t, 'w>, hides: bool) -> Self {
-        Self {
-            png,
-            hides,
-            drawn: 0,
-        }
-    }
-}
+/// Surface on which every line is drawn by itself.
+struct Plain<'p, 't, 'w>(&'p mut Png<'t, 'w>);
 
 impl Surface for Plain<'_, '_, '_> {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
-        self.png.begin(paint)
+        self.0.begin(paint)
     }
     fn move_to(&mut self, to: Position) {
-        self.drawn += 1;
-        self.png.move_to(to);
+        self.0.move_to(to);
     }
     fn line_to(&mut self, to: Position) {
-        self.drawn += 1;
-        self.png.line_to(to);
+        self.0.line_to(to);
     }
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
-        self.drawn += 1;
-        self.png.curve_to(a, b, to);
+        self.0.curve_to(a, b, to);
     }
     fn close(&mut self) {
-        self.png.close();
+        self.0.close();
     }
     fn hand_on(&mut self) -> io::Result<()> {
-        self.png.hand_on()
+        self.0.hand_on()
     }
     fn end(&mut self) -> io::Result<()> {
-        self.png.end()
-    }
-    fn filled(&mut self, paint: &Paint) -> Option<Arc<CoveredPixels>> {
-        self.png.filled(paint).filter(|_| self.hides)
-    }
-    fn layer(&mut self, layer: u64) {
-        self.png.layer(layer);
+        self.0.end()
     }
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
-        self.png.enter(corner, size)
+        self.0.enter(corner, size)
     }
     fn leave(&mut self) -> io::Result<()> {
-        self.png.leave()
+        self.0.leave()
     }
 }
 
@@ -411,7 +387,7 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
                 if is_combed {
                     scene.draw(&mut png, team).unwrap();
                 } else {
-                    scene.draw(&mut Plain::new(&mut png, false), team).unwrap();
+                    scene.draw(&mut Plain(&mut png), team).unwrap();
                 }
                 png.settle();
                 png.part.pixmap.data().to_vec()
@@ -422,65 +398,6 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
         let shades = combed.iter().zip(&every);
         let most = shades.map(|(one, other)| one.abs_diff(*other)).max();
         assert!(most <= Some(2), "{name} {steps} {width}: {most:?}");
-    }
-}
-
-/// Squares, each of which coincides with another one.
-const TWICE: &str = "
-title: Twice
-initiator: segment
-base_element: square
-generator:
-  connected: false
-  elements:
-    - {from: [0, 0], to: [1/2, 0]}
-    - {from: [1/2, 0], to: [1, 0]}
-    - {from: [0, 1/2], to: [1/2, 1/2]}
-    - {from: [1/2, 1/2], to: [1, 1/2]}
-    - {from: [0, 0], to: [1/2, 0]}
-    - {from: [1/2, 0], to: [1, 0]}
-    - {from: [0, 1/2], to: [1/2, 1/2]}
-    - {from: [1/2, 1/2], to: [1, 1/2]}
-";
-
-/// Covers successive colours, and several threads, some of which query while others draw.
-#[test]
-fn what_is_hidden_would_not_show() {
-    let catalogue = Catalogue::embedded();
-    let source = Source::new("twice.yaml", TWICE);
-    let document = Document::read(&source, &catalogue).unwrap();
-    let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
-    let graph = Graph::compile(&rule, 6).unwrap();
-    for color_by in [ColorBy::None, ColorBy::Index, ColorBy::Direction] {
-        let options = Options {
-            style: Style {
-                color_by,
-                ..Style::default()
-            },
-            size: Size::Long(150),
-            ..Options::default()
-        };
-        let growth = Growth::steps(6);
-        let layout = Layout::find(&graph, &growth, &options).unwrap();
-        let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
-        let drawn = |threads: usize, hides: bool| {
-            with_team(NonZero::new(threads).unwrap(), |team| {
-                let mut png = Png::begin(scene.size(), None, team).unwrap();
-                let mut plain = Plain::new(&mut png, hides);
-                scene.draw(&mut plain, team).unwrap();
-                let drawn = plain.drawn;
-                png.settle();
-                (drawn, png.part.pixmap.data().to_vec())
-            })
-        };
-        let (all, every) = drawn(1, false);
-        for threads in [1, 3] {
-            let (some, seen) = drawn(threads, true);
-            assert!(seen == every, "{color_by:?} on {threads} threads");
-            // The number of elements left out on several threads depends on timing.
-            let is_less = some < all * 3 / 4 || threads > 1 || color_by == ColorBy::Index;
-            assert!(is_less, "{color_by:?}: {some} of {all}");
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Visits of elements, runs and colonies by a sketcher.
 
 use std::io;
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 
 use crate::grow::{Colony, Element, Enter, FractalInfo, Run, Subtree, Taken, Visitor};
 use crate::render::classes::Share;
@@ -42,12 +42,6 @@ impl Visitor for Sketcher<'_> {
         self.fractal = fractal;
     }
 
-    fn expect(&mut self, ranks: Range<u128>) {
-        if self.pass == Pass::Along {
-            self.whole = self.scene.classes.of_ranks(&ranks);
-        }
-    }
-
     fn begin(&mut self, fractal: FractalInfo) -> io::Result<()> {
         self.fractal = fractal;
         self.mark(Mark::Begin);
@@ -57,11 +51,7 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.culling.enter(subtree) {
-            Enter::Replace
-                if !self.means.aim.may_paint(self.scene, subtree) || self.is_hidden(subtree) =>
-            {
-                Enter::Skip
-            }
+            Enter::Replace if !self.means.aim.may_paint(self.scene, subtree) => Enter::Skip,
             enter => enter,
         }
     }

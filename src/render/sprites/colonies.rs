@@ -6,12 +6,11 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::{
     Colony, ColonyKind, ColonyKinds, Element, Enter, FractalInfo, Subtree, Taken, Visitor,
 };
-use crate::render::occlusion::Occlusion;
 use crate::render::png::SpriteSheet;
 use crate::render::scene::Scene;
 use crate::render::surface::PlacedSprite;
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, whole};
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Reach, Sprites, outline, whole};
 
 /// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
@@ -69,7 +68,7 @@ impl<'a> Colonies<'a> {
     /// Creates the colonies of a scene, if any are numerous enough for sprites.
     pub(super) fn of(
         scene: &'a Scene<'a>,
-        hidden: &Occlusion,
+        reach: &Reach,
         painted: Painted,
         strokes: bool,
     ) -> Option<Self> {
@@ -79,7 +78,7 @@ impl<'a> Colonies<'a> {
         });
         let phases = if strokes { PLACES / 2.0 } else { PLACES };
         let places = whole(phases * phases).unsigned_abs();
-        let means = |kind| Means::of(scene, hidden, kind, (painted, places));
+        let means = |kind| Means::of(scene, reach, kind, (painted, places));
         let means: Vec<_> = kinds.all.iter().map(means).collect();
         let is_any = means.iter().any(|means| means.taken != Taken::Nothing);
         is_any.then_some(Self {
@@ -107,7 +106,7 @@ impl Means {
     /// Decides about the colonies of a kind, for sprites at `places` positions in a pixel.
     fn of(
         scene: &Scene<'_>,
-        hidden: &Occlusion,
+        reach: &Reach,
         kind: &ColonyKind,
         (painted, places): (Painted, u64),
     ) -> Self {
@@ -118,7 +117,7 @@ impl Means {
         }
         let discs = instances.iter().map(|instance| {
             let middle = instance.frame.apply(scene.graph.middle());
-            let radius = hidden.radius(instance.object) * instance.frame.stretch();
+            let radius = reach.radii[instance.object] * instance.frame.stretch();
             (middle, radius)
         });
         #[expect(clippy::cast_precision_loss, reason = "few instances")]
@@ -127,7 +126,7 @@ impl Means {
         let radii = discs.map(|(other, radius)| other.distance(middle) + radius);
         let radius = radii.fold(0.0, f64::max);
         let length = kind.frame.stretch();
-        if 2.0 * hidden.reach_of(scene, radius, length) > LARGEST {
+        if 2.0 * reach.pixels(scene, radius, length) > LARGEST {
             return Self::NOTHING;
         }
         let means = |taken, shows| Self {
@@ -212,9 +211,7 @@ impl Sprites<'_> {
         let length = kind.frame.stretch() * scene.canvas.scale();
         self.put(&key, map.translation, colonies.phases, |phase| {
             let linear = turned(&map.matrix2, &key.linear, length);
-            let reach = self
-                .hidden
-                .reach_of(scene, means.radius, length / scene.canvas.scale());
+            let reach = { &self.reach }.pixels(scene, means.radius, length / scene.canvas.scale());
             let draw = |map: DAffine2, sheet: &mut SpriteSheet| {
                 let mut points = Vec::new();
                 let mut visitor = Members {

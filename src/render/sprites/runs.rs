@@ -70,9 +70,8 @@ impl Sprites<'_> {
     ) -> Option<PlacedSprite> {
         let Runs { worth, phases, .. } = *self.runs.as_ref()?;
         let map = scene.canvas.map(run.map());
-        let reach = self
-            .hidden
-            .reach(scene, run.object(), run.frame().stretch());
+        let radius = self.reach.radii[run.object()];
+        let reach = self.reach.pixels(scene, radius, run.frame().stretch());
         if run.count() * worth < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
             return None;
         }

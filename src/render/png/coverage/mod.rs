@@ -18,7 +18,6 @@ mod tests;
 mod winding;
 
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -76,9 +75,8 @@ pub(crate) struct CoverageBuffer {
     /// Number of cells per row, including margins.
     stride: usize,
     /// Cells, by rows. Atomic, so that the compiler does not combine neighbouring stores: prints overlap, and
-    /// loads that span several recent stores are slow. Shared, so that other threads can query complete
-    /// coverage.
-    cells: Arc<[AtomicU64]>,
+    /// loads that span several recent stores are slow.
+    cells: Box<[AtomicU64]>,
     /// Lines that would fall between the samples.
     hairs: Hairs,
     touched: Touched,
@@ -146,11 +144,6 @@ impl CoverageBuffer {
     /// Moves the empty buffer to as many other rows of the picture.
     pub(crate) fn move_to(&mut self, top: u32) {
         self.top = top.into();
-    }
-
-    /// Returns the covered samples by pixel, row by row, with a margin of [`MARGIN`] around the picture.
-    pub(crate) fn cells(&self) -> Arc<[AtomicU64]> {
-        Arc::clone(&self.cells)
     }
 
     /// Returns the rows and columns of cells, including margins, where anything may be covered.
