@@ -133,7 +133,6 @@ impl<'a> Layout<'a> {
             prepass = prepass.sooner(&surveyor.growth, fewer);
             surveyor.growth.steps -= fewer;
         }
-        prepass.is_to_detail = options.detail.is_some();
         prepass.short_cuts = options.short_cuts;
         if let Some(progress) = growth.progress {
             progress.expect(surveyor.elements);

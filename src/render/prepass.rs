@@ -95,8 +95,6 @@ pub(crate) struct Prepass<'g> {
     pub(super) is_bounded: bool,
     /// Number of steps after which elements do not change any more.
     pub(super) steps: u32,
-    /// Whether elements are replaced down to a detail only.
-    pub(super) is_to_detail: bool,
     /// Short cuts that drawing may take.
     pub(super) short_cuts: ShortCuts,
     /// Ranks, if the colour depends on them and they are known.
@@ -131,7 +129,6 @@ impl<'g> Prepass<'g> {
             walked: false,
             is_bounded: false,
             steps: 0,
-            is_to_detail: false,
             short_cuts: ShortCuts::default(),
             ranks: None,
             culling: Culling::unbounded(),

@@ -32,8 +32,6 @@ pub(crate) struct Scene<'a> {
     pub(super) elements: u64,
     /// Ranks of elements, if colours depend on them and they are known.
     ranks: Option<Ranks>,
-    /// Whether elements are replaced down to a detail only.
-    pub(super) is_to_detail: bool,
     pub(super) short_cuts: ShortCuts,
     /// Kinds of colonies, computed when sprites are first made.
     pub(super) colonies: OnceLock<ColonyKinds>,
@@ -90,7 +88,6 @@ impl<'a> Scene<'a> {
             passes,
             elements: prepass.elements,
             ranks: prepass.ranks.clone(),
-            is_to_detail: prepass.is_to_detail,
             short_cuts: prepass.short_cuts,
             colonies: OnceLock::new(),
             uses: USES,

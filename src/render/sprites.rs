@@ -2,12 +2,11 @@
 //! congruent.
 //!
 //! If the maps of a graph have few orientations, or all of a step have the same, runs differ by translations
-//! only; likewise filled elements of a few lengths, and colonies of seeded fractals. In pictures to a detail
-//! they are put on a grid some ten times as fine as the detail: of 1/128 of a pixel for runs if there are
-//! enough of them, otherwise of 1/64, and half as fine for lines and outlines, whose pens are on a grid of
-//! 1/16. This moves them by at most 1/128 of a pixel, lines by 1/64. The coverage is computed on the grid, so
-//! that it does not depend on the thread that draws it first. Areas and outlines are covered separately,
-//! since their colours may differ.
+//! only; likewise filled elements of a few lengths, and colonies of seeded fractals. They are put on a grid:
+//! of 1/128 of a pixel for runs if there are enough of them, otherwise of 1/64 or 1/32, and half as fine for
+//! lines and outlines, whose pens are on a grid of 1/16. This moves them by at most 1/64 of a pixel, lines by
+//! 1/32. The coverage is computed on the grid, so that it does not depend on the thread that draws it first.
+//! Areas and outlines are covered separately, since their colours may differ.
 //!
 //! Compared with drawing every element, pixels differ by less than 1.6/255 in the mean, and a single one by
 //! at most 40/255, which corresponds to ten of the samples that determine its coverage.

@@ -10,12 +10,19 @@ use crate::render::surface::{PlacedSprite, SpritePaint};
 use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, whole};
 
 /// Numbers of steps per pixel, along either axis, and maximum numbers of elements of a run: the first of
-/// these for which there are enough runs is used. For strokes there are half as many steps; for outlines of
-/// more than four pieces, proportionally fewer elements, but at least `FEW_ELEMENTS`.
-const GRIDS: [(f64, u64); 3] = [(128.0, 128), (128.0, 64), (64.0, 64)];
+/// these for which there are enough runs is used. For strokes there are half as many steps, in the last two
+/// as many as pens have; for outlines of more than four pieces, proportionally fewer elements, but at least
+/// `FEW_ELEMENTS`.
+const GRIDS: &[(f64, u64)] = &[
+    (128.0, 128),
+    (128.0, 64),
+    (64.0, 64),
+    (32.0, 64),
+    (32.0, 16),
+];
 
 /// Corresponding numbers if elements have unequal lengths.
-const UNEVEN_GRIDS: [(f64, u64); 3] = [(128.0, 64), (128.0, 16), (64.0, 16)];
+const UNEVEN_GRIDS: &[(f64, u64)] = &[(128.0, 64), (128.0, 16), (64.0, 16)];
 /// Minimum of the maximum number of elements of a run.
 const FEW_ELEMENTS: u64 = 8;
 
@@ -43,9 +50,9 @@ impl Runs {
             None => return None,
         };
         let part = if stencil.pen.is_none() { 1.0 } else { 0.5 };
-        let grids = grids.into_iter();
+        let grids = grids.iter();
         let mut grids =
-            grids.map(|(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
+            grids.map(|&(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
         let (phases, longest) = grids.find(|(phases, longest)| {
             let sides = sides(scene, *longest).unwrap_or(u64::MAX);
             let runs = scene.elements / longest / sides;

@@ -9,7 +9,7 @@ use crate::parallel::with_team;
 use crate::render::layout::Layout;
 use crate::render::png::Png;
 use crate::render::scene::Scene;
-use crate::render::{Detail, Drawing, Options, Size};
+use crate::render::{Detail, Drawing, Options, ShortCut, ShortCuts, Size};
 use crate::style::{ColorBy, Colour, Style, Width};
 
 fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {
@@ -30,33 +30,37 @@ fn difference(a: &[u8], b: &[u8]) -> (u8, f64, f64) {
     (differences.max().unwrap(), mean, of_means.abs())
 }
 
-/// Compares a picture made with sprites, for an assumed large number of elements, with one without sprites.
-fn is_stamped(name: &str, style: impl FnOnce(&mut Style)) {
+/// Compares a picture made with sprites, for an assumed large number of elements, with one without sprites:
+/// to a detail of half a pixel, or of some steps.
+fn is_stamped(name: &str, steps: Option<u32>, style: impl FnOnce(&mut Style)) {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     let document = Document::read(&source, &catalogue).unwrap();
     let model = document.resolve(&[]).unwrap().0;
-    let graph = model.compile(30).unwrap();
+    let growth = Growth::steps(steps.unwrap_or(30));
+    let graph = model.compile(growth.steps).unwrap();
     let mut options = Options {
         size: Size::Long(128),
-        detail: Some(Detail {
+        detail: steps.is_none().then_some(Detail {
             pixels: 0.5,
             decides_steps: true,
         }),
         ..Options::of(model.metadata())
     };
     style(&mut options.style);
-    let growth = Growth::steps(30);
     let layout = Layout::find(&graph, &growth, &options).unwrap();
     let mut scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
-    // Assume enough elements for sprites.
-    scene.elements = u64::MAX;
+    // Assume enough elements for sprites on the finest grid, or on the coarsest.
+    scene.elements = steps.map_or(u64::MAX, |_| 1 << 20);
     if graph.seeds {
         scene.uses = 0;
     }
-    scene.is_to_detail = false;
+    let sprites = [ShortCut::RunSprites, ShortCut::ColonySprites];
+    scene.short_cuts = sprites
+        .into_iter()
+        .fold(ShortCuts::default(), ShortCuts::without);
     let one_by_one = drawn(&scene, 1);
-    scene.is_to_detail = true;
+    scene.short_cuts = ShortCuts::default();
     let placed = drawn(&scene, 1);
     // Squares of some fractals lie on the grid.
     let shows = placed != one_by_one || ["square-filled", "t-square"].contains(&name);
@@ -81,7 +85,14 @@ fn stamps_cover_what_elements_do() {
         "complex-pair",
         "snowflake-tiles",
     ] {
-        is_stamped(name, |_| {});
+        is_stamped(name, None, |_| {});
+    }
+}
+
+#[test]
+fn stamps_cover_what_lines_of_steps_do() {
+    for (name, steps) in [("dragon", 14), ("koch", 7), ("terdragon", 9), ("levy", 13)] {
+        is_stamped(name, Some(steps), |_| {});
     }
 }
 
@@ -94,7 +105,7 @@ fn stamps_cover_what_outlined_elements_do() {
         ("pentaflake", dark),
         ("pentaflake", light),
     ] {
-        is_stamped(name, |style| {
+        is_stamped(name, None, |style| {
             style.fill = Some(light);
             style.stroke = Some(stroke);
             style.width = Width::Pixels(0.8);
@@ -107,7 +118,7 @@ fn stamps_cover_what_outlined_elements_do() {
 fn stamps_cover_what_seeded_fractals_do() {
     for color_by in [ColorBy::Step, ColorBy::Generator, ColorBy::None] {
         for stroke in [Some(Colour::of_rgba([90, 47, 78, 255])), None] {
-            is_stamped("mandala", |style| {
+            is_stamped("mandala", None, |style| {
                 style.color_by = color_by;
                 style.stroke = stroke;
             });
