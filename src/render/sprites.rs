@@ -151,11 +151,7 @@ impl<'a> Sprites<'a> {
             ColorBy::Tint => graph.tints(),
             _ => false,
         };
-        scene.is_to_detail
-            && pass != Pass::Areas
-            && !numbers_change
-            && !scene.fills_strokes
-            && stands_alone(scene)
+        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && stands_alone(scene)
     }
 
     /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.
