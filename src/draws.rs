@@ -203,7 +203,7 @@ const SELECTION: &str = "the selection";
 
 /// Draws the index of an entry by weight; the weights are not negative and not all zero.
 #[must_use]
-pub fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
+pub(crate) fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
     let total: f64 = weights.clone().sum();
     let mut left = path.stream(hash_of_name(SELECTION)).unit() * total;
     let mut last = 0;

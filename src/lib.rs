@@ -71,7 +71,8 @@
 //! frame of the plane, with lines and curves as outlines, is the default. All models of today are of the plane.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
-//! written](written), [`draws`], [`count`]s, [`kind`]s and [`metadata`]. No room imports one above it.
+//! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s and [`Metadata`]. No room imports one
+//! above it.
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
 //! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
@@ -103,11 +104,11 @@ pub mod chaos;
 pub mod cli;
 mod compile;
 pub mod convert;
-pub mod count;
+mod count;
 pub mod diagnostic;
 mod digraph;
 pub mod document;
-pub mod draws;
+mod draws;
 pub mod estimate;
 pub mod export;
 pub mod expression;
@@ -121,10 +122,10 @@ pub mod grow;
 pub mod ifs;
 pub mod import;
 pub mod instancing;
-pub mod kind;
+mod kind;
 pub mod lsystem;
 pub mod measure;
-pub mod metadata;
+mod metadata;
 pub mod model;
 mod output_file;
 mod parallel;
@@ -135,11 +136,16 @@ mod resolve;
 pub mod rule;
 mod saturating;
 pub mod style;
-pub mod written;
+mod written;
 pub mod zoom;
 
+pub use count::Count;
+pub use draws::{Distribution, Path, Variable};
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
+pub use kind::Kind;
+pub use metadata::{Description, Metadata, Parameter};
 pub use output_file::WriteError;
+pub use written::{Written, WrittenNumber, WrittenPoint};
 
 /// Random rules for the tests of several modules.
 #[cfg(test)]

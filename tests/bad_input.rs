@@ -11,10 +11,10 @@ mod mutations;
 use std::fs;
 use std::path::Path;
 
+use kfrac::Parameter;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::metadata::Parameter;
 
 /// Returns all diagnostics that `kfrac check` reports for a rule.
 fn check(argument: &str, catalogue: &Catalogue) -> Result<Diagnostics, Diagnostics> {

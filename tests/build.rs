@@ -4,10 +4,10 @@ mod random;
 mod systems;
 
 use crate::common;
+use kfrac::Parameter;
 use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, RuleBuilder};
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
-use kfrac::metadata::Parameter;
 use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
 use kfrac::style::{Cap, Colour, Palette, Style, View, Width};
 

@@ -9,11 +9,11 @@ use std::collections::BTreeSet;
 use std::num::NonZero;
 
 use crate::common;
+use kfrac::Metadata;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::metadata::Metadata;
 use kfrac::model::Model;
 use kfrac::render::{self, NotInstanced, Options, Picture, RenderError, Size};
 use kfrac::style::{Cap, ColorBy, Colour, Join, Width};

@@ -8,8 +8,8 @@ use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::Arc;
 
+use kfrac::Count;
 use kfrac::catalogue::{Catalogue, Shelf};
-use kfrac::count::Count;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame2};

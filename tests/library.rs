@@ -10,8 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{self, compiled, document, document_of, grown, resolved};
+use kfrac::Count;
 use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
-use kfrac::count::Count;
 use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, TableFormat};
 use kfrac::geometry::{Bounds, DVec2};

@@ -13,8 +13,8 @@ use std::collections::BTreeSet;
 
 use crate::common::{self, Grown, compiled, document, grown, resolved};
 use data::{Entry, reference};
+use kfrac::Count;
 use kfrac::catalogue::{Catalogue, Shelf};
-use kfrac::count::Count;
 use kfrac::geometry::{Bounds, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, Growth};

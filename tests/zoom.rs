@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use std::convert::Infallible;
 
 use crate::common::{self, document, document_of};
+use kfrac::Path;
 use kfrac::document::Document;
-use kfrac::draws::Path;
 use kfrac::extent::NoLimit;
 use kfrac::geometry::{DAffine2, DVec2, Frame2};
 use kfrac::graph::{Graph, Replacement, Successor};

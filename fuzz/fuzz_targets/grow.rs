@@ -18,7 +18,7 @@ use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::export;
 use kfrac::geometry::{Bounds, DVec2};
-use kfrac::count::Count;
+use kfrac::Count;
 use kfrac::graph::{Graph, Level};
 use kfrac::extent::bounding_box;
 use kfrac::grow::{Growth, WalkError, Walked};

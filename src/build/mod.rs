@@ -32,7 +32,7 @@
 //!
 //! ```
 //! use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, RuleBuilder};
-//! use kfrac::metadata::Parameter;
+//! use kfrac::Parameter;
 //! use kfrac::rule::Placement;
 //!
 //! let roof = ElementsBuilder::new()

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use kfrac::Parameter;
 use kfrac::build::{
     ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilder, NumberText, RuleBuilder,
 };
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::graph::Graph;
-use kfrac::metadata::Parameter;
 use kfrac::rule::Placement;
 use proptest::collection::vec;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL};

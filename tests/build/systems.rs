@@ -1,10 +1,10 @@
 //! Systems and structures built in code are equal to those written in files.
 
+use kfrac::Parameter;
 use kfrac::build::{
     InstanceBuilder, MapBuilder, SetBuilder, StructureBuilder, SystemBuilder, UnionBuilder,
 };
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
-use kfrac::metadata::Parameter;
 use kfrac::model::Model;
 use kfrac::style::Colour;
 

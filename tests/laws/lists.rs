@@ -1,7 +1,7 @@
 //! Kaandorp's algorithm (1987, section 2.2) on lists: every fractal of an approximant is held in memory and
 //! replaced as a whole. Slow, and simple enough to be compared with the paper.
 
-use kfrac::draws::Path;
+use kfrac::Path;
 use kfrac::geometry::{DAffine2, DVec2, Direction, Frame2};
 use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
 

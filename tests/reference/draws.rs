@@ -1,6 +1,6 @@
 //! Rules with random functions: the reference fixes the facts that do not depend on draws.
 
-use kfrac::count::Count;
+use kfrac::Count;
 use kfrac::document::Setting;
 use kfrac::grow::Growth;
 
