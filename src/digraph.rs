@@ -47,3 +47,56 @@ pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
     }
     component
 }
+
+/// Edge of a directed graph, of any kind.
+pub(crate) trait Edge: Clone {
+    /// Returns the vertices that the edge leads from and to.
+    fn ends(&self) -> [usize; 2];
+
+    /// Returns the edge between other vertices.
+    fn between(&self, ends: [usize; 2]) -> Self;
+}
+
+impl Edge for [usize; 2] {
+    fn ends(&self) -> [usize; 2] {
+        *self
+    }
+
+    fn between(&self, ends: [usize; 2]) -> Self {
+        ends
+    }
+}
+
+/// Strongly connected part of a graph: its number of vertices, and the edges between them.
+pub(crate) type Part<E> = (usize, Vec<E>);
+
+/// Returns the number of the [component](components) of each vertex, and the graph within every component,
+/// whose vertices are numbered in order.
+pub(crate) fn parts<E: Edge>(size: usize, edges: &[E]) -> (Vec<usize>, Vec<Part<E>>) {
+    let mut targets = vec![Vec::new(); size];
+    for [from, to] in edges.iter().map(E::ends) {
+        targets[from].push(to);
+    }
+    let component = components(&targets);
+    let mut parts: Vec<Part<E>> = vec![(0, Vec::new()); count(&component)];
+    let number = |&part: &usize| {
+        parts[part].0 += 1;
+        parts[part].0 - 1
+    };
+    let numbers: Vec<usize> = component.iter().map(number).collect();
+    for edge in edges {
+        let ends = edge.ends();
+        let [from, to] = ends.map(|vertex| component[vertex]);
+        if from == to {
+            parts[from]
+                .1
+                .push(edge.between(ends.map(|vertex| numbers[vertex])));
+        }
+    }
+    (component, parts)
+}
+
+/// Returns the number of components.
+pub(crate) fn count(component: &[usize]) -> usize {
+    component.iter().max().map_or(0, |most| most + 1)
+}

@@ -129,6 +129,7 @@ mod metadata;
 pub mod model;
 mod output_file;
 mod parallel;
+mod priority;
 mod random;
 mod readable;
 pub mod render;

@@ -6,6 +6,7 @@ pub(crate) mod adversary;
 use std::collections::{BTreeMap, VecDeque};
 use std::num::NonZero;
 use std::panic::{self, AssertUnwindSafe};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -14,6 +15,11 @@ use std::thread;
 #[must_use]
 pub(crate) fn all_cores() -> NonZero<usize> {
     thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
+}
+
+/// Returns whether a flag that cancels work is set.
+pub(crate) fn is_cancelled(cancel: Option<&AtomicBool>) -> bool {
+    cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
 }
 
 /// Applies `work` to every item, in any order on at most `threads` threads, including the calling one.
@@ -42,6 +48,20 @@ pub(crate) fn for_each<T: Send>(
         }
         work_on();
     });
+}
+
+/// Returns the results of `work` for every item and its number, in the order of the items.
+pub(crate) fn map<I: Sync, T: Send>(
+    items: &[I],
+    threads: usize,
+    work: impl Fn(usize, &I) -> T + Sync,
+) -> Vec<T> {
+    let mut results: Vec<Option<T>> = items.iter().map(|_| None).collect();
+    let slots = items.iter().enumerate().zip(&mut results);
+    for_each(slots, threads, |((number, item), result)| {
+        *result = Some(work(number, item));
+    });
+    results.into_iter().flatten().collect()
 }
 
 /// A pool of threads that execute submitted jobs. The thread that submits them helps while it waits.

@@ -29,11 +29,10 @@ pub use system::{SystemError, WeightedMaps};
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 use crate::geometry::DVec2;
 use crate::grow::Progress;
-use crate::parallel::all_cores;
+use crate::parallel::{all_cores, map};
 
 use self::course::Course;
 use self::tally::{Cancelled, Tally};
@@ -208,17 +207,9 @@ pub fn play(
         .min(MOST_BINS_OF_THREADS / bins as u64)
         .min(course.waves())
         .max(1);
-    let walked: Result<(), Cancelled> = thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(walk)).collect();
-        let mut walked = walk();
-        for other in others {
-            match other.join() {
-                Ok(other) => walked = walked.and(other),
-                Err(cause) => std::panic::resume_unwind(cause),
-            }
-        }
-        walked
-    });
+    let threads = usize::try_from(threads).unwrap_or(1);
+    let walked = map(&vec![(); threads], threads, |_, ()| walk());
+    let walked: Result<(), Cancelled> = walked.into_iter().collect();
     walked.map_err(|Cancelled| GameError::Cancelled)?;
     let counts = all.into_inner().unwrap_or_else(PoisonError::into_inner);
     let counts = counts.unwrap_or_else(|| vec![0; bins]);

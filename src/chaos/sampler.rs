@@ -1,8 +1,8 @@
 //! Uniform sampling of points from shapes.
 
-use crate::geometry::DVec2;
+use crate::geometry::{DAffine2, DVec2};
 use crate::ifs::Shape;
-use crate::rule::{self, BaseElement};
+use crate::rule::BaseElement;
 
 use super::random::Scalar;
 
@@ -71,10 +71,7 @@ impl Sampler {
     }
 
     fn of_outline(outline: &BaseElement) -> Option<Self> {
-        let mut corners = vec![outline.start()];
-        for piece in outline.pieces() {
-            add_chords(&mut corners, piece);
-        }
+        let corners = outline.corners(&DAffine2::IDENTITY, CHORDS);
         if !corners.iter().all(|corner| corner.is_finite()) {
             return None;
         }
@@ -126,19 +123,6 @@ impl Sampler {
                 a + (b - a) * u + (c - a) * v
             }
         }
-    }
-}
-
-/// Appends the corners of a piece, except its start, which is the last corner.
-fn add_chords(corners: &mut Vec<DVec2>, piece: &rule::Piece) {
-    let from = corners[corners.len() - 1];
-    match *piece {
-        rule::Piece::Line(end) => corners.push(end),
-        rule::Piece::Cubic(a, b, end) => corners.extend((1..=CHORDS).map(|chord| {
-            let t = f64::from(chord) / f64::from(CHORDS);
-            let s = 1.0 - t;
-            s * s * s * from + 3.0 * s * t * (s * a + t * b) + t * t * t * end
-        })),
     }
 }
 

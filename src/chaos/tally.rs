@@ -1,9 +1,10 @@
 //! Counters of a thread, with progress and cancellation.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use crate::grow::Progress;
+use crate::parallel::is_cancelled;
 
 use super::walkers::Bins;
 
@@ -79,9 +80,9 @@ impl<'a> Tally<'a> {
             self.hand_in(counts);
             self.counted = 0;
         }
-        match self.cancel {
-            Some(cancel) if cancel.load(Ordering::Relaxed) => Err(Cancelled),
-            _ => Ok(()),
+        match is_cancelled(self.cancel) {
+            true => Err(Cancelled),
+            false => Ok(()),
         }
     }
 

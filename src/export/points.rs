@@ -1,10 +1,11 @@
 //! Points of random iteration as a table.
 
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use crate::chaos::RandomPoint;
 use crate::grow::{Progress, WalkError};
+use crate::parallel::is_cancelled;
 
 use super::TableFormat;
 
@@ -31,7 +32,7 @@ pub fn write_points(
     }
     for (number, point) in (1u64..).zip(points) {
         if number.is_multiple_of(MANY) {
-            if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+            if is_cancelled(cancel) {
                 return Err(WalkError::Cancelled);
             }
             if let Some(progress) = progress {

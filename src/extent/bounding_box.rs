@@ -2,10 +2,10 @@
 
 use std::convert::Infallible;
 
-use crate::geometry::{Bounds, Frame, Frame2, Outline};
+use crate::geometry::Bounds;
 use crate::graph::Graph;
 
-use crate::grow::{Element, Enter, FractalInfo, Growth, Visitor, WalkError, walk};
+use crate::grow::{Counter, Enter, Growth, WalkError, walk};
 
 use super::{Bounded, Reaches, search};
 
@@ -31,34 +31,7 @@ pub fn bounding_box<F: Bounded>(
     if let Some(bounds) = search(graph, growth, &reaches, |_| Enter::Replace) {
         return Ok(bounds);
     }
-    let mut extent = Extent {
-        graph,
-        bounds: Bounds::EMPTY,
-    };
-    walk(graph, growth, &mut extent)?;
-    Ok(extent.bounds)
-}
-
-struct Extent<'g, F: Frame = Frame2> {
-    graph: &'g Graph<F>,
-    bounds: Bounds<F::Point>,
-}
-
-impl<F: Frame> Visitor<F> for Extent<'_, F> {
-    type Error = Infallible;
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn element(&mut self, element: &Element<F>) -> Result<(), Infallible> {
-        if let Some(base_element) = self.graph.drawn(element.object) {
-            base_element.add_to(&mut self.bounds, &element.frame, 0.0);
-        }
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
+    let mut counter = Counter::one_by_one(graph);
+    walk(graph, growth, &mut counter)?;
+    Ok(counter.bounds)
 }

@@ -236,16 +236,9 @@ impl<F: Bounded> Graph<F> {
     /// every later level; for the limit, infinitely often. The latter are objects that lead to a visible
     /// kept object, or to visible objects for ever.
     pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
-        let leads = |object: usize, to: &[bool]| match &self.objects[object].replacement {
-            Replacement::Fixed(successor) => {
-                let seeds = successor
-                    .seeds
-                    .iter()
-                    .flat_map(|seed| &seed.chain.instances);
-                let mut all = successor.body.instances.iter().chain(seeds);
-                all.any(|instance| to[instance.object])
-            }
-            _ => false,
+        let leads = |object: usize, to: &[bool]| {
+            self.children(object)
+                .any(|(_, instance)| to[instance.object])
         };
         let ends = |object: usize| {
             !self.is_fertile(object)
@@ -254,19 +247,16 @@ impl<F: Bounded> Graph<F> {
         let drawn = |object: usize, set: &[bool]| {
             self.objects[object].visible && (ends(object) || leads(object, set))
         };
-        let mut set = vec![true; self.objects.len()];
-        loop {
-            let start: Vec<bool> = (0..set.len()).map(|object| drawn(object, &set)).collect();
-            let next = if limit {
-                closure(start, |object, set| set[object] || leads(object, set))
-            } else {
-                start
-            };
-            if next == set {
-                return set;
+        settled(vec![true; self.objects.len()], |set| {
+            let start = (0..set.len()).map(|object| drawn(object, set)).collect();
+            if !limit {
+                return start;
             }
-            set = next;
-        }
+            settled(start, |set| {
+                let member = |object: usize| set[object] || leads(object, set);
+                (0..set.len()).map(member).collect()
+            })
+        })
     }
 
     fn support(&self, direction: F::Point, steps: Option<u32>, reach: &Reach<F>) -> Option<f64> {
@@ -281,7 +271,7 @@ impl<F: Bounded> Graph<F> {
             let mut certain = best;
             for state in &states {
                 let object = &self.objects[state.object];
-                let kept = matches!(object.replacement, Replacement::Kept);
+                let kept = object.is_kept();
                 if (kept || last) && object.visible {
                     let base_element = &self.base_elements()[object.base_element];
                     let pad = reach.pads[state.object] * state.vector.length();
@@ -305,7 +295,7 @@ impl<F: Bounded> Graph<F> {
                 if hopeless || dead {
                     continue;
                 }
-                if let Replacement::Fixed(successor) = &self.objects[state.object].replacement {
+                if let Some(successor) = self.objects[state.object].successor() {
                     // A state that is not certain to draw at this step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
@@ -321,14 +311,10 @@ impl<F: Bounded> Graph<F> {
                         }
                         continue;
                     }
-                    let seeds = successor
-                        .seeds
-                        .iter()
-                        .flat_map(|seed| &seed.chain.instances);
-                    let all = successor.body.instances.iter().chain(seeds);
-                    next.extend(
-                        all.map(|instance| child(instance, state.vector, state.offset, state.lost)),
-                    );
+                    let all = successor.placed_instances();
+                    next.extend(all.map(|(_, instance)| {
+                        child(instance, state.vector, state.offset, state.lost)
+                    }));
                     if next.len() > MOST_WORK {
                         return None;
                     }
@@ -371,10 +357,10 @@ impl<F: Bounded> ApproximantBounds<'_, F> {
     }
 }
 
-/// Iterates a membership rule on all members of a set until it is a fixed point.
-fn closure(mut set: Vec<bool>, member: impl Fn(usize, &[bool]) -> bool) -> Vec<bool> {
+/// Iterates a function of sets from a set until it changes nothing.
+pub(crate) fn settled(mut set: Vec<bool>, next: impl Fn(&[bool]) -> Vec<bool>) -> Vec<bool> {
     loop {
-        let next: Vec<bool> = (0..set.len()).map(|object| member(object, &set)).collect();
+        let next = next(&set);
         if next == set {
             return set;
         }

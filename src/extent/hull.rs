@@ -7,7 +7,7 @@ use crate::ifs::Shrinking;
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::contract::Products;
 use super::policy::{farthest, followed, rightmost};
-use crate::graph::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance};
 
 /// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-14;
@@ -279,7 +279,7 @@ impl Graph {
     }
 
     fn is_replaced(&self, object: usize) -> bool {
-        matches!(self.objects[object].replacement, Replacement::Fixed(_))
+        self.objects[object].successor().is_some()
     }
 }
 

@@ -22,5 +22,6 @@ mod search;
 pub use bounded::{Bounded, Fineness, Hulls, Own};
 pub use bounding_box::bounding_box;
 pub use bounds::ApproximantBounds;
+pub(crate) use bounds::settled;
 pub use limit::{Limit, NoLimit};
 pub(crate) use search::{Reaches, search};

@@ -1,16 +1,16 @@
 //! Bounding box of an approximant by branch and bound (Land & Doig 1960): an element is replaced only if its
 //! subtree may extend beyond the box found so far.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-use std::sync::atomic::{AtomicBool, Ordering as AtomicOrdering};
 
 use crate::geometry::{Bounds, Frame, Outline, Point};
-use crate::graph::{Graph, Replacement, Successor};
+use crate::graph::{Graph, Successor};
 
 use crate::grow::{
     Enter, Evaluator, Growth, ReplacementContext, Standing, Subtree, seed_placement,
 };
+use crate::parallel::is_cancelled;
+use crate::priority::Keyed;
 
 /// Maximum number of replacements; beyond it the search is abandoned.
 const MOST_WORK: usize = 1 << 18;
@@ -31,28 +31,6 @@ struct Node<F: Frame> {
     /// Step of birth of its fractal.
     born: u32,
     level: u32,
-    /// Upper bound of the subtree's extent in the direction of the search.
-    farthest: f64,
-}
-
-impl<F: Frame> PartialEq for Node<F> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<F: Frame> Eq for Node<F> {}
-
-impl<F: Frame> PartialOrd for Node<F> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<F: Frame> Ord for Node<F> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.farthest.total_cmp(&other.farthest)
-    }
 }
 
 struct Search<'a, F: Frame, E> {
@@ -64,7 +42,8 @@ struct Search<'a, F: Frame, E> {
     bounds: Bounds<F::Point>,
     /// Direction in which the search maximises.
     direction: F::Point,
-    heap: BinaryHeap<Node<F>>,
+    /// Elements by the upper bounds of their subtrees' extent in that direction.
+    heap: BinaryHeap<Keyed<Node<F>>>,
 }
 
 /// Computes the bounding box that a walk with `enter` as its visitor's decision would find, bit by bit.
@@ -100,13 +79,12 @@ pub(crate) fn search<F: Frame>(
         for instance in &graph.initiator(growth.steps).instances {
             search.add(whole.root(graph, instance), instance.object, 0, 0);
         }
-        while let Some(node) = search.heap.pop() {
-            if node.farthest <= search.found() {
+        while let Some(Keyed { key, item: node }) = search.heap.pop() {
+            if key <= search.found() {
                 break;
             }
             work += 1;
-            let is_cancelled = |cancel: &AtomicBool| cancel.load(AtomicOrdering::Relaxed);
-            if work > MOST_WORK || growth.cancel.is_some_and(is_cancelled) {
+            if work > MOST_WORK || is_cancelled(growth.cancel) {
                 return None;
             }
             let moment = ReplacementContext {
@@ -114,16 +92,9 @@ pub(crate) fn search<F: Frame>(
                 level: node.level,
                 rank: 0,
             };
-            let successor = match &graph.objects()[node.object].replacement {
-                Replacement::Fixed(successor) => successor,
-                _ => {
-                    let evaluated =
-                        evaluator.evaluate(graph, &node.standing, node.object, moment, &mut drawn);
-                    evaluated.ok()?;
-                    &drawn
-                }
-            };
-            search.replace(&node, successor);
+            let successor =
+                evaluator.successor(graph, &node.standing, node.object, moment, &mut drawn);
+            search.replace(&node, successor.ok()?);
         }
     }
     Some(search.bounds)
@@ -164,7 +135,7 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
             born: level,
         };
         let own = &self.graph.objects()[object];
-        let ends = matches!(own.replacement, Replacement::Kept) || level == self.steps;
+        let ends = !self.graph.is_fertile(object) || level == self.steps;
         let enter = if ends {
             Enter::Keep
         } else {
@@ -183,13 +154,14 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
                 let farthest =
                     middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;
                 if farthest > self.found() {
-                    self.heap.push(Node {
+                    let item = Node {
                         standing,
                         object,
                         born,
                         level,
-                        farthest,
-                    });
+                    };
+                    let key = farthest;
+                    self.heap.push(Keyed { key, item });
                 }
             }
         }

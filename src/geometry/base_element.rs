@@ -21,6 +21,18 @@ impl Piece {
         }
     }
 
+    /// Returns the point at the parameter `t`, from 0 to 1, of the piece from a point on.
+    #[must_use]
+    pub fn at(&self, from: DVec2, t: f64) -> DVec2 {
+        match *self {
+            Self::Line(end) => from.lerp(end, t),
+            Self::Cubic(a, b, end) => {
+                let s = 1.0 - t;
+                s * s * s * from + 3.0 * s * t * (s * a + t * b) + t * t * t * end
+            }
+        }
+    }
+
     /// Returns the image of the piece under a map.
     #[inline]
     #[must_use]
@@ -160,6 +172,23 @@ impl BaseElement {
         ]
     }
 
+    /// Returns the corners of the outline's image under a map, in the order of listing, with every curve divided
+    /// into a number of chords.
+    pub(crate) fn corners(&self, map: &DAffine2, chords: u32) -> Vec<DVec2> {
+        let mut from = map.transform_point2(self.start);
+        let mut corners = vec![from];
+        for piece in &self.pieces {
+            let piece = piece.transformed(map);
+            if let Piece::Cubic(..) = piece {
+                let inner = (1..chords).map(|chord| f64::from(chord) / f64::from(chords));
+                corners.extend(inner.map(|t| piece.at(from, t)));
+            }
+            from = piece.end();
+            corners.push(from);
+        }
+        corners
+    }
+
     /// Iterates over points whose convex hull contains the outline: the ends of pieces, and the control
     /// points of curves.
     pub(crate) fn control_points(&self) -> impl Iterator<Item = DVec2> {
@@ -199,20 +228,12 @@ impl BaseElement {
 }
 
 impl Outline<Frame2> for BaseElement {
-    fn is_closed(&self) -> bool {
-        self.closed
-    }
-
-    fn is_line(&self) -> bool {
-        self.is_line()
-    }
-
-    fn ends_meet_frame(&self) -> [bool; 2] {
-        self.ends_meet_frame()
-    }
-
-    fn signed_area(&self) -> f64 {
-        self.signed_area
+    forward! {
+        is_closed(&self) -> bool;
+        is_line(&self) -> bool;
+        ends_meet_frame(&self) -> [bool; 2];
+        signed_area(&self) -> f64;
+        add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) -> ();
     }
 
     fn support(&self, direction: DVec2) -> f64 {
@@ -228,10 +249,6 @@ impl Outline<Frame2> for BaseElement {
             from = end;
         }
         largest
-    }
-
-    fn add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) {
-        self.add_to(bounds, frame, pad);
     }
 
     fn add_corners(&self, corners: &mut Corners2, frame: &Frame2) -> bool {

@@ -47,6 +47,12 @@ impl<P: Point> Bounds<P> {
         }
     }
 
+    /// Returns the centre of the box; not finite if the box is empty.
+    #[must_use]
+    pub fn centre(&self) -> P {
+        (self.min + self.max) / 2.0
+    }
+
     /// Returns `true` if the box holds no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -194,34 +194,18 @@ impl Frame for Frame2 {
 
     const UNIT: Self = Self::UNIT;
 
-    #[inline]
-    fn compose(&self, inner: &Self) -> Self {
-        self.compose(inner)
-    }
-
-    #[inline]
-    fn direction(&self) -> Direction {
-        self.direction()
-    }
-
-    #[inline]
-    fn with_direction(&self, direction: Direction) -> Self {
-        self.with_direction(direction)
-    }
-
-    #[inline]
-    fn origin(&self) -> DVec2 {
-        self.origin()
-    }
-
-    #[inline]
-    fn moved_to(&self, origin: DVec2) -> Self {
-        self.moved_to(origin)
-    }
-
-    #[inline]
-    fn apply(&self, point: DVec2) -> DVec2 {
-        self.apply(point)
+    forward! {
+        compose(&self, inner: &Self) -> Self;
+        direction(&self) -> Direction;
+        with_direction(&self, direction: Direction) -> Self;
+        origin(&self) -> DVec2;
+        moved_to(&self, origin: DVec2) -> Self;
+        apply(&self, point: DVec2) -> DVec2;
+        ends(&self) -> [DVec2; 2];
+        length(&self) -> f64;
+        stretch(&self) -> f64;
+        area(&self) -> f64;
+        is_in_range(&self) -> bool;
     }
 
     #[inline]
@@ -230,35 +214,10 @@ impl Frame for Frame2 {
     }
 
     #[inline]
-    fn ends(&self) -> [DVec2; 2] {
-        self.ends()
-    }
-
-    #[inline]
-    fn length(&self) -> f64 {
-        self.length()
-    }
-
-    #[inline]
-    fn stretch(&self) -> f64 {
-        self.stretch()
-    }
-
-    #[inline]
-    fn area(&self) -> f64 {
-        self.area()
-    }
-
-    #[inline]
     fn is_similarity(&self, ratio: f64) -> bool {
         const ROUNDING: f64 = 1e-12;
         let square = ratio * ratio;
         (self.area() - square).abs() <= ROUNDING * square
-    }
-
-    #[inline]
-    fn is_in_range(&self) -> bool {
-        self.is_in_range()
     }
 }
 

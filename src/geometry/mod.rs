@@ -4,6 +4,9 @@
 //! [`glam::DVec2`], affine maps [`glam::DAffine2`] (they act on column vectors, so `f * g` applies
 //! `g` first).
 
+#[macro_use]
+mod forward;
+
 mod base_element;
 mod bounds;
 mod corners;

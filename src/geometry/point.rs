@@ -98,34 +98,17 @@ macro_rules! point {
                 all
             }
 
-            #[inline]
-            fn min(self, other: Self) -> Self {
-                self.min(other)
-            }
-
-            #[inline]
-            fn max(self, other: Self) -> Self {
-                self.max(other)
-            }
-
-            #[inline]
-            fn max_element(self) -> f64 {
-                self.max_element()
+            forward! {
+                min(self, other: Self) -> Self;
+                max(self, other: Self) -> Self;
+                max_element(self) -> f64;
+                normalize_or_zero(self) -> Self;
+                dot(self, other: Self) -> f64;
             }
 
             #[inline]
             fn map(self, function: impl Fn(f64) -> f64) -> Self {
                 Self::from_array(self.to_array().map(function))
-            }
-
-            #[inline]
-            fn normalize_or_zero(self) -> Self {
-                self.normalize_or_zero()
-            }
-
-            #[inline]
-            fn dot(self, other: Self) -> f64 {
-                self.dot(other)
             }
 
             #[inline]

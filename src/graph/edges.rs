@@ -74,20 +74,27 @@ impl<F: Frame> Graph<F> {
     /// of such an object does not shrink with the object.
     #[must_use]
     pub fn resets(&self) -> Vec<bool> {
-        self.leading_to(|object| self.places_as_initiator(object))
+        self.leading_to(|object| {
+            let mut placements = self.placements(object);
+            placements.any(|placement| placement == Placement::SeedsAsInitiator)
+        })
     }
 
     /// Returns, for every object, whether it leads to seeds.
     pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
-        self.leading_to(|object| match &self.objects[object].replacement {
-            Replacement::Fixed(successor) => !successor.seeds.is_empty(),
-            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                let parts = self.parts(alternative);
-                parts.iter().any(|part| part.placement.seeds())
-            }),
-            Replacement::Kept => false,
-            Replacement::Unresolved => true,
+        self.leading_to(|object| {
+            matches!(self.objects[object].replacement, Replacement::Unresolved)
+                || self.placements(object).any(Placement::seeds)
         })
+    }
+
+    /// Iterates over the placements of the seeds, and of the parts of random successors, of an object.
+    fn placements(&self, object: usize) -> impl Iterator<Item = Placement> {
+        let object = &self.objects[object];
+        let seeds = object.successor().into_iter().flat_map(|it| &it.seeds);
+        let parts = object.alternatives().iter().flat_map(|it| self.parts(it));
+        let parts = parts.map(|part| part.placement);
+        seeds.map(|seed| seed.placement).chain(parts)
     }
 
     /// Returns, for every object, whether it is of a kind or may lead to an object of the kind.
@@ -111,13 +118,8 @@ impl<F: Frame> Graph<F> {
         &self,
         object: usize,
     ) -> impl Iterator<Item = (Placement, &Instance<F>)> {
-        let successor = match &self.objects[object].replacement {
-            Replacement::Fixed(successor) => Some(successor),
-            _ => None,
-        };
-        successor
-            .into_iter()
-            .flat_map(|successor| successor.placed_instances())
+        let successor = self.objects[object].successor().into_iter();
+        successor.flat_map(|successor| successor.placed_instances())
     }
 
     /// Iterates over all instances of fixed successors, with their placements.
@@ -137,27 +139,9 @@ impl<F: Frame> Graph<F> {
 
     /// Iterates over the objects that may take an object's place or that it may seed.
     fn successors(&self, object: usize) -> impl Iterator<Item = usize> {
-        let alternatives = match &self.objects[object].replacement {
-            Replacement::Evaluated(alternatives) => Some(alternatives),
-            _ => None,
-        };
-        let drawn = alternatives.into_iter().flat_map(|all| all.iter());
+        let drawn = self.objects[object].alternatives().iter();
         let fixed = self.children(object).map(|(_, instance)| instance.object);
         fixed.chain(drawn.flat_map(|alternative| alternative.objects.iter().copied()))
-    }
-
-    fn places_as_initiator(&self, object: usize) -> bool {
-        match &self.objects[object].replacement {
-            Replacement::Fixed(successor) => successor
-                .seeds
-                .iter()
-                .any(|seed| seed.placement == Placement::SeedsAsInitiator),
-            Replacement::Evaluated(alternatives) => alternatives.iter().any(|alternative| {
-                let mut parts = self.parts(alternative).iter();
-                parts.any(|part| part.placement == Placement::SeedsAsInitiator)
-            }),
-            Replacement::Kept | Replacement::Unresolved => false,
-        }
     }
 
     /// Returns the largest ratio of edges to objects that may be fertile.

@@ -37,7 +37,7 @@ pub(crate) use source::{Buffers, Source};
 
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame, Frame2, Homothety, Point};
+use crate::geometry::{Bounds, DVec2, Frame, Frame2, Homothety, Point};
 use crate::instancing::{Appearance, Thickness, Tint};
 use crate::rule::{Part, Placement};
 use crate::style::Colour;
@@ -172,7 +172,62 @@ pub struct Graph<F: Frame = Frame2> {
     pub(crate) place: Homothety<F::Point>,
 }
 
+impl<F: Frame> Chain<F> {
+    /// Creates a chain that meets no end of the frame it is in.
+    pub(crate) fn loose(instances: Vec<Instance<F>>) -> Self {
+        Self {
+            instances,
+            meets_frame: [false; 2],
+        }
+    }
+}
+
+impl<F: Frame> From<Chain<F>> for Successor<F> {
+    fn from(body: Chain<F>) -> Self {
+        Self {
+            body,
+            seeds: Vec::new(),
+        }
+    }
+}
+
+impl<F: Frame> Instance<F> {
+    /// Creates an instance of an object that joins none before it, of the length of its frame.
+    pub(crate) fn new(object: usize, frame: F, position: u32) -> Self {
+        Self {
+            length: frame.length(),
+            frame,
+            joined: false,
+            position,
+            object,
+        }
+    }
+}
+
 impl<F: Frame> Object<F> {
+    /// Returns whether the object is never replaced.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        matches!(self.replacement, Replacement::Kept)
+    }
+
+    /// Returns the successors that replace elements of the object in turn or at random; empty for others.
+    pub(crate) fn alternatives(&self) -> &[Alternative] {
+        match &self.replacement {
+            Replacement::Evaluated(alternatives) => alternatives,
+            _ => &[],
+        }
+    }
+
+    /// Returns the successor of the object, if it is the same for all its elements.
+    #[must_use]
+    pub fn successor(&self) -> Option<&Arc<Successor<F>>> {
+        match &self.replacement {
+            Replacement::Fixed(successor) => Some(successor),
+            _ => None,
+        }
+    }
+
     /// Creates a visible object of a base element that is kept, without origin and appearance.
     pub(crate) fn kept(base_element: usize) -> Self {
         Self {
@@ -309,7 +364,7 @@ impl<F: Frame> Graph<F> {
     #[inline]
     #[must_use]
     pub fn is_fertile(&self, object: usize) -> bool {
-        !matches!(self.objects[object].replacement, Replacement::Kept)
+        !self.objects[object].is_kept()
     }
 
     /// Returns the base element of an object that is drawn.
@@ -408,6 +463,15 @@ impl<F: Frame> Graph<F> {
             .objects
             .iter()
             .any(|object| matches!(object.replacement, Replacement::Evaluated(_)))
+    }
+}
+
+impl<F: Frame> Graph<F> {
+    /// Sets the centre and the unit of length to those of the box of what is drawn.
+    pub(crate) fn set_extent(&mut self, bounds: &Bounds<F::Point>) {
+        self.middle = bounds.centre();
+        let size = bounds.size().max_element();
+        self.unit = if size > 0.0 { size } else { 1.0 };
     }
 }
 

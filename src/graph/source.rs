@@ -74,12 +74,7 @@ impl Source<Frame2> for Rule {
     }
 
     fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent> {
-        let generator = &self.generators()[generator];
-        if power.is_infinite() {
-            generator.extents(moments)
-        } else {
-            generator.means(power, moments)
-        }
+        self.generators()[generator].extents(power, moments)
     }
 
     fn rule(&self) -> Option<&Rule> {

@@ -93,8 +93,7 @@ impl Census {
             }
             let mut next = Standing::new();
             for kind in standing.values_mut() {
-                let Replacement::Fixed(successor) = &graph.objects()[kind.object].replacement
-                else {
+                let Some(successor) = graph.objects()[kind.object].successor() else {
                     continue;
                 };
                 if step == steps {

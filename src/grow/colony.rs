@@ -228,7 +228,7 @@ impl ColonyKinds {
             }
             let mut next = Fertile::new();
             for ((object, direction, ..), (linear, count)) in standing {
-                let Replacement::Fixed(successor) = &graph.objects()[object].replacement else {
+                let Some(successor) = graph.objects()[object].successor() else {
                     continue;
                 };
                 if stretch(&linear) < shortest {

@@ -6,7 +6,7 @@ use std::num::NonZero;
 use crate::geometry::{Bounds, DVec2, Frame, Outline};
 use crate::graph::Graph;
 
-use super::{Element, FractalInfo, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
+use super::{Element, Growth, Run, Visitor, WalkError, Walked, walk_in_spans};
 
 /// Number of elements in a span. Counting is fast: only long spans are worth the overhead.
 const MANY: u64 = 1 << 16;
@@ -38,10 +38,8 @@ pub fn count<F: Frame>(
     threads: NonZero<usize>,
 ) -> Result<Counted<F::Point>, WalkError<Infallible>> {
     let none = Counter {
-        graph,
-        fertile: 0,
-        length: 0.0,
-        bounds: Bounds::EMPTY,
+        takes_runs: true,
+        ..Counter::one_by_one(graph)
     };
     let mut all = none;
     let walked = walk_in_spans(
@@ -68,22 +66,33 @@ pub fn count<F: Frame>(
 
 /// Visitor that counts elements and extends a box.
 #[derive(Clone, Copy)]
-struct Counter<'g, F: Frame> {
+pub(crate) struct Counter<'g, F: Frame> {
     graph: &'g Graph<F>,
+    takes_runs: bool,
     fertile: u64,
     length: f64,
-    bounds: Bounds<F::Point>,
+    /// Box of the visible elements.
+    pub(crate) bounds: Bounds<F::Point>,
+}
+
+impl<'g, F: Frame> Counter<'g, F> {
+    /// Creates a visitor of elements, which takes no runs of them.
+    pub(crate) fn one_by_one(graph: &'g Graph<F>) -> Self {
+        Self {
+            graph,
+            takes_runs: false,
+            fertile: 0,
+            length: 0.0,
+            bounds: Bounds::EMPTY,
+        }
+    }
 }
 
 impl<F: Frame> Visitor<F> for Counter<'_, F> {
     type Error = Infallible;
 
     fn takes_runs(&self) -> bool {
-        true
-    }
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
+        self.takes_runs
     }
 
     fn element(&mut self, element: &Element<F>) -> Result<(), Infallible> {
@@ -99,10 +108,6 @@ impl<F: Frame> Visitor<F> for Counter<'_, F> {
         self.fertile += run.fertile();
         self.length += run.length();
         run.add_to(&mut self.bounds);
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }

@@ -1,19 +1,17 @@
 //! Elements of an approximant as an iterator.
 
 use std::convert::Infallible;
-use std::ops::RangeInclusive;
 
 use crate::geometry::{Frame, Frame2};
 use crate::graph::Graph;
 
-use super::colony::{Colony, Taken};
 use super::descent::Descent;
 use super::found::{Found, Next, Stop};
 use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
 use super::walk::Sink;
-use super::{Element, Enter, FractalInfo, Growth, Subtree, WalkError};
+use super::{Element, Enter, FractalInfo, Growth, WalkError};
 
 impl<F: Frame> Element<F> {
     #[inline]
@@ -129,34 +127,6 @@ struct Counts<'g>(Tally<'g>);
 impl<'g, F: Frame> Sink<'g, F> for Counts<'_> {
     type Error = WalkError<Infallible>;
 
-    fn enter(&mut self, _: &Subtree<F>) -> Enter {
-        Enter::Replace
-    }
-
-    fn ages(&self) -> RangeInclusive<u32> {
-        0..=u32::MAX
-    }
-
-    fn begin(&mut self, _: FractalInfo, _: u32) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
-    fn found(&mut self, _: Next<'_, F>) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
-    fn takes(&self, _: &Colony<'_, F>) -> Taken {
-        Taken::Nothing
-    }
-
-    fn colony(&mut self, _: Colony<'g, F>, _: Taken) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
     fn visit(&mut self, count: u64) -> Result<(), Self::Error> {
         self.0.visit(count)
     }
@@ -186,10 +156,6 @@ mod tests {
 
         fn element(&mut self, element: &Element) -> Result<(), Infallible> {
             self.all.push(format!("{:?}", (self.fractal, element)));
-            Ok(())
-        }
-
-        fn end(&mut self, _: bool) -> Result<(), Infallible> {
             Ok(())
         }
     }

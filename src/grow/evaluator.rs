@@ -35,6 +35,22 @@ impl ReplacementContext {
 pub(crate) struct Evaluator<F: Frame = Frame2>(Buffers<F>);
 
 impl<F: Frame> Evaluator<F> {
+    /// Returns the successor of an element that is replaced: a fixed one, or `made`, which is evaluated.
+    pub(crate) fn successor<'s>(
+        &mut self,
+        graph: &'s Graph<F>,
+        standing: &Standing<F>,
+        object: usize,
+        moment: ReplacementContext,
+        made: &'s mut Successor<F>,
+    ) -> Result<&'s Successor<F>, CompileError> {
+        if let Some(successor) = graph.objects()[object].successor() {
+            return Ok(successor);
+        }
+        self.evaluate(graph, standing, object, moment, made)?;
+        Ok(made)
+    }
+
     /// Computes the successor of an object that is [`Replacement::Evaluated`], and overwrites `successor`.
     pub(crate) fn evaluate(
         &mut self,

@@ -35,6 +35,7 @@ mod tests;
 
 pub use block::{LineElement, Run};
 pub use colony::{Colony, Taken};
+pub(crate) use count::Counter;
 pub use count::{Counted, count};
 pub use elements::Elements;
 pub(crate) use outlines::{OutlineError, outlines};
@@ -133,7 +134,9 @@ pub trait Visitor<F: Frame = Frame2> {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Self::Error>;
+    fn begin(&mut self, _: FractalInfo) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// Resumes a fractal that an earlier span of the walk began.
     fn go_on(&mut self, _: FractalInfo) {}
@@ -211,7 +214,9 @@ pub trait Visitor<F: Frame = Frame2> {
     /// # Errors
     ///
     /// Returns an error to end the walk.
-    fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
+    fn end(&mut self, _: bool) -> Result<(), Self::Error> {
+        Ok(())
+    }
 }
 
 /// Error of a walk.
@@ -239,4 +244,17 @@ pub enum WalkError<E> {
     /// Error that the visitor returned.
     #[error("{0}")]
     Visitor(E),
+}
+
+impl<E> WalkError<E> {
+    /// Replaces the error of a visitor by the result of `map`.
+    pub(crate) fn map_visitor<T>(self, map: impl FnOnce(E) -> T) -> WalkError<T> {
+        match self {
+            Self::TooManyElements { limit } => WalkError::TooManyElements { limit },
+            Self::TooLong { limit } => WalkError::TooLong { limit },
+            Self::NotFinite(error) => WalkError::NotFinite(error),
+            Self::Cancelled => WalkError::Cancelled,
+            Self::Visitor(error) => WalkError::Visitor(map(error)),
+        }
+    }
 }

@@ -166,7 +166,9 @@ where
         fresh,
         has_failed: false,
     };
-    let sent = send(graph, growth, Stop::AtSubtrees(&sizes), census, &mut spans);
+    let first = (Start::initiator(graph, growth.steps, growth.seed), true);
+    let stop = Stop::AtSubtrees(&sizes);
+    let sent = send(graph, growth.steps, first, stop, census, &mut spans);
     if !spans.has_failed {
         // Spans submitted before a failure may have failed earlier in the order of the walk.
         spans.finish()?;

@@ -1,6 +1,6 @@
 //! Limits, cancellation and progress of a walk.
 
-use std::sync::atomic::Ordering;
+use crate::parallel::is_cancelled;
 
 use super::descent::PATIENCE;
 use super::{Growth, WalkError, Walked};
@@ -65,9 +65,9 @@ impl<'v> Tally<'v> {
         if self.visited > most {
             return Err(WalkError::TooLong { limit: most });
         }
-        match self.growth.cancel {
-            Some(cancel) if cancel.load(Ordering::Relaxed) => Err(WalkError::Cancelled),
-            _ => Ok(()),
+        match is_cancelled(self.growth.cancel) {
+            true => Err(WalkError::Cancelled),
+            false => Ok(()),
         }
     }
 

@@ -267,10 +267,6 @@ impl Visitor<Frame3> for Recorder {
         self.elements.push(*element);
         Ok(())
     }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 fn recorded(graph: &Graph<Frame3>, growth: &Growth<'_>, mut recorder: Recorder) -> Recorder {

@@ -68,19 +68,33 @@ pub(super) trait Sink<'g, F: Frame> {
     type Error: From<CompileError>;
 
     /// As [`Visitor::enter`].
-    fn enter(&mut self, subtree: &Subtree<F>) -> Enter;
+    fn enter(&mut self, _: &Subtree<F>) -> Enter {
+        Enter::Replace
+    }
     /// Returns [`Visitor::ages`].
-    fn ages(&self) -> RangeInclusive<u32>;
+    fn ages(&self) -> RangeInclusive<u32> {
+        0..=u32::MAX
+    }
     /// Begins a fractal that was born in a step.
-    fn begin(&mut self, fractal: FractalInfo, born: u32) -> Result<(), Self::Error>;
+    fn begin(&mut self, _: FractalInfo, _: u32) -> Result<(), Self::Error> {
+        Ok(())
+    }
     /// Receives elements of the fractal, or a block or subtree in their place.
-    fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error>;
+    fn found(&mut self, _: Next<'_, F>) -> Result<(), Self::Error> {
+        Ok(())
+    }
     /// Ends the fractal.
-    fn end(&mut self, joined: bool) -> Result<(), Self::Error>;
+    fn end(&mut self, _: bool) -> Result<(), Self::Error> {
+        Ok(())
+    }
     /// As [`Visitor::takes`].
-    fn takes(&self, colony: &Colony<'_, F>) -> Taken;
+    fn takes(&self, _: &Colony<'_, F>) -> Taken {
+        Taken::Nothing
+    }
     /// Receives a colony in place of the part that is taken of it.
-    fn colony(&mut self, colony: Colony<'g, F>, taken: Taken) -> Result<(), Self::Error>;
+    fn colony(&mut self, _: Colony<'g, F>, _: Taken) -> Result<(), Self::Error> {
+        Ok(())
+    }
     /// Counts elements that were visited on the way.
     fn visit(&mut self, count: u64) -> Result<(), Self::Error>;
 }
@@ -111,24 +125,29 @@ pub fn walk<F: Frame, V: Visitor<F>>(
         visiting: Visiting::new(graph, visitor),
         tally: Tally::new(growth),
     };
-    send(graph, growth, stop, None, &mut sink)?;
+    let first = Start::initiator(graph, growth.steps, growth.seed);
+    send(graph, growth.steps, (first, true), stop, None, &mut sink)?;
     Ok(sink.tally.finish())
 }
 
-/// Walks and sends elements to a sink. With a census, ranks count elements that are not visited.
+/// Walks over a fractal, and over all that it seeds in turn if `is_whole`, and sends elements to a sink. With a
+/// census, ranks count elements that are not visited.
 pub(super) fn send<'g, F: Frame, S: Sink<'g, F>>(
     graph: &'g Graph<F>,
-    growth: &Growth<'_>,
+    steps: u32,
+    (first, is_whole): (Start<'g, F>, bool),
     stop: Stop<'_, F>,
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    let first = Start::initiator(graph, growth.steps, growth.seed);
-    let mut fractals = Fractals::new(graph, growth.steps, sink.ages(), first);
+    let mut fractals = Fractals::new(graph, steps, sink.ages(), first);
     while let Some(start) = fractals.next(sink)? {
         let fractal = fractals.number(&start);
-        let descent = Descent::new(graph, &start, growth.steps).counting(census);
+        let descent = Descent::new(graph, &start, steps).counting(census);
         send_fractal(fractal, &start, descent, stop, sink)?;
+        if !is_whole {
+            break;
+        }
         fractals.follow(start);
     }
     Ok(())
@@ -146,16 +165,14 @@ pub(super) fn walk_over<F: Frame, V: Visitor<F>>(
         visiting: Visiting::new(graph, visitor),
         tally: Tally::new(&Growth::steps(steps)),
     };
-    let mut fractals = Fractals::new(graph, steps, sink.ages(), start);
-    while let Some(start) = fractals.next(&mut sink)? {
-        let fractal = fractals.number(&start);
-        let descent = Descent::new(graph, &start, steps);
-        send_fractal(fractal, &start, descent, Stop::Nowhere, &mut sink)?;
-        if !is_whole {
-            break;
-        }
-        fractals.follow(start);
-    }
+    send(
+        graph,
+        steps,
+        (start, is_whole),
+        Stop::Nowhere,
+        None,
+        &mut sink,
+    )?;
     Ok(sink.tally.finish())
 }
 

@@ -244,15 +244,14 @@ fn union(measured: &[Measured]) -> Option<Moments> {
 
 /// Returns point and velocity of a piece at the parameter `t` from 0 to 1.
 fn at(from: DVec2, piece: &Piece, t: f64) -> (DVec2, DVec2) {
-    match *piece {
-        Piece::Line(end) => (from.lerp(end, t), end - from),
+    let velocity = match *piece {
+        Piece::Line(end) => end - from,
         Piece::Cubic(a, b, end) => {
             let s = 1.0 - t;
-            let point = s * s * s * from + 3.0 * s * t * (s * a + t * b) + t * t * t * end;
-            let velocity = s * s * (a - from) + 2.0 * s * t * (b - a) + t * t * (end - b);
-            (point, 3.0 * velocity)
+            3.0 * (s * s * (a - from) + 2.0 * s * t * (b - a) + t * t * (end - b))
         }
-    }
+    };
+    (piece.at(from, t), velocity)
 }
 
 /// Integrals of 1, of the points and of their squares.

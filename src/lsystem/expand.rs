@@ -3,7 +3,7 @@
 
 use crate::draws::Path;
 
-use super::rewrite::{MOST_WORK, RewriteError, Rewriter};
+use super::rewrite::{MOST_WORK, RewriteError, Rewriter, check_length};
 use super::word::number;
 use super::{LSystem, Word};
 
@@ -128,14 +128,11 @@ impl<'s> Expander<'s> {
             read(symbol, arguments);
         }
         let step = steps;
-        for (count, most, what) in [
-            (self.modules, MOST_MODULES, "modules"),
-            (self.elements, self.most_elements, "elements"),
-        ] {
-            if count > most {
-                return Err(RewriteError::TooLong { step, most, what });
-            }
-        }
+        let modules = (self.modules, MOST_MODULES, "modules");
+        check_length(
+            step,
+            &[modules, (self.elements, self.most_elements, "elements")],
+        )?;
         if self.rewriter.work > MOST_WORK {
             return Err(RewriteError::TooMuchWork { step });
         }

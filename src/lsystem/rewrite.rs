@@ -55,6 +55,17 @@ fn deepest(step: u32) -> String {
     before.map_or_else(String::new, |step| format!("; step {step} is the deepest"))
 }
 
+/// Returns an error if one of several counts of the word of a step is larger than its limit.
+pub(super) fn check_length(
+    step: u32,
+    counts: &[(u64, u64, &'static str)],
+) -> Result<(), RewriteError> {
+    match counts.iter().find(|(count, most, _)| count > most) {
+        Some(&(_, most, what)) => Err(RewriteError::TooLong { step, most, what }),
+        None => Ok(()),
+    }
+}
+
 impl LSystem {
     /// Returns the word after a number of steps.
     ///
@@ -142,16 +153,10 @@ impl LSystem {
         let soon = u32::try_from(MOST_FORECAST / work.max(1)).unwrap_or(u32::MAX);
         for step in 0..=steps.min(soon) {
             let (modules, elements) = lengths.count();
-            let too_long = [
-                (modules, most_modules, "modules"),
-                (elements, most_elements, "elements"),
-            ];
-            let found = too_long.into_iter().find(|(count, most, _)| count > most);
-            if let Some((_, most, what)) = found {
-                return Some(RewriteError::TooLong { step, most, what });
-            }
-            if !lengths.advance() {
-                break;
+            let modules = (modules, most_modules, "modules");
+            let too_long = check_length(step, &[modules, (elements, most_elements, "elements")]);
+            if too_long.is_err() || !lengths.advance() {
+                return too_long.err();
             }
         }
         None
@@ -316,15 +321,10 @@ impl<'s> Rewriter<'s> {
                 .iter()
                 .map(|symbol| system.symbols[*symbol as usize].draws());
             elements += draws.sum::<u64>();
-            for (count, most, what) in [
-                (next.symbols.len() as u64, MOST_MODULES, "modules"),
-                (next.arguments.len() as u64, MOST_MODULES, "arguments"),
-                (elements, most_elements, "elements"),
-            ] {
-                if count > most {
-                    return Err(RewriteError::TooLong { step, most, what });
-                }
-            }
+            let modules = (next.symbols.len() as u64, MOST_MODULES, "modules");
+            let arguments = (next.arguments.len() as u64, MOST_MODULES, "arguments");
+            let elements = (elements, most_elements, "elements");
+            check_length(step, &[modules, arguments, elements])?;
         }
         self.work += surroundings.map_or(0, |around| around.looks());
         Ok(())

@@ -114,7 +114,7 @@ mod tests {
     use crate::catalogue::Catalogue;
     use crate::document::Document;
     use crate::graph::Graph;
-    use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, walk};
+    use crate::grow::{Element, Enter, Growth, Subtree, Visitor, walk};
     use crate::model::Model;
     use crate::render::Options;
     use crate::render::layout::Layout;
@@ -139,10 +139,6 @@ mod tests {
     impl Visitor for Lineage<'_> {
         type Error = Infallible;
 
-        fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-            Ok(())
-        }
-
         fn enter(&mut self, subtree: &Subtree) -> Enter {
             self.come_to(subtree.born, subtree.object);
             Enter::Replace
@@ -161,10 +157,6 @@ mod tests {
                     self.drawn[*ancestor].insert(class);
                 }
             }
-            Ok(())
-        }
-
-        fn end(&mut self, _: bool) -> Result<(), Infallible> {
             Ok(())
         }
     }

@@ -24,22 +24,19 @@ pub(crate) struct Extent {
 type Place = [Interval; 2];
 
 impl Generator {
-    /// Returns bounds that hold for each element, by position, over all draws and all moments within the
-    /// given limits, up to rounding.
+    /// Returns upper bounds of the power means (E[xᵖ])^(1/p), p being `power`, of the quantities x of
+    /// [`Extent`], for each element by position; of their maxima over all draws if the power is infinite. They
+    /// hold at all moments within the given limits, up to rounding.
     ///
     /// The bounds result from interval arithmetic on parts of the variables' ranges: smaller parts lose less
     /// by treating coordinates that depend on one variable as independent.
-    pub(crate) fn extents(&self, moment: &[Interval; 4]) -> Vec<Extent> {
-        let extent = |element| self.cover(element, f64::INFINITY, moment);
-        self.elements().map(extent).collect()
-    }
-
-    /// Returns upper bounds of the power means (E[xᵖ])^(1/p), p being `power`, of the quantities x of
-    /// [`Extent`], for each element by position.
-    pub(crate) fn means(&self, power: f64, moment: &[Interval; 4]) -> Vec<Extent> {
+    pub(crate) fn extents(&self, power: f64, moment: &[Interval; 4]) -> Vec<Extent> {
+        let root = |sum| match power.is_infinite() {
+            true => sum,
+            false => libm::pow(sum, 1.0 / power),
+        };
         let mean = |element| {
             let Extent { away, length } = self.cover(element, power, moment);
-            let root = |sum| libm::pow(sum, 1.0 / power);
             Extent {
                 away: root(away),
                 length: root(length),
@@ -192,7 +189,7 @@ mod tests {
             let limits = [[1.0, 9.0], [0.0, 4.0], [0.0, 4.0], [0.0, 1.0]];
             let limits = limits.map(|[low, high]| Interval::new(low, high));
             for generator in rule.generators() {
-                let extents = generator.extents(&limits);
+                let extents = generator.extents(f64::INFINITY, &limits);
                 for number in 0..if generator.is_random() { 500 } else { 1 } {
                     let moment = ElementContext {
                         index: f64::from(number % 9 + 1),
@@ -230,7 +227,7 @@ mod tests {
                 .into_rule()
                 .unwrap();
             let generator = &rule.generators()[generator];
-            let extents = generator.extents(&[Interval::ALL; 4]);
+            let extents = generator.extents(f64::INFINITY, &[Interval::ALL; 4]);
             for (element, extent) in generator.elements().zip(extents) {
                 assert!(
                     !element.fertile || extent.length < longest,

@@ -7,7 +7,7 @@ use crate::geometry::DMat2;
 use crate::graph::{Graph, Instance, Replacement, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
 use crate::rule::Placement;
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
@@ -56,8 +56,7 @@ pub(super) fn centre(
     let mut product = Product::new(root.frame.map().matrix2);
     // Below this length, the rest of the address moves the point by less than the unit of the
     // computation.
-    #[expect(clippy::cast_precision_loss, reason = "a small number")]
-    let enough = -(window.factor.log2() + window.scale.log2()).max(0.0) - GRAIN as f64;
+    let enough = -(window.factor.log2() + window.scale.log2()).max(0.0) - real(GRAIN);
     let mut evaluator = Evaluator::default();
     for (position, level) in positions.zip(0..) {
         if product.log2 < enough {
@@ -73,8 +72,7 @@ pub(super) fn centre(
             rank: graph.objects()[object].index.into(),
         };
         let depth = level;
-        let evaluated: Successor;
-        let successor = match &graph.objects()[object].replacement {
+        match graph.objects()[object].replacement {
             Replacement::Kept => {
                 return Err(ZoomError::Infertile {
                     address: address(),
@@ -82,14 +80,10 @@ pub(super) fn centre(
                 });
             }
             Replacement::Unresolved => return Err(ZoomError::TooShallow { depth: level }),
-            Replacement::Fixed(successor) => Arc::as_ref(successor),
-            Replacement::Evaluated(_) => {
-                let mut made = Successor::default();
-                evaluator.evaluate(graph, &standing, object, moment, &mut made)?;
-                evaluated = made;
-                &evaluated
-            }
-        };
+            _ => {}
+        }
+        let mut made = Successor::default();
+        let successor = evaluator.successor(graph, &standing, object, moment, &mut made)?;
         let instances: Vec<_> = successor.placed_instances().collect();
         let (placement, child) = found(&instances, position, depth + 1)?;
         let parent = Parent {

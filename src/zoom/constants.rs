@@ -7,7 +7,7 @@ use dashu_int::IBig;
 
 use crate::compile::Chords;
 use crate::expression::{Affine, Arithmetic, Precise, Precision, Program};
-use crate::graph::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance};
 use crate::grow::{ReplacementContext, Standing};
 use crate::ifs::System;
 use crate::instancing::Instancing;
@@ -125,7 +125,7 @@ impl<'a> Constants<'a> {
     /// Returns the maps of instances in the replacement of an element.
     pub(super) fn children(&mut self, parent: Parent<'_>, wanted: &[&Instance]) -> Vec<Arc<Fixed>> {
         let object = &self.graph.objects()[parent.object];
-        let is_fixed = matches!(object.replacement, Replacement::Fixed(_));
+        let is_fixed = object.successor().is_some();
         let key = |instance: &Instance| (object.behaviour, instance.position);
         if is_fixed {
             let known = wanted.iter().map(|instance| self.known.get(&key(instance)));

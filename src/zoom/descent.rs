@@ -1,11 +1,11 @@
 //! Descent from the initiator to the roots of a window.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Replacement, Seed, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
+use crate::parallel::is_cancelled;
 
 use super::clip::{self, Path};
 use super::constants::{Constants, Parent};
@@ -182,7 +182,7 @@ impl<'a, 'c> Descent<'a, 'c> {
 
     fn stays(&self, node: &Node) -> bool {
         let object = &self.graph.objects()[node.object];
-        matches!(object.replacement, Replacement::Kept) || self.growth.steps == Some(node.level)
+        object.is_kept() || self.growth.steps == Some(node.level)
     }
 
     /// Returns the visible part of an element that is not replaced.
@@ -362,8 +362,7 @@ impl<'a, 'c> Descent<'a, 'c> {
 
 /// Returns an error if the work has been cancelled; the flag is read every 16 rounds.
 pub(super) fn check(growth: &ZoomOptions<'_>, round: u32) -> Result<(), ZoomError> {
-    let is_cancelled = |flag: &std::sync::atomic::AtomicBool| flag.load(Ordering::Relaxed);
-    if round.is_multiple_of(16) && growth.cancel.is_some_and(is_cancelled) {
+    if round.is_multiple_of(16) && is_cancelled(growth.cancel) {
         return Err(ZoomError::Cancelled);
     }
     Ok(())

@@ -8,7 +8,7 @@ use super::*;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
-use crate::grow::Subtree;
+use crate::grow::{Element, Subtree, Visitor};
 use crate::random_rules as rules;
 use crate::rule::Rule;
 
@@ -40,47 +40,35 @@ fn compare(rule: &Arc<Rule>, steps: u32, seed: u64, shortest: f64) -> bool {
         return false;
     };
     let mut walked = Walked {
-        extent: Extent {
-            graph: &graph,
-            bounds: Bounds::EMPTY,
-        },
+        graph: &graph,
+        bounds: Bounds::EMPTY,
         enter,
     };
     walk(&graph, &growth, &mut walked).unwrap();
-    assert_eq!(searched, walked.extent.bounds, "{steps} steps, seed {seed}");
+    assert_eq!(searched, walked.bounds, "{steps} steps, seed {seed}");
     true
 }
 
 /// Visitor of all elements that are not too short, with padding around each.
 struct Walked<'g, E> {
-    extent: Extent<'g>,
+    graph: &'g Graph,
+    bounds: Bounds,
     enter: E,
 }
 
 impl<E: Fn(&Subtree) -> Enter> Visitor for Walked<'_, E> {
     type Error = Infallible;
 
-    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
-        self.extent.begin(fractal)
-    }
-
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         (self.enter)(subtree)
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        let Extent { graph, bounds } = &mut self.extent;
-        let object = &graph.objects()[element.object];
-        if object.visible {
-            let base_element = &graph.base_elements()[object.base_element];
+        if let Some(base_element) = self.graph.drawn(element.object) {
             let pad = 0.25 * element.frame.length();
-            base_element.add_to(bounds, &element.frame, pad);
+            base_element.add_to(&mut self.bounds, &element.frame, pad);
         }
         Ok(())
-    }
-
-    fn end(&mut self, joined: bool) -> Result<(), Infallible> {
-        self.extent.end(joined)
     }
 }
 

@@ -170,7 +170,7 @@ impl<'a> Plan<'a> {
                 let mut bounds = Bounds::EMPTY;
                 self.shown
                     .add_to(&mut bounds, &(map * it.affine).into(), 0.0);
-                let middle = (bounds.min() + bounds.max()) / 2.0;
+                let middle = bounds.centre();
                 let at = middle + DVec2::new(-font.width(&name, WORDS) / 2.0, 0.36 * WORDS);
                 items.push(Item::Text(name, WORDS, at, super::LABEL));
             }

@@ -1,10 +1,10 @@
 //! Ranges of lengths in which an object has the same expansion down to a cutoff length.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::geometry::Frame;
-use crate::graph::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance};
+use crate::priority::Keyed;
 
 /// Maximum number of objects of a graph; for larger graphs no ranges are computed.
 const MOST_OBJECTS: usize = 1 << 12;
@@ -59,10 +59,9 @@ impl Cuts {
             count: 1,
             steps: 0,
         };
-        let root = Leaf {
-            ratio: 1.0,
-            object,
-            steps: 0,
+        let root = Keyed {
+            key: 1.0,
+            item: Leaf { object, steps: 0 },
         };
         if !leaves.replace(graph, root, most) {
             return cuts;
@@ -70,7 +69,10 @@ impl Cuts {
         let mut from = 1.0;
         loop {
             // As the object's length increases, the longest leaf is the next to be replaced.
-            let next = leaves.fertile.peek().map_or(f64::INFINITY, Leaf::from);
+            let next = leaves
+                .fertile
+                .peek()
+                .map_or(f64::INFINITY, |leaf| leaf.key.recip());
             if next * ROUNDING > from {
                 let middle = if next.is_finite() {
                     (from * next).sqrt()
@@ -89,14 +91,9 @@ impl Cuts {
             let Some(first) = leaves.fertile.pop() else {
                 return cuts;
             };
-            let least = first.ratio * ROUNDING;
+            let least = first.key * ROUNDING;
             let mut replaced = leaves.replace(graph, first, most);
-            while replaced
-                && leaves
-                    .fertile
-                    .peek()
-                    .is_some_and(|leaf| leaf.ratio >= least)
-            {
+            while replaced && leaves.fertile.peek().is_some_and(|leaf| leaf.key >= least) {
                 let leaf = leaves.fertile.pop();
                 replaced = leaf.is_some_and(|leaf| leaves.replace(graph, leaf, most));
             }
@@ -120,50 +117,23 @@ impl Cuts {
 /// Fertile element of an expansion.
 #[derive(Clone, Copy)]
 struct Leaf {
-    /// Length as a multiple of the object's.
-    ratio: f64,
     object: usize,
     steps: u32,
 }
 
-impl Leaf {
-    /// Returns the length of the object from which on the leaf is replaced.
-    fn from(&self) -> f64 {
-        self.ratio.recip()
-    }
-}
-
-impl Ord for Leaf {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.ratio.total_cmp(&other.ratio)
-    }
-}
-
-impl PartialOrd for Leaf {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Leaf {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Leaf {}
-
 /// Partial expansion of an object.
 struct Leaves {
-    fertile: BinaryHeap<Leaf>,
+    /// Fertile elements by their lengths, as multiples of the object's.
+    fertile: BinaryHeap<Keyed<Leaf>>,
     count: u64,
     steps: u32,
 }
 
 impl Leaves {
     /// Replaces a leaf, and returns whether its instances are fixed and the limit of elements holds.
-    fn replace<F: Frame>(&mut self, graph: &Graph<F>, leaf: Leaf, most: u64) -> bool {
-        let Replacement::Fixed(successor) = &graph.objects()[leaf.object].replacement else {
+    fn replace<F: Frame>(&mut self, graph: &Graph<F>, leaf: Keyed<Leaf>, most: u64) -> bool {
+        let Keyed { key, item: leaf } = leaf;
+        let Some(successor) = graph.objects()[leaf.object].successor() else {
             return false;
         };
         let instances = &successor.body.instances;
@@ -172,11 +142,12 @@ impl Leaves {
         self.steps = self.steps.max(leaf.steps + 1);
         let is_fertile = |instance: &&Instance<F>| graph.is_fertile(instance.object);
         for instance in instances.iter().filter(is_fertile) {
-            self.fertile.push(Leaf {
-                ratio: leaf.ratio * instance.length,
+            let item = Leaf {
                 object: instance.object,
                 steps: leaf.steps + 1,
-            });
+            };
+            let key = key * instance.length;
+            self.fertile.push(Keyed { key, item });
         }
         // The limit of steps ends the replacement of elements that do not shrink.
         self.count <= most && u64::from(self.steps) <= most

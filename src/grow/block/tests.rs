@@ -6,7 +6,7 @@ use super::Run;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::document::Document;
 use crate::graph::Graph;
-use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, walk};
+use crate::grow::{Element, Enter, Growth, Subtree, Visitor, walk};
 
 /// Visitor that compares selections of a run's elements with filters over all of them.
 #[derive(Default)]
@@ -16,10 +16,6 @@ struct Asking {
 
 impl Visitor for Asking {
     type Error = Infallible;
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
 
     fn takes_runs(&self) -> bool {
         true
@@ -52,10 +48,6 @@ impl Visitor for Asking {
         }
         Ok(())
     }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 #[test]
@@ -82,10 +74,6 @@ struct Cutting {
 
 impl Visitor for Cutting {
     type Error = Infallible;
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
 
     fn takes_runs(&self) -> bool {
         self.takes_runs
@@ -116,10 +104,6 @@ impl Visitor for Cutting {
         assert!(run.count() <= self.longest_run());
         self.runs += 1;
         self.elements.extend(run.elements());
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }

@@ -26,11 +26,11 @@ pub(crate) use field::Field;
 pub(crate) use net::Layer;
 
 use std::num::NonZero;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
 
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
-use crate::parallel::for_each;
+use crate::parallel::{for_each, is_cancelled};
 
 use self::field::TooFar;
 use self::net::{Edge, Net, Node};
@@ -81,11 +81,10 @@ pub(crate) struct Search<'a> {
 impl Search<'_> {
     /// Returns an error if the search was cancelled.
     fn check(&self) -> Result<(), Stopped> {
-        let is_cancelled = |cancel: &AtomicBool| cancel.load(Relaxed);
-        if self.cancel.is_some_and(is_cancelled) {
-            return Err(Stopped::Cancelled);
+        match is_cancelled(self.cancel) {
+            true => Err(Stopped::Cancelled),
+            false => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Limit set of a graph, as sets that consist of images of each other.
 
 use crate::geometry::{DAffine2, DVec2, stretch};
-use crate::graph::{Graph, Instance, Object, Replacement};
+use crate::graph::{Graph, Instance, Object};
 
 /// Maximum length of the addresses of points.
 const MOST_LEVELS: usize = 1 << 20;
@@ -71,10 +71,7 @@ struct Builder<'g> {
 
 impl Builder<'_> {
     fn is_replaced(&self, object: usize) -> bool {
-        matches!(
-            self.graph.objects()[object].replacement,
-            Replacement::Fixed(_)
-        )
+        self.graph.objects()[object].successor().is_some()
     }
 
     /// Returns the behaviour of an object of which anything is drawn.

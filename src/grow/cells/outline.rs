@@ -1,7 +1,7 @@
 //! Points of outlines, of which neighbours are at most a cell apart.
 
 use crate::geometry::{DAffine2, DVec2};
-use crate::rule::{BaseElement, Piece};
+use crate::rule::BaseElement;
 
 /// Number of lines that replace a curve.
 const LINES: u32 = 64;
@@ -17,31 +17,10 @@ pub(super) fn visit(
     scale: f64,
     visit: &mut impl FnMut(DVec2) -> bool,
 ) -> bool {
-    let corners = flattened(base_element, map);
+    let corners = base_element.corners(map, LINES);
     let mut lines = corners.windows(2);
     lines.all(|ends| line(ends[0], ends[1], scale, visit))
         && (!base_element.is_closed() || fill(&corners, scale, visit))
-}
-
-/// Returns the ends of lines along an outline.
-fn flattened(base_element: &BaseElement, map: &DAffine2) -> Vec<DVec2> {
-    let mut at = map.transform_point2(base_element.start());
-    let mut corners = vec![at];
-    for piece in base_element.pieces() {
-        let piece = piece.transformed(map);
-        if let Piece::Cubic(a, b, end) = piece {
-            let points = (1..LINES).map(|line| {
-                let t = f64::from(line) / f64::from(LINES);
-                let (first, second) = (at.lerp(a, t), a.lerp(b, t));
-                let (one, other) = (first.lerp(second, t), second.lerp(b.lerp(end, t), t));
-                one.lerp(other, t)
-            });
-            corners.extend(points);
-        }
-        at = piece.end();
-        corners.push(at);
-    }
-    corners
 }
 
 /// Visits points of a line, including both ends.

@@ -1,9 +1,8 @@
 //! Points of layers, from which none are derived.
 
-use std::thread;
-
 use super::field::{Field, TooFar};
 use crate::geometry::DVec2;
+use crate::parallel::for_each;
 
 /// Maximum number of points that are put into cells together.
 const MANY: usize = 1 << 17;
@@ -86,27 +85,14 @@ impl<M: Mark> Shown<M> {
                 Ok(())
             })
         };
-        if open.len() < WORTH_THREADS {
-            let mut parts = parts.iter_mut().enumerate();
-            let outcome = parts.try_for_each(|(number, layers)| put_part(number, layers));
-            open.clear();
-            return outcome;
-        }
-        let outcome = thread::scope(|scope| {
-            let mut parts = parts.iter_mut().enumerate();
-            let first = parts.next();
-            let others: Vec<_> = parts
-                .map(|(number, layers)| scope.spawn(move || put_part(number, layers)))
-                .collect();
-            let own = first.map_or(Ok(()), |(number, layers)| put_part(number, layers));
-            let others = others.into_iter().map(|other| {
-                let outcome = other.join();
-                outcome.unwrap_or_else(|cause| std::panic::resume_unwind(cause))
-            });
-            others.fold(own, Result::and)
+        let threads = if open.len() < WORTH_THREADS { 1 } else { count };
+        let mut outcomes = vec![Ok(()); count];
+        let parts = parts.iter_mut().enumerate().zip(&mut outcomes);
+        for_each(parts, threads, |((number, layers), outcome)| {
+            *outcome = put_part(number, layers);
         });
         self.open.clear();
-        outcome
+        outcomes.into_iter().collect()
     }
 
     /// Returns the cells of every layer.

@@ -9,7 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::graph::Graph;
-use crate::grow::{Element, Enter, FractalInfo, Growth, Run, Subtree, Visitor, Walked, walk};
+use crate::grow::{Element, Enter, Growth, Run, Subtree, Visitor, Walked, walk};
 
 const SHORTEST: f64 = 0.02;
 
@@ -41,10 +41,6 @@ impl Collecting<'_> {
 
 impl Visitor for Collecting<'_> {
     type Error = Infallible;
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
 
     fn cuts(&self) -> Option<f64> {
         Some(SHORTEST)
@@ -91,10 +87,6 @@ impl Visitor for Collecting<'_> {
             .iter()
             .try_for_each(|element| self.element(element))
     }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 struct Listing(Vec<Element>);
@@ -102,20 +94,12 @@ struct Listing(Vec<Element>);
 impl Visitor for Listing {
     type Error = Infallible;
 
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         enter(subtree)
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.0.push(*element);
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }

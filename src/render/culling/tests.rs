@@ -12,7 +12,7 @@ use super::*;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::diagnostic::Source;
 use crate::document::Document;
-use crate::grow::{Element, FractalInfo, Visitor, walk};
+use crate::grow::{Element, Visitor, walk};
 use crate::parallel::with_team;
 use crate::random_rules::{self as rules, Features};
 use crate::render::layout::Layout;
@@ -391,16 +391,8 @@ struct Cells(Vec<DVec2>);
 impl Visitor for Cells {
     type Error = Infallible;
 
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         self.0.push(element.frame.apply(DVec2::new(0.5, 0.5)));
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }

@@ -275,10 +275,6 @@ struct Members<'s, F> {
 impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         if self
             .scene
@@ -305,10 +301,6 @@ impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
         if is_painted {
             (self.see)(element);
         }
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }
@@ -359,10 +351,6 @@ impl Visitor for Census<'_> {
         if self.counts.iter().sum::<u64>() > MOST_ELEMENTS {
             return Err(TooMany);
         }
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), TooMany> {
         Ok(())
     }
 }

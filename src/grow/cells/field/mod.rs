@@ -5,6 +5,7 @@ mod rows;
 mod spread;
 
 use crate::geometry::{Bounds, DVec2};
+use crate::saturating::ones;
 
 /// Number of cells along a side of a tile.
 const SIDE: i64 = 64;
@@ -298,12 +299,8 @@ impl Default for Tile {
 }
 
 /// Iterates over the indices of the set bits of a word.
-fn bits(mut word: u64) -> impl Iterator<Item = i64> {
-    std::iter::from_fn(move || {
-        let bit = word.trailing_zeros();
-        word &= word.wrapping_sub(1);
-        (bit < u64::BITS).then_some(bit.into())
-    })
+fn bits(word: u64) -> impl Iterator<Item = i64> {
+    ones(word).map(i64::from)
 }
 
 /// Returns the cell of a point that is given in units of cells.
