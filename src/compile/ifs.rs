@@ -57,9 +57,7 @@ impl Graph {
         let mut base_elements = graph.base_elements.to_vec();
         base_elements[INITIAL] = initial;
         graph.base_elements = base_elements.into();
-        graph.middle = (whole.min() + whole.max()) / 2.0;
-        let size = whole.size().max_element();
-        graph.unit = if size > 0.0 { size } else { 1.0 };
+        graph.set_extent(&whole);
         graph
     }
 }
@@ -74,12 +72,9 @@ fn middle(graph: &Graph) -> DVec2 {
             bounds.add(*corner);
         }
     }
-    let middle = (bounds.min() + bounds.max()) / 2.0;
-    if middle.is_finite() {
-        middle
-    } else {
-        DVec2::ZERO
-    }
+    Some(bounds.centre())
+        .filter(|centre| centre.is_finite())
+        .unwrap_or_default()
 }
 
 /// Returns the filled rectangle of a box; the unit square if it is `None`.
@@ -232,10 +227,7 @@ impl<'s> Compiler<'s> {
         let drawn =
             drawn.map(|outline| instance(self.drawn(None, outline), &DAffine2::IDENTITY, 0));
         let root = instance(0, &DAffine2::IDENTITY, 0);
-        let start = Chain {
-            instances: std::iter::once(root).chain(drawn).collect(),
-            meets_frame: [false; 2],
-        };
+        let start = Chain::loose(std::iter::once(root).chain(drawn).collect());
         let outlines = std::iter::once(provisional).chain(outlines);
         Graph {
             origins: maps,
@@ -333,12 +325,11 @@ impl<'s> Compiler<'s> {
                 instances.push(instance(object, &affine, instances.len()));
             }
         }
-        Successor {
-            body: Chain {
-                instances,
-                meets_frame: [self.chained; 2],
-            },
-            seeds: Vec::new(),
-        }
+        let meets_frame = [self.chained; 2];
+        let body = Chain {
+            instances,
+            meets_frame,
+        };
+        body.into()
     }
 }

@@ -32,9 +32,7 @@ impl Graph {
         }
         let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
         if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
-            graph.middle = (bounds.min() + bounds.max()) / 2.0;
-            let size = bounds.size().max_element();
-            graph.unit = if size > 0.0 { size } else { 1.0 };
+            graph.set_extent(&bounds);
         }
         graph
     }
@@ -118,10 +116,7 @@ pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instan
     let frame = Frame2::from(*map);
     Instance {
         length: frame.stretch(),
-        frame,
-        joined: false,
-        position: u32::try_from(position).unwrap_or(u32::MAX),
-        object,
+        ..Instance::new(object, frame, u32::try_from(position).unwrap_or(u32::MAX))
     }
 }
 
@@ -174,11 +169,7 @@ impl<'s> Compiler<'s> {
                     Some(successor) => Arc::clone(successor),
                     None => {
                         let object = &self.structure.objects[canonical];
-                        let body = self.chain(&object.instances);
-                        let successor = Arc::new(Successor {
-                            body,
-                            seeds: Vec::new(),
-                        });
+                        let successor = Arc::new(self.chain(&object.instances).into());
                         made.insert(canonical, Arc::clone(&successor));
                         successor
                     }
@@ -202,15 +193,11 @@ impl<'s> Compiler<'s> {
 
     fn chain(&mut self, instances: &[instancing::ObjectInstance]) -> Chain {
         let numbered = instances.iter().enumerate();
-        Chain {
-            instances: numbered
-                .map(|(position, of)| {
-                    let map = self.structure.map_of(of);
-                    instance(self.object(of), &map, position)
-                })
-                .collect(),
-            meets_frame: [false; 2],
-        }
+        let placed = numbered.map(|(position, of)| {
+            let map = self.structure.map_of(of);
+            instance(self.object(of), &map, position)
+        });
+        Chain::loose(placed.collect())
     }
 
     /// Returns the graph object of an instance, which is created if it is new.

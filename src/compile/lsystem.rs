@@ -15,6 +15,7 @@ mod far;
 mod kinds;
 mod levels;
 mod long;
+mod paint;
 mod reader;
 mod similar;
 mod state;
@@ -83,10 +84,7 @@ impl Graph {
             }
         }
         strings.base_elements.extend(turtle.drawing.polygons);
-        let initiator = Chain {
-            instances,
-            meets_frame: [false; 2],
-        };
+        let initiator = Chain::loose(instances);
         let mut bounds = Bounds::EMPTY;
         for instance in &initiator.instances {
             let base_element = strings.objects[instance.object].base_element;
@@ -99,7 +97,7 @@ impl Graph {
         };
         graph.find_widths();
         if !bounds.is_empty() {
-            graph.middle = (bounds.min() + bounds.max()) / 2.0;
+            graph.middle = bounds.centre();
         }
         Ok(graph)
     }
@@ -145,11 +143,8 @@ impl<'s> Strings<'s> {
         // Base element 0 is the line; polygons follow.
         let base_element = placed.polygon.map_or(0, |number| number + 1);
         Instance {
-            frame: placed.frame,
-            length: placed.frame.length(),
             joined: placed.joined,
-            position: 0,
-            object: self.object(placed, base_element),
+            ..Instance::new(self.object(placed, base_element), placed.frame, 0)
         }
     }
 

@@ -1,6 +1,6 @@
 //! Class and state of an element, which together determine its subtree, and the dependences of a rule.
 
-use crate::expression::{Dependence, Program};
+use crate::expression::{Dependence, Program, gcd};
 use crate::rule::{ElementContext, Generator, ListedElement, Placement, Rule, Selection};
 
 /// Properties of an element that do not depend on place and time: elements of one class in one state have
@@ -136,15 +136,7 @@ impl Dependences {
 
     /// Returns the least common multiple of the current modulus and another.
     fn common(&self, modulus: u32) -> u32 {
-        let divisor = greatest_common_divisor(self.modulus, modulus);
-        (self.modulus / divisor).saturating_mul(modulus)
-    }
-}
-
-fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
+        let [own, other] = [self.modulus, modulus].map(u64::from);
+        u32::try_from(own / gcd(own, other) * other).unwrap_or(u32::MAX)
     }
 }

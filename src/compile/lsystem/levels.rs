@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use crate::draws::Path;
 use crate::geometry::{DVec2, Frame2};
-use crate::instancing::Thickness;
 use crate::rule::{BaseElement, Piece};
 
 use super::NotCompiled;
 use super::effects::{Drawn, Effects};
 use super::far::Far;
+use super::paint::Paint;
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, State};
 use super::words::{Words, Written};
@@ -31,9 +31,7 @@ const FARTHEST: f64 = 1e150;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     of: Master,
-    colour: i64,
-    /// Bits of the width, and whether it is set rather than multiplied.
-    thickness: (u64, bool),
+    paint: Paint,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,9 +47,6 @@ enum Master {
 /// Builder of the objects of a time-indexed graph, from the largest number of steps left to the smallest.
 struct Leveller<'e> {
     effects: &'e Effects,
-    has_colours: bool,
-    /// Number of colours of the palette.
-    colours: i64,
     base_elements: Vec<BaseElement>,
     outlines: BTreeMap<Vec<[u64; 2]>, usize>,
     /// Numbers of the objects that are replaced, and of all others.
@@ -77,12 +72,8 @@ const LEAVES: usize = usize::MAX / 2;
 impl Graph {
     /// Builds the graph whose objects are kinds with a number of steps that are left.
     pub(super) fn of_levels(effects: Effects, steps: u32) -> Result<Self, NotCompiled> {
-        let palette = &effects.system.metadata().style.palette;
-        let has_colours = effects.system.has_colours();
         let leveller = Leveller {
             effects: &effects,
-            has_colours,
-            colours: i64::try_from(palette.entries()).unwrap_or(i64::MAX),
             base_elements: vec![BaseElement::line()],
             outlines: BTreeMap::new(),
             numbers: [const { BTreeMap::new() }; 2],
@@ -113,9 +104,9 @@ impl Leveller<'_> {
                     break;
                 }
                 done += 1;
-                let replaced = (kind, level, key.colour);
+                let replaced = (kind, level, key.paint.colour);
                 if !self.productions.contains_key(&replaced) {
-                    let production = self.production(kind, level, key.colour)?;
+                    let production = self.production(kind, level, key.paint.colour)?;
                     self.productions.insert(replaced, production);
                 }
             }
@@ -146,10 +137,8 @@ impl Leveller<'_> {
             Some(Drawn { reach, .. }) if reach.longer(Far::of_length(FARTHEST)) == reach => reach,
             _ => Far::of_length(1.0),
         };
-        Ok(Chain {
-            instances: self.instances(&reader.parts, left, unit, 0)?,
-            meets_frame: [false; 2],
-        })
+        let instances = self.instances(&reader.parts, left, unit, 0)?;
+        Ok(Chain::loose(instances))
     }
 
     /// Returns the replacement of a kind with `left` steps left, where the turtle has a colour.
@@ -163,13 +152,12 @@ impl Leveller<'_> {
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             let instances = self.instances(&reader.parts, left - 1, unit, colour)?;
             if is_exact {
-                return Ok(Made::Fixed(Successor {
-                    body: Chain {
-                        instances,
-                        meets_frame: reader.meets(),
-                    },
-                    seeds: Vec::new(),
-                }));
+                let meets_frame = reader.meets();
+                let body = Chain {
+                    instances,
+                    meets_frame,
+                };
+                return Ok(Made::Fixed(body.into()));
             }
             let placed = reader.parts.iter().zip(&instances);
             let extent = |(part, instance): (&Part, &Instance)| Extent {
@@ -220,25 +208,11 @@ impl Leveller<'_> {
             }
         };
         let frame: Frame2 = part.pose.frame(self.effects.compass, steps, unit);
-        let (width, sets) = match part.look.width {
-            Thickness::Times(width) => (width, false),
-            Thickness::Set(width) => (width, true),
-        };
-        let key = Key {
-            of,
-            colour: if self.has_colours {
-                part.look.colour.from(colour).rem_euclid(self.colours)
-            } else {
-                0
-            },
-            thickness: (width.to_bits(), sets),
-        };
+        let paint = Paint::of(&self.effects.system, part.look, colour);
+        let object = self.object(Key { of, paint })?;
         Ok(Instance {
-            length: frame.length(),
-            frame,
             joined: part.joined,
-            position: part.position,
-            object: self.object(key)?,
+            ..Instance::new(object, frame, part.position)
         })
     }
 
@@ -303,14 +277,15 @@ impl Leveller<'_> {
         let replacements: BTreeMap<_, _> =
             made.map(|(key, made)| (key, replacement(made))).collect();
         let keys: Vec<Key> = self.keys.concat();
+        let system = &*self.effects.system;
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());
         for key in keys {
             let (base_element, behaves, replacement) = match key.of {
                 Master::Subtree(kind, left) => {
-                    let replaced = (kind, left, key.colour);
+                    let replaced = (kind, left, key.paint.colour);
                     let replacement = replacements[&replaced].clone();
-                    let behaves = (Master::Subtree(kind, left), key.colour);
+                    let behaves = (Master::Subtree(kind, left), key.paint.colour);
                     (self.way(kind, left), behaves, replacement)
                 }
                 Master::Step(true) => (0, (key.of, 0), Replacement::Unresolved),
@@ -318,24 +293,15 @@ impl Leveller<'_> {
                 Master::Polygon(number) => (number, (Master::Step(false), 0), Replacement::Kept),
             };
             let next = behaviours.len();
-            let (width, sets) = (f64::from_bits(key.thickness.0), key.thickness.1);
-            let thickness = if sets {
-                Some(Thickness::Set(width))
-            } else {
-                Some(Thickness::Times(width)).filter(|_| width != 1.0)
-            };
-            let palette = &self.effects.system.metadata().style.palette;
             objects.push(Object {
-                paint: self.has_colours.then(|| palette.entry(key.colour)),
-                thickness,
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
-                ..Object::kept(base_element)
+                ..key.paint.object(system, base_element)
             });
         }
         let mut graph = Graph {
             depth: Some(steps),
-            tints: self.has_colours,
+            tints: system.has_colours(),
             ..Graph::of(objects, self.base_elements, initiators)
         };
         graph.find_widths();

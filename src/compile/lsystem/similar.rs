@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use crate::draws::Path;
 use crate::geometry::{DVec2, Direction, Frame2};
-use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
-use crate::instancing::Thickness;
+use crate::graph::{Chain, Graph, Instance, Object, Replacement};
 use crate::lsystem::{Action, LSystem};
 use crate::rule::BaseElement;
 
@@ -15,6 +14,7 @@ use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
 use super::long::{Vector, Ways};
+use super::paint::Paint;
 use super::reader::{Of, Part, Reader};
 use super::state::{Look, Pose, State};
 
@@ -81,12 +81,11 @@ impl Shape {
     }
 }
 
-/// Identity of an object: its kind, its colour, and its change of stroke widths, or a width that is set.
+/// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     kind: usize,
-    colour: i64,
-    thickness: (u64, bool),
+    paint: Paint,
 }
 
 /// Numbers of objects.
@@ -384,21 +383,9 @@ impl Edges {
     /// Returns the identity of an object of a kind, whose attributes are relative to a whole with a
     /// colour.
     fn key(&self, kind: usize, look: Look, colour: i64) -> Key {
-        let system = &self.effects.system;
-        let colours = system.metadata().style.palette.entries();
-        let colours = i64::try_from(colours).unwrap_or(i64::MAX);
-        let (width, sets) = match look.width {
-            Thickness::Times(width) => (width, false),
-            Thickness::Set(width) => (width, true),
-        };
         Key {
             kind,
-            colour: if system.has_colours() {
-                look.colour.from(colour).rem_euclid(colours)
-            } else {
-                0
-            },
-            thickness: (width.to_bits(), sets),
+            paint: Paint::of(&self.effects.system, look, colour),
         }
     }
 
@@ -423,7 +410,7 @@ impl Edges {
             }
             let kind = &kinds.all[key.kind];
             if kind.is_fertile() {
-                open.extend(keys(&kind.alternatives[0].word, key.colour)?);
+                open.extend(keys(&kind.alternatives[0].word, key.paint.colour)?);
             }
         }
         Ok(found.into_iter().zip(0..).collect())
@@ -457,26 +444,18 @@ impl Edges {
         let mut made = Vec::new();
         for key in objects.keys() {
             let next = behaviours.len();
-            let behaves = (key.kind, key.colour);
+            let behaves = (key.kind, key.paint.colour);
             let replacement = match &shapes[key.kind] {
-                Some(shape) => Replacement::Fixed(Arc::new(Successor {
-                    body: shape.chain(self, &objects, key.colour)?,
-                    seeds: Vec::new(),
-                })),
+                Some(shape) => {
+                    let body = shape.chain(self, &objects, key.paint.colour)?;
+                    Replacement::Fixed(Arc::new(body.into()))
+                }
                 None => Replacement::Kept,
             };
-            let width = f64::from_bits(key.thickness.0);
-            let palette = &system.metadata().style.palette;
             made.push(Object {
-                paint: system.has_colours().then(|| palette.entry(key.colour)),
-                thickness: if key.thickness.1 {
-                    Some(Thickness::Set(width))
-                } else {
-                    Some(Thickness::Times(width)).filter(|_| width != 1.0)
-                },
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
-                ..Object::kept(0)
+                ..key.paint.object(system, 0)
             });
         }
         let start = start.chain(self, &objects, 0)?;

@@ -10,7 +10,7 @@ use crate::document::Document;
 use crate::extent::bounding_box;
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
-use crate::grow::{Element, FractalInfo, Growth, Visitor, walk};
+use crate::grow::{Element, Growth, Visitor, walk};
 use crate::lsystem::LSystem;
 use crate::model::Model;
 use crate::style::Colour;
@@ -38,10 +38,6 @@ struct Collector<'g> {
 impl Visitor for Collector<'_> {
     type Error = Infallible;
 
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn element(&mut self, element: &Element) -> Result<(), Infallible> {
         let object = &self.graph.objects()[element.object];
         let map = element.frame.map();
@@ -61,10 +57,6 @@ impl Visitor for Collector<'_> {
             width: element.appearance.width(),
             colour: element.appearance.on(Colour::BLACK),
         });
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
 }

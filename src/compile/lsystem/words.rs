@@ -67,11 +67,8 @@ impl Words {
             };
             let frame = part.pose.frame(effects.compass, steps, written.unit);
             production.body.instances.push(Instance {
-                length: frame.length(),
-                frame,
                 joined: part.joined,
-                position: part.position,
-                object,
+                ..Instance::new(object, frame, part.position)
             });
         }
         production.body.meets_frame = reader.meets();

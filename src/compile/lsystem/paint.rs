@@ -1,0 +1,50 @@
+//! Colours and widths as parts of the identity of objects.
+
+use crate::graph::Object;
+use crate::instancing::Thickness;
+use crate::lsystem::LSystem;
+
+use super::state::Look;
+
+/// Colour of an object, and its change of stroke widths or a width that is set.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Paint {
+    pub(super) colour: i64,
+    /// Bits of the width, and whether it is set rather than multiplied.
+    thickness: (u64, bool),
+}
+
+impl Paint {
+    /// Returns the paint of an object with the stroke attributes `look` relative to an earlier colour.
+    pub(super) fn of(system: &LSystem, look: Look, earlier: i64) -> Self {
+        let (width, sets) = match look.width {
+            Thickness::Times(width) => (width, false),
+            Thickness::Set(width) => (width, true),
+        };
+        let mut colour = 0;
+        if system.has_colours() {
+            let colours = system.metadata().style.palette.entries();
+            let colours = i64::try_from(colours).unwrap_or(i64::MAX);
+            colour = look.colour.from(earlier).rem_euclid(colours);
+        }
+        Self {
+            colour,
+            thickness: (width.to_bits(), sets),
+        }
+    }
+
+    /// Returns an object with this paint that is never replaced.
+    pub(super) fn object(self, system: &LSystem, base_element: usize) -> Object {
+        let palette = &system.metadata().style.palette;
+        let width = f64::from_bits(self.thickness.0);
+        Object {
+            paint: system.has_colours().then(|| palette.entry(self.colour)),
+            thickness: if self.thickness.1 {
+                Some(Thickness::Set(width))
+            } else {
+                Some(Thickness::Times(width)).filter(|_| width != 1.0)
+            },
+            ..Object::kept(base_element)
+        }
+    }
+}
